@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// Contacts, gaps and their gradients.
+
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <string>
+
+#include <isostat/packing/packing.hpp>
+
+namespace isostat {
+
+/// What touches what. `held` is not a contact: it is a coordinate kept at its value (design: power turns).
+enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };
+
+/// One contact, or one candidate.
+/// - disk_disk: disks i < j;  - lower_wall, upper_wall: disk i and the wall of axis j;  - held: coordinate index i, j = 0.
+struct Contact {
+    ContactKind kind = ContactKind::disk_disk;
+    int i = 0;
+    int j = 0;
+    friend constexpr auto operator<=>(const Contact&, const Contact&) = default;
+};
+
+/// "12-40", "12-left", "12-top", "held x of disk 3".
+template <int Dim> std::string to_string(const Contact& contact);
+
+/// Derivative of a gap with respect to the coordinates: at most 2*Dim entries, coordinate indices as in `Packing::q`,
+/// components are unit normals. Column l of H is minus this vector restricted to the degrees of freedom (H = G^T, and G
+/// gives approach velocities). For a held coordinate the gradient is +1 on that coordinate.
+template <int Dim> struct GapGradient {
+    int count = 0;
+    std::array<int, 2 * Dim> coordinate{};
+    std::array<double, 2 * Dim> value{};
+};
+
+/// Gap h: distance of the surfaces, >= 0 in an admissible packing. Held: 0.
+/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the grid.
+template <int Dim> double gap(const Packing<Dim>& packing, const Contact& contact);
+
+/// Gradient of the gap. Each component has relative error <= 4u (u = 2^-53) for coordinates on the grid.
+template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, const Contact& contact);
+
+/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative velocity|^2 / distance; 0 for walls.
+template <int Dim> double gap_curvature(const Packing<Dim>& packing, const Contact& contact, const double* v);
+
+extern template std::string to_string<2>(const Contact&);
+extern template double gap<2>(const Packing<2>&, const Contact&);
+extern template GapGradient<2> gap_gradient<2>(const Packing<2>&, const Contact&);
+extern template double gap_curvature<2>(const Packing<2>&, const Contact&, const double*);
+
+} // namespace isostat

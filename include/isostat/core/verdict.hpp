@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// Three-valued answers. A question about real numbers that are known only to a bound has three answers, and the
+/// third must not be usable as one of the other two by accident.
+
+#include <cstdint>
+#include <string_view>
+
+namespace isostat {
+
+/// Answer of a check.
+/// - `proved`: the statement holds, and the function that returned it says by which argument;
+/// - `refuted`: the negation of the statement holds;
+/// - `undecided`: neither was shown with the arithmetic that was allowed. It says nothing about which one is true.
+/// There is no conversion to bool: compare with the value that is meant.
+enum class Verdict : std::uint8_t { proved, refuted, undecided };
+
+/// The word used in records and messages.
+constexpr std::string_view to_string(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::proved: return "proved";
+    case Verdict::refuted: return "refuted";
+    case Verdict::undecided: return "undecided";
+    }
+    return "undecided";
+}
+
+/// The arithmetic that settled a decision, in the order in which it is tried.
+/// - `combinatorial`: no number was needed (structural zeros);
+/// - `double_bound`: double precision with a rigorous error bound smaller than the margin;
+/// - `double_double`: residuals and corrections in double-double, same kind of bound;
+/// - `multiprecision`: MPFR; `exact`: integers or rationals; `none`: undecided.
+enum class Rung : std::uint8_t { combinatorial, double_bound, double_double, multiprecision, exact, none };
+
+/// The word used in records and messages.
+constexpr std::string_view to_string(Rung rung) {
+    switch (rung) {
+    case Rung::combinatorial: return "combinatorial";
+    case Rung::double_bound: return "double";
+    case Rung::double_double: return "double-double";
+    case Rung::multiprecision: return "mpfr";
+    case Rung::exact: return "exact";
+    case Rung::none: return "none";
+    }
+    return "none";
+}
+
+} // namespace isostat

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Exact rank of a sparse matrix by elimination over a prime field.
+
+#include <cstdint>
+#include <span>
+
+#include <isostat/sparse/pattern.hpp>
+
+namespace isostat::exact {
+
+/// p = 2^61 - 1: products fold by shifts, and powers of two are rotations. Residues are in [0, p).
+inline constexpr std::uint64_t mersenne61 = (std::uint64_t{1} << 61) - 1;
+
+/// The residue of a finite double, exactly: m * 2^e mod p. A ring homomorphism from the dyadic rationals.
+std::uint64_t residue(double value);
+
+/// (a - b) mod p, (a * b) mod p.
+std::uint64_t subtract(std::uint64_t a, std::uint64_t b);
+std::uint64_t multiply(std::uint64_t a, std::uint64_t b);
+
+/// Rank of a matrix of residues. `rank_p <= rank over Q` of any matrix that reduces to it (statement T4): when it equals
+/// min(rows, cols) it *proves* full rank; when it is smaller it proves nothing about Q (chance of a false deficiency ~ n/p per prime).
+/// `ordering` must belong to the pattern of `matrix` (square, structurally regular).
+int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering);
+
+/// The same for any rectangular matrix, columns eliminated in a COLAMD order.
+int rank(const sparse::Matrix<std::uint64_t>& matrix);
+
+} // namespace isostat::exact

@@ -1,0 +1,93 @@
+#pragma once
+/// \file
+/// The grains and where they are: disks (Dim = 2; spheres later) and flat walls normal to the axes.
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <isostat/core/ids.hpp>
+
+namespace isostat {
+
+/// State of one wall. A movable wall is a grain with one degree of freedom, its position along its axis.
+enum class WallKind : unsigned char { absent, fixed, movable };
+
+/// The walls: `lower[a]` at coordinate 0 of axis a (never movable), `upper[a]` at L_a.
+template <int Dim> struct Walls {
+    std::array<WallKind, Dim> lower{};
+    std::array<WallKind, Dim> upper{};
+    /// The paper's box: two fixed lower walls, two movable upper walls.
+    static Walls box();
+    /// No walls at all (free clusters).
+    static Walls none();
+    friend bool operator==(const Walls&, const Walls&) = default;
+};
+
+/// Radii, walls and configuration. Lengths are in the user's unit.
+///
+/// Coordinates are stored flat: `q[Dim*i + a]` is coordinate a of disk i, `q[Dim*n + a]` is L_a, the position of the
+/// upper wall of axis a (present in q even when that wall is absent, then meaningless and 0). A *coordinate index* is
+/// an index into q. Invariant (checked by `validate`): every radius positive and finite, every coordinate finite.
+template <int Dim> struct Packing {
+    std::vector<double> radius;      ///< n radii
+    std::vector<double> q;           ///< Dim*(n+1) coordinates
+    Walls<Dim> walls = Walls<Dim>::box();
+    std::vector<unsigned char> fixed; ///< empty, or n flags: 1 = this disk cannot move
+
+    [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
+    [[nodiscard]] double coordinate(DiskId disk, int axis) const {
+        return q[static_cast<std::size_t>(Dim) * disk.index() + static_cast<std::size_t>(axis)];
+    }
+    /// Position L_a of the upper wall of an axis.
+    [[nodiscard]] double length(int axis) const { return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)]; }
+    [[nodiscard]] double& length(int axis) { return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)]; }
+    [[nodiscard]] bool is_fixed(DiskId disk) const { return !fixed.empty() && fixed[disk.index()] != 0; }
+    [[nodiscard]] double min_radius() const;
+    [[nodiscard]] double max_radius() const;
+    /// Sum of the disks' areas (Dim = 2) over Lx*Ly.
+    [[nodiscard]] double solid_fraction() const;
+};
+
+/// Which coordinates of a packing are degrees of freedom, numbered 0 .. N_f-1 in the order of q.
+/// In the paper's box without fixed disks the numbering is the identity and N_f = 2n + 2.
+template <int Dim> class DofMap {
+  public:
+    explicit DofMap(const Packing<Dim>& packing);
+    /// N_f.
+    [[nodiscard]] int dof_count() const { return static_cast<int>(coordinate_of_.size()); }
+    /// Degree of freedom of a coordinate index, or -1 when that coordinate cannot move.
+    [[nodiscard]] int dof_of(std::size_t coordinate) const { return dof_of_[coordinate]; }
+    /// Coordinate index of a degree of freedom.
+    [[nodiscard]] int coordinate_of(int dof) const { return coordinate_of_[static_cast<std::size_t>(dof)]; }
+    /// "x of disk 12", "right wall": for messages.
+    [[nodiscard]] std::string name(int dof) const;
+
+  private:
+    int disks_;
+    std::vector<int> dof_of_;
+    std::vector<int> coordinate_of_;
+};
+
+/// Throws `Error(bad_input)` naming the disk or wall and the value when the invariant of `Packing` does not hold or a
+/// disk is larger than the box. `source` (a file name) starts the message.
+template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source);
+
+/// Rounds every coordinate to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of two
+/// that is not below the largest coordinate. Then every difference of two coordinates is exact in double.
+/// Moves a coordinate by at most half a grid step (2^-53 of the box). Idempotent; commutes with scaling by powers of two.
+template <int Dim> void snap_to_grid(Packing<Dim>& packing);
+
+/// The grid step that `snap_to_grid` uses.
+template <int Dim> double grid_step(const Packing<Dim>& packing);
+
+extern template struct Walls<2>;
+extern template struct Packing<2>;
+extern template class DofMap<2>;
+extern template void validate<2>(const Packing<2>&, const std::string&);
+extern template void snap_to_grid<2>(Packing<2>&);
+extern template double grid_step<2>(const Packing<2>&);
+
+} // namespace isostat

@@ -1,0 +1,48 @@
+#pragma once
+/// \file
+/// Compressed-column matrices and what their pattern alone says: matching, block triangular form, reachability.
+
+#include <span>
+#include <vector>
+
+namespace isostat::sparse {
+
+/// Compressed columns, row indices sorted in each column. `Value` is double or a residue.
+template <class Value> struct Matrix {
+    int rows = 0;
+    int cols = 0;
+    std::vector<int> start;   ///< cols + 1
+    std::vector<int> row;     ///< one per entry
+    std::vector<Value> value; ///< one per entry
+    [[nodiscard]] int entries() const { return start.empty() ? 0 : start.back(); }
+};
+
+/// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing order inside
+/// the blocks (KLU: BTF + AMD). No number is looked at, so it may precede the rank check.
+class Ordering {
+  public:
+    /// \pre square. `structurally_regular()` tells whether a perfect matching exists; if not, the rest is empty.
+    template <class Value> explicit Ordering(const Matrix<Value>& matrix) : Ordering(matrix.rows, matrix.start, matrix.row) {}
+    Ordering(int n, std::span<const int> start, std::span<const int> row);
+
+    [[nodiscard]] bool structurally_regular() const { return structural_rank_ == n_; }
+    [[nodiscard]] int structural_rank() const { return structural_rank_; }
+    /// Position k of the permuted matrix holds row `row_order()[k]`, column `column_order()[k]`; these two are matched.
+    [[nodiscard]] const std::vector<int>& row_order() const { return row_order_; }
+    [[nodiscard]] const std::vector<int>& column_order() const { return column_order_; }
+    /// Block b is the range [block_start()[b], block_start()[b+1]) of positions.
+    [[nodiscard]] const std::vector<int>& block_start() const { return block_start_; }
+
+  private:
+    int n_ = 0;
+    int structural_rank_ = 0;
+    std::vector<int> row_order_, column_order_, block_start_;
+};
+
+/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: breadth-first search from the rows where b is
+/// non-zero, through the matching. Unknown c is false => x_c = 0 exactly, for the values stored (when A is regular) and for every
+/// other choice; true => non-zero for generic values, and says nothing of the values stored. Statement T11 (proofs/). Cost O(entries).
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,
+                                              std::span<const int> loaded_rows);
+
+} // namespace isostat::sparse

@@ -1,0 +1,10 @@
+# libqd (double-double arithmetic). Debian 12's qd.pc names an include directory that does not exist, so it is not used.
+include(FindPackageHandleStandardArgs)
+find_path(QD_INCLUDE_DIR NAMES qd/dd_real.h)
+find_library(QD_LIBRARY NAMES qd)
+mark_as_advanced(QD_INCLUDE_DIR QD_LIBRARY)
+find_package_handle_standard_args(QD REQUIRED_VARS QD_LIBRARY QD_INCLUDE_DIR)
+if(QD_FOUND AND NOT TARGET QD::QD)
+  add_library(QD::QD UNKNOWN IMPORTED)
+  set_target_properties(QD::QD PROPERTIES IMPORTED_LOCATION "${QD_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES "${QD_INCLUDE_DIR}")
+endif()

@@ -1,0 +1,20 @@
+#include <isostat/core/result.hpp>
+
+namespace isostat {
+
+const char* to_string(FailureKind kind) {
+    switch (kind) {
+    case FailureKind::not_isostatic: return "not isostatic";
+    case FailureKind::overlap: return "overlap";
+    case FailureKind::tie: return "tie";
+    case FailureKind::undecided: return "undecided";
+    case FailureKind::no_limit: return "no limit";
+    case FailureKind::unbounded: return "unbounded";
+    case FailureKind::not_converged: return "not converged";
+    case FailureKind::cap_reached: return "cap reached";
+    case FailureKind::interrupted: return "interrupted";
+    }
+    return "failure";
+}
+
+} // namespace isostat

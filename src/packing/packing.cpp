@@ -1,0 +1,150 @@
+#include <isostat/packing/packing.hpp>
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace isostat {
+
+namespace {
+
+constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
+constexpr std::array<const char*, 3> upper_name{"right wall", "top wall", "front wall"};
+
+} // namespace
+
+template <int Dim> Walls<Dim> Walls<Dim>::box() {
+    Walls walls;
+    walls.lower.fill(WallKind::fixed);
+    walls.upper.fill(WallKind::movable);
+    return walls;
+}
+
+template <int Dim> Walls<Dim> Walls<Dim>::none() {
+    Walls walls;
+    walls.lower.fill(WallKind::absent);
+    walls.upper.fill(WallKind::absent);
+    return walls;
+}
+
+template <int Dim> double Packing<Dim>::min_radius() const { return *std::min_element(radius.begin(), radius.end()); }
+template <int Dim> double Packing<Dim>::max_radius() const { return *std::max_element(radius.begin(), radius.end()); }
+
+template <int Dim> double Packing<Dim>::solid_fraction() const {
+    static_assert(Dim == 2);
+    double area = 0;
+    for (const double r : radius) {
+        area += std::numbers::pi * r * r;
+    }
+    return area / (length(0) * length(1));
+}
+
+template <int Dim>
+DofMap<Dim>::DofMap(const Packing<Dim>& packing)
+    : disks_(packing.disk_count()), dof_of_(packing.q.size(), -1) {
+    coordinate_of_.reserve(packing.q.size());
+    const auto add = [&](std::size_t coordinate) {
+        dof_of_[coordinate] = static_cast<int>(coordinate_of_.size());
+        coordinate_of_.push_back(static_cast<int>(coordinate));
+    };
+    for (int i = 0; i < disks_; ++i) {
+        for (int a = 0; a < Dim && !packing.is_fixed(DiskId(i)); ++a) {
+            add(static_cast<std::size_t>(Dim * i + a));
+        }
+    }
+    for (int a = 0; a < Dim; ++a) {
+        if (packing.walls.upper[static_cast<std::size_t>(a)] == WallKind::movable) {
+            add(static_cast<std::size_t>(Dim * disks_ + a));
+        }
+    }
+}
+
+template <int Dim> std::string DofMap<Dim>::name(int dof) const {
+    const int coordinate = coordinate_of(dof);
+    const auto axis = static_cast<std::size_t>(coordinate % Dim);
+    const int disk = coordinate / Dim;
+    return disk == disks_ ? std::string(upper_name[axis]) : fmt::format("{} of disk {}", axis_name[axis], disk);
+}
+
+template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source) {
+    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
+    if (packing.radius.empty()) {
+        bad("no disks: a packing needs at least one disk");
+    }
+    if (packing.q.size() != static_cast<std::size_t>(Dim) * (packing.radius.size() + 1)) {
+        bad(fmt::format("{} coordinates for {} disks: expected {}", packing.q.size(), packing.radius.size(),
+                        static_cast<std::size_t>(Dim) * (packing.radius.size() + 1)));
+    }
+    if (!packing.fixed.empty() && packing.fixed.size() != packing.radius.size()) {
+        bad(fmt::format("{} flags 'fixed' for {} disks", packing.fixed.size(), packing.radius.size()));
+    }
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        const double r = packing.radius[i];
+        if (!(r > 0) || !std::isfinite(r)) {
+            bad(fmt::format("radius of disk {} is {}: expected a positive finite number", i, r));
+        }
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double x = packing.q[Dim * i + a];
+            if (!std::isfinite(x)) {
+                bad(fmt::format("{} of disk {} is {}: expected a finite number", axis_name[a], i, x));
+            }
+        }
+    }
+    for (std::size_t a = 0; a < Dim; ++a) {
+        if (packing.walls.upper[a] == WallKind::absent) {
+            continue;
+        }
+        const double length = packing.length(static_cast<int>(a));
+        if (!std::isfinite(length) || (packing.walls.lower[a] != WallKind::absent && !(length > 0))) {
+            bad(fmt::format("position of the {} is {}: expected a positive finite number", upper_name[a], length));
+        }
+        if (packing.walls.lower[a] == WallKind::absent) {
+            continue;
+        }
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            // 2R > L beyond one rounding of L: the disk cannot fit, whatever the configuration.
+            if (2 * packing.radius[i] > length * (1 + 1e-9)) {
+                bad(fmt::format("disk {} of diameter {} is larger than the box: its length along {} is {}", i,
+                                2 * packing.radius[i], axis_name[a], length));
+            }
+        }
+    }
+}
+
+template <int Dim> double grid_step(const Packing<Dim>& packing) {
+    double largest = 0;
+    for (const double x : packing.q) {
+        largest = std::max(largest, std::abs(x));
+    }
+    int exponent = 0;
+    const double mantissa = std::frexp(largest, &exponent);
+    if (mantissa == 0.5) {
+        --exponent; // an exact power of two is its own bound
+    }
+    return std::ldexp(1.0, exponent - 52);
+}
+
+template <int Dim> void snap_to_grid(Packing<Dim>& packing) {
+    // Adding 1.5 * 2^52 steps leaves only multiples of the step (round to nearest even); every |x| <= 2^52 steps.
+    const double shift = std::ldexp(grid_step(packing), 52) * 1.5;
+    if (!std::isfinite(shift)) {
+        return;
+    }
+    for (double& x : packing.q) {
+        const double shifted = x + shift;
+        x = shifted - shift;
+    }
+}
+
+template struct Walls<2>;
+template struct Packing<2>;
+template class DofMap<2>;
+template void validate<2>(const Packing<2>&, const std::string&);
+template void snap_to_grid<2>(Packing<2>&);
+template double grid_step<2>(const Packing<2>&);
+
+} // namespace isostat

@@ -10,14 +10,10 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/statics/decisions.hpp>
 #include <isostat/trajectory/records.hpp>
 
 namespace isostat {
-
-/// Which contact with a negative force is opened during a rearrangement. The paper's rule is `most_negative`.
-/// - most_negative: smallest f;  - steepest: smallest f / |v|, v the mechanism that opens the contact at unit rate;
-/// - random: uniformly among f < 0;  - least_negative: largest f < 0.
-enum class OpeningRule : std::uint8_t { most_negative, steepest, random, least_negative };
 
 /// One segment of the programme: change sigma_2 in one direction until something is reached.
 struct Segment {

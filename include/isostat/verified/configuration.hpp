@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// The true vertex near a stored configuration, and the signs of the gaps there.
+
+#include <vector>
+
+#include <isostat/core/enclosure.hpp>
+#include <isostat/verified/inverse_bound.hpp>
+
+namespace isostat {
+
+/// A true vertex (all gaps of the structure exactly 0) exists within `radius` (2-norm over all coordinates) of
+/// stored q + correction and is unique there (Newton-Kantorovich, statement V4; quadratics of T9).
+struct VertexEnclosure {
+    Verdict verdict = Verdict::undecided; ///< proved, or undecided (then nothing is known)
+    double radius = 0;
+    std::vector<double> correction; ///< empty on the rung double_bound; else one per coordinate of q
+    double max_gap = 0;             ///< largest |gap| of the contacts at the stored configuration, as computed
+    Rung rung = Rung::double_bound;
+};
+
+/// Rung double_bound: gaps in double, radius about 1e-15 sqrt(N) / sigma_min. Cost O(N).
+template <int Dim>
+VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const InverseBound& inverse);
+
+/// Rung double_double: one or two corrections, gaps in double-double; radius about 1e-29 / sigma_min. Cost: two solves and O(N).
+template <int Dim>
+VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                             const Factorisation& factorisation, const InverseBound& inverse);
+
+/// Gap of any candidate at the true vertex.
+template <int Dim> Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact);
+
+extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
+extern template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
+                                                                const InverseBound&);
+extern template Enclosure gap_at_vertex<2>(const Packing<2>&, const VertexEnclosure&, const Contact&);
+
+} // namespace isostat

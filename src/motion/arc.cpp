@@ -1,0 +1,593 @@
+#include <isostat/motion/arc.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Smallest positive root of h + h1 s + h2 s^2 / 2, h >= 0; infinity when there is none.
+double first_root(double h, double h1, double h2) {
+    const double a = 0.5 * h2;
+    const double discriminant = h1 * h1 - 4 * a * h;
+    if (discriminant < 0) {
+        return infinity;
+    }
+    if (h1 < 0) {
+        return 2 * h / (-h1 + std::sqrt(discriminant));
+    }
+    return a < 0 ? (h1 + std::sqrt(discriminant)) / (-2 * a) : infinity;
+}
+
+/// Where the cubic with end values h0, h1 and end slopes d0 < 0 < d1 on [0, s] is smallest, and its value there.
+struct Dip {
+    double position = 0;
+    double value = 0;
+};
+Dip lowest_point(double h0, double d0, double h1, double d1, double s) {
+    const double c3 = (d0 + d1) * s - 2 * (h1 - h0);
+    const double c2 = 3 * (h1 - h0) - (2 * d0 + d1) * s;
+    const double c1 = d0 * s;
+    // c1 + 2 c2 x + 3 c3 x^2 changes sign once on [0, 1]: bisection.
+    double low = 0;
+    double high = 1;
+    for (int k = 0; k < 40; ++k) {
+        const double x = 0.5 * (low + high);
+        (c1 + x * (2 * c2 + 3 * c3 * x) < 0 ? low : high) = x;
+    }
+    return {low * s, h0 + low * (c1 + low * (c2 + low * c3))};
+}
+
+template <int Dim> class Follower {
+  public:
+    Follower(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+             ContactId opened, int direction, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+             const ArcOptions& options)
+        : structure_(&structure), factorisation_(&factorisation), slot_(opened.index()),
+          opened_(structure.contacts()[opened.index()]), power_(power), candidates_(candidates), options_(options),
+          start_(start), q_(start), size_(static_cast<std::size_t>(structure.size())), rhs_(size_),
+          y_(start.q.size(), 0.0) {
+        step_limit_ = options.step_fraction * start.min_radius();
+        fresh_slot_mechanism();
+        tangent_ = mechanism_;
+        for (double& c : tangent_) {
+            c *= -direction;
+        }
+    }
+
+    Result<Arc<Dim>> run();
+
+  private:
+    using Vector = std::vector<double>;
+
+    /// Velocity (on coordinates) with unit approach velocity in the slot and none in the kept contacts.
+    void fresh_slot_mechanism() {
+        std::fill(rhs_.begin(), rhs_.end(), 0.0);
+        rhs_[slot_] = 1;
+        solve();
+        mechanism_ = y_;
+    }
+
+    /// y_ = (velocity on coordinates with the approach velocities of rhs_).
+    void solve() {
+        factorisation_->solve_velocities(rhs_);
+        const DofMap<Dim>& dofs = structure_->dofs();
+        for (std::size_t mu = 0; mu < size_; ++mu) {
+            y_[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = rhs_[mu];
+        }
+    }
+
+    /// One chord step: y_ such that kept gaps change by minus `kept` (given as approach) and row . y_ = target.
+    template <class Kept, class Row> void chord(Kept kept, Row row, double target) {
+        const auto& contacts = structure_->contacts();
+        for (std::size_t l = 0; l < size_; ++l) {
+            rhs_[l] = l == slot_ ? 0.0 : kept(contacts[l]);
+        }
+        solve();
+        const double scale = (target - row(y_)) / row(mechanism_);
+        for (std::size_t k = 0; k < y_.size(); ++k) {
+            y_[k] += scale * mechanism_[k];
+        }
+    }
+
+    static double rate(const Packing<Dim>& at, const Contact& contact, const Vector& v) {
+        const GapGradient<Dim> g = gap_gradient(at, contact);
+        double sum = 0;
+        for (int k = 0; k < g.count; ++k) {
+            const auto e = static_cast<std::size_t>(k);
+            sum += g.value[e] * v[static_cast<std::size_t>(g.coordinate[e])];
+        }
+        return sum;
+    }
+
+    double largest(const Vector& v) const {
+        double value = 0;
+        for (const double c : v) {
+            value = std::max(value, std::abs(c));
+        }
+        return value;
+    }
+
+    void choose_fastest() {
+        fastest_ = 0;
+        for (std::size_t k = 0; k < tangent_.size(); ++k) {
+            if (std::abs(tangent_[k]) > std::abs(tangent_[fastest_])) {
+                fastest_ = k;
+            }
+        }
+        const double scale = 1 / std::abs(tangent_[fastest_]);
+        for (double& c : tangent_) {
+            c *= scale;
+        }
+    }
+
+    /// Newton-like iteration with the chord matrix: kept gaps = 0 and `row`.y = target(at). Stops at rounding.
+    template <class Row, class Target> bool converge(Packing<Dim>& at, Row row, Target target) {
+        const double rounding = 2 * grid_step(at);
+        double previous = infinity;
+        last_iterations_ = 0;
+        for (int k = 0; k < 60; ++k) {
+            chord([&](const Contact& c) { return gap(at, c); }, [&](const Vector& v) { return row(at, v); }, target(at));
+            const double size = largest(y_);
+            if (!(size < infinity)) {
+                return false;
+            }
+            for (std::size_t i = 0; i < y_.size(); ++i) {
+                at.q[i] += y_[i];
+            }
+            ++last_iterations_;
+            if (size <= rounding) {
+                return true;
+            }
+            if (k > 3 && size > 0.5 * previous) {
+                return size < 1e-9 * at.min_radius(); // the last iterates are rounding noise, or the factors are stale
+            }
+            previous = size;
+        }
+        return false;
+    }
+
+    bool converge_to_coordinate(Packing<Dim>& at) {
+        return converge(
+            at, [&](const Packing<Dim>&, const Vector& v) { return v[fastest_]; }, [](const Packing<Dim>&) { return 0.0; });
+    }
+
+    bool converge_to_event(Packing<Dim>& at, const Contact& closing) {
+        const bool ok = converge(
+            at, [&](const Packing<Dim>& p, const Vector& v) { return rate(p, closing, v); },
+            [&](const Packing<Dim>& p) { return -gap(p, closing); });
+        if (ok) {
+            snap_to_grid(at);
+        }
+        return ok;
+    }
+
+    /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
+    std::optional<Vector> tangent_at(const Packing<Dim>& at) {
+        Vector t = tangent_;
+        double previous = infinity;
+        for (int k = 0; k < 30; ++k) {
+            chord([&](const Contact& c) { return rate(at, c, t); }, [&](const Vector& v) { return v[fastest_]; }, 0.0);
+            const double size = largest(y_);
+            for (std::size_t i = 0; i < t.size(); ++i) {
+                t[i] += y_[i];
+            }
+            if (!(size < previous)) {
+                break;
+            }
+            if (size < 1e-10 * largest(t)) {
+                return t;
+            }
+            previous = size;
+        }
+        return previous < 1e-6 * largest(t) ? std::optional<Vector>(t) : std::nullopt;
+    }
+
+    double power_of(const Packing<Dim>& at, const Vector& t) const {
+        const Vector force = power_.infinitesimal ? power_.load->infinitesimal : power_.load->external_force(at);
+        double sum = 0;
+        for (std::size_t k = 0; k < force.size(); ++k) {
+            sum += force[k] * t[k];
+        }
+        return sum;
+    }
+
+    /// The factors of the start are stale: prove and factorise the structure that holds the fastest coordinate, here.
+    std::optional<Failure> renew() {
+        std::vector<Contact> contacts = structure_->contacts();
+        contacts[slot_] = Contact{ContactKind::held, static_cast<int>(fastest_), 0};
+        auto proved = IsostaticStructure<Dim>::prove(q_, std::move(contacts));
+        if (!proved.ok()) {
+            return proved.failure();
+        }
+        own_structure_.emplace(std::move(proved.value()));
+        own_factorisation_.emplace(*own_structure_);
+        structure_ = &*own_structure_;
+        factorisation_ = &*own_factorisation_;
+        ++factorisations_;
+        fresh_slot_mechanism();
+        const double sign = tangent_[fastest_] < 0 ? -1.0 : 1.0;
+        const double scale = sign / mechanism_[fastest_];
+        tangent_ = mechanism_;
+        for (double& c : tangent_) {
+            c *= scale;
+        }
+        return std::nullopt;
+    }
+
+    void list_candidates() {
+        if (!candidates_.covers(q_) || reach_left() < 0.5 * candidates_.reach / 2) {
+            candidates_ = find_candidates(q_, candidate_fraction);
+            active_.clear();
+        }
+        if (active_.empty()) {
+            std::vector<Contact> kept = structure_->contacts();
+            kept.push_back(opened_);
+            std::sort(kept.begin(), kept.end());
+            active_.reserve(candidates_.contacts.size());
+            std::set_difference(candidates_.contacts.begin(), candidates_.contacts.end(), kept.begin(), kept.end(),
+                                std::back_inserter(active_));
+            if (opened_.kind != ContactKind::held) {
+                active_.push_back(opened_); // it may close again
+            }
+        }
+    }
+
+    /// Displacement that the candidate list still allows.
+    double reach_left() const {
+        double moved = 0;
+        for (std::size_t k = 0; k + Dim <= q_.q.size(); k += Dim) {
+            double square = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const double d = q_.q[k + a] - candidates_.reference[k + a];
+                square += d * d;
+            }
+            moved = std::max(moved, square);
+        }
+        return 0.5 * candidates_.reach - std::sqrt(moved);
+    }
+
+    Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power) {
+        Arc<Dim> arc;
+        for (std::size_t k = 0; k < end.q.size(); ++k) {
+            arc.displacement = std::max(arc.displacement, std::abs(end.q[k] - start_.q[k]));
+        }
+        arc.end = std::move(end);
+        arc.kind = kind;
+        arc.closed = closed;
+        arc.power = power;
+        arc.steps = steps_;
+        arc.factorisations = factorisations_;
+        return arc;
+    }
+
+    Packing<Dim> predicted(double s) const {
+        Packing<Dim> at = q_;
+        for (std::size_t k = 0; k < at.q.size(); ++k) {
+            at.q[k] += s * (tangent_[k] + 0.5 * s * curvature_[k]);
+        }
+        return at;
+    }
+
+    /// Point of the curve at distance s of the fastest coordinate from q_, and the tangent there.
+    struct Point {
+        Packing<Dim> at;
+        Vector tangent;
+    };
+    std::optional<Point> step_to(double s) {
+        Packing<Dim> at = predicted(s);
+        const Packing<Dim> guess = at;
+        if (!converge_to_coordinate(at)) {
+            return std::nullopt;
+        }
+        double off = 0;
+        for (std::size_t k = 0; k < at.q.size(); ++k) {
+            off = std::max(off, std::abs(at.q[k] - guess.q[k]));
+        }
+        if (off > 0.2 * s) {
+            return std::nullopt; // another branch, or a curve too bent for this step
+        }
+        auto t = tangent_at(at);
+        if (!t || largest(*t) > 4) {
+            return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
+        }
+        return Point{std::move(at), std::move(*t)};
+    }
+
+    /// A candidate that dips to or below 0 inside a step of length s without being negative at its end.
+    std::optional<double> suspicious_dip(const Packing<Dim>& at, const Vector& t, double s, const Contact& except) const {
+        std::optional<double> where;
+        for (std::size_t c = 0; c < active_.size(); ++c) {
+            const double d0 = start_rate_[c];
+            if (!(d0 < 0) || active_[c] == except) {
+                continue;
+            }
+            const double d1 = rate(at, active_[c], t);
+            if (!(d1 > 0)) {
+                continue;
+            }
+            const double h0 = start_gap_[c];
+            const double h1 = gap(at, active_[c]);
+            const Dip dip = lowest_point(h0, d0, h1, d1, s);
+            // The cubic is good to a small part of the depth of the dip; a tenth of it is kept as distance.
+            const double depth = std::max(h0, h1) - dip.value;
+            if (dip.value <= 0.1 * depth && (!where || dip.position < *where)) {
+                where = dip.position;
+            }
+        }
+        return where;
+    }
+
+    /// Candidate that is below 0 at `at` and whose gap reached 0 first, with the estimate of where.
+    std::optional<std::pair<std::size_t, double>> first_violation(const Packing<Dim>& at, double s, const Contact& except,
+                                                                  double noise) const {
+        std::optional<std::pair<std::size_t, double>> found;
+        for (std::size_t c = 0; c < active_.size(); ++c) {
+            if (active_[c] == except) {
+                continue;
+            }
+            const double h = gap(at, active_[c]);
+            if (h < -noise) {
+                const double bend = 2 * (h - start_gap_[c] - start_rate_[c] * s) / (s * s);
+                const double root = std::min(first_root(start_gap_[c], start_rate_[c], bend), s);
+                if (!found || root < found->second) {
+                    found = {c, root};
+                }
+            }
+        }
+        return found;
+    }
+
+    Result<Arc<Dim>> power_turn(double s_low, double p_low, double s_high, double p_high);
+
+    const IsostaticStructure<Dim>* structure_;
+    const Factorisation* factorisation_;
+    std::optional<IsostaticStructure<Dim>> own_structure_;
+    std::optional<Factorisation> own_factorisation_;
+    std::size_t slot_;
+    Contact opened_;
+    PowerLoad<Dim> power_;
+    CandidateList<Dim>& candidates_;
+    ArcOptions options_;
+    const Packing<Dim>& start_;
+    Packing<Dim> q_;
+    std::size_t size_;
+    Vector rhs_, y_, mechanism_, tangent_, curvature_;
+    std::size_t fastest_ = 0;
+    std::vector<Contact> active_;
+    Vector start_gap_, start_rate_; ///< of the active candidates at q_
+    double step_limit_ = 0;
+    int last_iterations_ = 0;
+    int steps_ = 0;
+    int factorisations_ = 0;
+};
+
+template <int Dim>
+Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_high, double p_high) {
+    // Illinois iteration on the power as a function of the fastest coordinate.
+    std::optional<Point> best;
+    double p_best = infinity;
+    int side = 0;
+    for (int k = 0; k < 60; ++k) {
+        double s = (p_low * s_high - p_high * s_low) / (p_low - p_high);
+        if (!(s > s_low && s < s_high)) {
+            s = 0.5 * (s_low + s_high);
+        }
+        auto point = step_to(s);
+        if (!point) {
+            return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
+        }
+        const double p = power_of(point->at, point->tangent);
+        if (std::abs(p) < std::abs(p_best)) {
+            p_best = p;
+            best = std::move(point);
+        }
+        if (p == 0 || s_high - s_low < 4 * grid_step(q_)) {
+            break;
+        }
+        if (p > 0) {
+            s_low = s;
+            p_low = p;
+            p_high *= side == 1 ? 0.5 : 1.0;
+            side = 1;
+        } else {
+            s_high = s;
+            p_high = p;
+            p_low *= side == -1 ? 0.5 : 1.0;
+            side = -1;
+        }
+    }
+    tangent_ = best->tangent;
+    choose_fastest();
+    snap_to_grid(best->at);
+    return finish(std::move(best->at), ArcEnd::power_turn, Contact{ContactKind::held, static_cast<int>(fastest_), 0}, p_best);
+}
+
+template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
+    const double noise = 16 * grid_step(start_);
+    double shrink = 1;
+    double forced_step = infinity; // a step cut at a dip
+    double p_start = power_.starts_at_zero ? 0.0 : infinity;
+    const auto narrow = [&]() -> std::optional<Failure> {
+        // Stale factors first, then shorter steps.
+        if (last_iterations_ > 12 || shrink < 0.3) {
+            if (auto failure = renew()) {
+                return failure;
+            }
+        }
+        shrink *= 0.25;
+        return std::nullopt;
+    };
+    bool renewed_here = false;
+    while (steps_ < options_.max_steps) {
+        choose_fastest();
+        if (!std::isfinite(tangent_[fastest_])) {
+            return Failure{FailureKind::not_converged, "the mechanism is not finite"};
+        }
+        list_candidates();
+        const bool at_start = steps_ == 0;
+        chord([&](const Contact& c) { return gap_curvature(q_, c, tangent_.data()); },
+              [&](const Vector& v) { return v[fastest_]; }, 0.0);
+        curvature_ = y_;
+        if (!(p_start < infinity)) {
+            p_start = power_of(q_, tangent_);
+        }
+        start_gap_.resize(active_.size());
+        start_rate_.resize(active_.size());
+        double s_event = infinity;
+        std::size_t event = 0;
+        for (std::size_t c = 0; c < active_.size(); ++c) {
+            const bool opening = at_start && active_[c] == opened_;
+            start_gap_[c] = opening ? 0.0 : gap(q_, active_[c]);
+            start_rate_[c] = rate(q_, active_[c], tangent_);
+            const double bend = rate(q_, active_[c], curvature_) + gap_curvature(q_, active_[c], tangent_.data());
+            double root = first_root(std::max(start_gap_[c], 0.0), start_rate_[c], bend);
+            if (start_gap_[c] <= 0 && !(start_rate_[c] > 0)) {
+                root = 0;
+            }
+            if (root < s_event) {
+                s_event = root;
+                event = c;
+            }
+        }
+        // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
+        const double reach = 0.9 * reach_left() / (1.3 * std::sqrt(static_cast<double>(Dim)));
+        const double s_max = std::min({step_limit_ * shrink, reach, forced_step});
+        ++steps_;
+        bool accepted = false;
+
+        bool try_event = s_event <= s_max;
+        double s = s_max;
+        std::optional<Point> point;
+        if (!try_event) {
+            point = step_to(s);
+            if (!point) {
+                if (shrink < 1e-9) {
+                    return Failure{FailureKind::not_converged, "the path could not be followed: steps became too short"};
+                }
+                if (auto failure = narrow()) {
+                    return *failure;
+                }
+                continue;
+            }
+            const Contact none{ContactKind::held, -1, 0};
+            if (const auto violation = first_violation(point->at, s, none, noise)) {
+                event = violation->first;
+                s_event = violation->second;
+                try_event = true;
+            } else {
+                accepted = true;
+            }
+        }
+        if (try_event) {
+            for (int attempt = 0; attempt < 40 && !accepted; ++attempt) {
+                const Contact closing = active_[event];
+                Packing<Dim> at = predicted(s_event);
+                const double direction = tangent_[fastest_] < 0 ? -1.0 : 1.0;
+                if (!converge_to_event(at, closing)) {
+                    break;
+                }
+                const double reached = direction * (at.q[fastest_] - q_.q[fastest_]);
+                if (!(reached >= -noise) || reached > 1.5 * std::max(s_max, s_event) + noise) {
+                    break; // another root
+                }
+                s = std::max(reached, 0.0);
+                if (s > noise) {
+                    if (const auto violation = first_violation(at, s, closing, noise)) {
+                        event = violation->first;
+                        s_event = violation->second;
+                        continue;
+                    }
+                }
+                auto t = tangent_at(at);
+                if (!t) {
+                    break;
+                }
+                point = Point{std::move(at), std::move(*t)};
+                accepted = true;
+            }
+            if (!accepted) {
+                // The direct solve failed: shorten the step, and renew the factors when that does not help.
+                if (s_max < 1e-12 * step_limit_ || shrink < 1e-9) {
+                    return Failure{FailureKind::not_converged,
+                                   fmt::format("the event at contact {} was not reached", to_string<Dim>(active_[event]))};
+                }
+                if (!renewed_here) {
+                    if (auto failure = renew()) {
+                        return *failure;
+                    }
+                    renewed_here = true;
+                } else {
+                    shrink = std::min(shrink, s_event / step_limit_) * 0.25;
+                }
+                continue;
+            }
+        }
+        const Contact closing = try_event ? active_[event] : Contact{ContactKind::held, -1, 0};
+        if (s > noise) {
+            if (const auto dip = suspicious_dip(point->at, point->tangent, s, closing)) {
+                if (*dip < 1e-9 * step_limit_) {
+                    return Failure{FailureKind::undecided, "a gap touches zero inside an arc and cannot be told from a contact"};
+                }
+                forced_step = std::max(*dip, 0.05 * s);
+                continue;
+            }
+        }
+        const double p_end = power_of(point->at, point->tangent);
+        // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force in the new contact.
+        const bool judged = !(power_.starts_at_zero && at_start);
+        if (judged && p_end < 0 && p_start > 0) {
+            return power_turn(0.0, p_start, s, p_end);
+        }
+        if (try_event && options_.closes && *options_.closes != closing) {
+            if (!converge_to_event(point->at, *options_.closes)) {
+                return Failure{FailureKind::not_converged, fmt::format("the event at contact {} was not reached",
+                                                                       to_string<Dim>(*options_.closes))};
+            }
+            return finish(std::move(point->at), ArcEnd::contact, *options_.closes, p_end);
+        }
+        if (try_event) {
+            return finish(std::move(point->at), ArcEnd::contact, closing, p_end);
+        }
+        q_ = std::move(point->at);
+        tangent_ = std::move(point->tangent);
+        p_start = p_end;
+        forced_step = infinity;
+        renewed_here = false;
+        if (last_iterations_ > 10) {
+            choose_fastest();
+            if (auto failure = renew()) {
+                return *failure;
+            }
+        }
+        shrink = std::min(1.0, 2 * shrink);
+        for (int a = 0; a < Dim; ++a) {
+            if (std::abs(q_.length(a) / start_.length(a) - 1) > options_.max_length_change) {
+                return Failure{FailureKind::unbounded, fmt::format("the motion has no end: L along axis {} went from {} to {}", a,
+                                                                   start_.length(a), q_.length(a))};
+            }
+        }
+    }
+    return Failure{FailureKind::unbounded, fmt::format("no new contact after {} predictor steps", steps_)};
+}
+
+} // namespace
+
+template <int Dim>
+Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
+                            const Factorisation& factorisation, ContactId opened, int direction,
+                            const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options) {
+    return Follower<Dim>(start, structure, factorisation, opened, direction, power, candidates, options).run();
+}
+
+template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId, int,
+                                      const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
+
+} // namespace isostat

@@ -1,0 +1,25 @@
+#pragma once
+/// \file
+/// Makes the record of an equilibrium: private to the room.
+
+#include <isostat/trajectory/records.hpp>
+
+#include "trajectory/vertex.hpp"
+
+namespace isostat {
+
+/// Fills everything that follows from the vertex and its load: counts, supported interval, bounds, residuals. The numbers of the run
+/// (number, segment, arcs, seconds) are left to the caller. Failure: a limit of the supported interval is not decided, or a check fails.
+template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
+
+/// Disks without a force-carrying contact.
+template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
+
+/// The finite forces at the load, one per contact.
+template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load);
+
+extern template Result<EquilibriumRecord<2>> describe<2>(Vertex<2>&, const Load<2>&);
+extern template std::vector<int> rattlers<2>(const Vertex<2>&);
+extern template std::vector<double> finite_forces<2>(const Vertex<2>&, const Load<2>&);
+
+} // namespace isostat

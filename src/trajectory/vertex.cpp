@@ -1,0 +1,87 @@
+#include "trajectory/vertex.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+template <int Dim>
+Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, SingularVectorGuess& guess)
+    : packing(std::move(p)), structure(std::move(s)), factorisation(structure),
+      inverse(bound_inverse(structure, factorisation, guess)), enclosure(enclose_vertex(packing, structure, inverse)),
+      statics(packing, load, structure, factorisation, inverse) {}
+
+template <int Dim>
+Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                       const Load<Dim>& load, SingularVectorGuess& guess) {
+    auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
+    if (!structure.ok()) {
+        return structure.failure();
+    }
+    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, guess));
+    if (vertex->inverse.verdict != Verdict::proved) {
+        return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved in double precision: no sign "
+                                               "of a force can be decided"};
+    }
+    if (vertex->enclosure.verdict != Verdict::proved) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("no true configuration with exactly these contacts was proved to exist near the stored one: largest "
+                                   "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
+                                   vertex->enclosure.max_gap, vertex->inverse.sigma_min)};
+    }
+    return vertex;
+}
+
+template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(const CandidateList<Dim>& candidates) {
+    std::vector<Contact> kept = structure.contacts();
+    std::sort(kept.begin(), kept.end());
+    Gaps gaps;
+    gaps.smallest = std::numeric_limits<double>::infinity();
+    gaps.margin = std::numeric_limits<double>::infinity();
+    std::vector<Contact> doubtful;
+    const auto look = [&](const Contact& contact) {
+        const Enclosure h = gap_at_vertex(packing, enclosure, contact);
+        if (h.negative()) {
+            gaps.negative = contact;
+        } else if (!h.positive()) {
+            doubtful.push_back(contact);
+            return;
+        }
+        gaps.margin = std::min(gaps.margin, h.margin());
+        if (h.value < gaps.smallest) {
+            gaps.smallest = h.value;
+            gaps.where = contact;
+        }
+    };
+    for (const Contact& contact : candidates.contacts) {
+        if (!std::binary_search(kept.begin(), kept.end(), contact)) {
+            look(contact);
+        }
+    }
+    if (!doubtful.empty()) {
+        enclosure = enclose_vertex_double_double(packing, structure, factorisation, inverse);
+        gaps.rung = Rung::double_double;
+        const std::vector<Contact> again = std::move(doubtful);
+        doubtful.clear();
+        for (const Contact& contact : again) {
+            look(contact);
+        }
+    }
+    if (!doubtful.empty()) {
+        std::string names;
+        for (const Contact& contact : doubtful) {
+            const Enclosure h = gap_at_vertex(packing, enclosure, contact);
+            names += fmt::format("{}{} (gap {:.3g}, proved to {:.3g})", names.empty() ? "" : ", ", to_string<Dim>(contact), h.value,
+                                 h.radius);
+        }
+        return Failure{FailureKind::tie, "gaps that are zero as far as double-double arithmetic can tell, beside the contacts kept: " + names};
+    }
+    return gaps;
+}
+
+template class Vertex<2>;
+
+} // namespace isostat

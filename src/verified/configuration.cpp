@@ -1,0 +1,184 @@
+#include <isostat/verified/configuration.hpp>
+
+#include <qd/dd_real.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr double dd_unit = 0x1p-98; // granted to one operation of libqd (its own bounds are 2^-104 to 2^-102)
+
+/// Sum of the radii of a contact: the length that scales the rounding of its gap.
+template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk:
+        return packing.radius[static_cast<std::size_t>(contact.i)] + packing.radius[static_cast<std::size_t>(contact.j)];
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return packing.radius[static_cast<std::size_t>(contact.i)];
+    case ContactKind::held: return 0;
+    }
+    return 0;
+}
+
+/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number of disk
+/// contacts of one disk (V4). 0 when there are only walls.
+template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    std::vector<int> count(packing.radius.size(), 0);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : contacts) {
+        if (contact.kind == ContactKind::disk_disk) {
+            ++count[static_cast<std::size_t>(contact.i)];
+            ++count[static_cast<std::size_t>(contact.j)];
+            smallest = std::min(smallest, target(packing, contact));
+        }
+    }
+    const double most = *std::max_element(count.begin(), count.end());
+    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 8 * u);
+}
+
+/// Kantorovich with |F| <= residual, |DF^-1| <= inverse_norm: radius of existence, or NaN when the test fails.
+double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
+    const double eta = inverse_norm * residual * (1 + 4 * u);
+    const double product = inverse_norm * lipschitz_constant * eta * (1 + 8 * u);
+    return product <= 0.25 ? 2 * eta : std::numeric_limits<double>::quiet_NaN(); // (1 - sqrt(1-2h)) / h <= 2
+}
+
+template <int Dim> dd_real gap_dd(const Packing<Dim>& packing, const std::vector<double>& correction, const Contact& contact) {
+    const auto at = [&](int coordinate) {
+        const auto k = static_cast<std::size_t>(coordinate);
+        return dd_real(packing.q[k]) + correction[k];
+    };
+    const double ri = packing.radius[static_cast<std::size_t>(contact.i)];
+    switch (contact.kind) {
+    case ContactKind::disk_disk: {
+        dd_real square = 0.0;
+        for (int a = 0; a < Dim; ++a) {
+            const dd_real d = at(Dim * contact.j + a) - at(Dim * contact.i + a);
+            square += d * d;
+        }
+        return sqrt(square) - (dd_real(ri) + packing.radius[static_cast<std::size_t>(contact.j)]);
+    }
+    case ContactKind::lower_wall: return at(Dim * contact.i + contact.j) - ri;
+    case ContactKind::upper_wall:
+        return at(Dim * packing.disk_count() + contact.j) - at(Dim * contact.i + contact.j) - ri;
+    case ContactKind::held: return 0.0;
+    }
+    return 0.0;
+}
+
+/// F_l in double-double from the gap: F = gap (1 + gap / (2 D)).
+template <int Dim>
+dd_real quadratic_dd(const Packing<Dim>& packing, const std::vector<double>& correction, const Contact& contact) {
+    const dd_real h = contact.kind == ContactKind::held ? dd_real(correction[static_cast<std::size_t>(contact.i)])
+                                                        : gap_dd(packing, correction, contact);
+    return contact.kind == ContactKind::disk_disk ? h * (1.0 + h / (2 * target(packing, contact))) : h;
+}
+
+} // namespace
+
+template <int Dim>
+VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                               const InverseBound& inverse) {
+    VertexEnclosure vertex;
+    vertex.radius = std::numeric_limits<double>::infinity();
+    double sum = 0;
+    double worst_ratio = 0;
+    for (const Contact& contact : structure.contacts()) {
+        const double h = gap(packing, contact);
+        const double d = target(packing, contact);
+        vertex.max_gap = std::max(vertex.max_gap, std::abs(h));
+        if (d > 0) {
+            worst_ratio = std::max(worst_ratio, std::abs(h) / d);
+        }
+        // |F| <= |h| (1 + |h|/2D), and |h|/D is checked below; the computed gap is off by less than 8u D.
+        const double bound = std::abs(h) * 1.001 + 8 * u * d;
+        sum += bound * bound;
+    }
+    if (inverse.verdict != Verdict::proved || !(worst_ratio < 1e-3)) {
+        return vertex;
+    }
+    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
+    const double radius = kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), inverse_norm,
+                                             lipschitz(packing, structure.contacts()));
+    if (radius >= 0) {
+        vertex.verdict = Verdict::proved;
+        vertex.radius = radius;
+    }
+    return vertex;
+}
+
+template <int Dim>
+VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                             const Factorisation& factorisation, const InverseBound& inverse) {
+    VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
+    if (vertex.verdict != Verdict::proved) {
+        return vertex;
+    }
+    const DofMap<Dim>& dofs = structure.dofs();
+    const double k = lipschitz(packing, structure.contacts());
+    const auto n = static_cast<std::size_t>(structure.size());
+    std::vector<double> correction(packing.q.size(), 0.0);
+    std::vector<double> f(n);
+    constexpr int max_iterations = 6;
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+        double sum = 0;
+        for (std::size_t l = 0; l < n; ++l) {
+            const Contact& contact = structure.contacts()[l];
+            const dd_real value = quadratic_dd(packing, correction, contact);
+            f[l] = value.x[0];
+            const double bound = std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact);
+            sum += bound * bound;
+        }
+        double shift = 0;
+        for (const double c : correction) {
+            shift += c * c;
+        }
+        shift = std::sqrt(shift) * (1 + 1e-10);
+        // |DF^-1| at the corrected point: |DF^-1(q)| / (1 - |DF^-1(q)| K |correction|).
+        const double at_q = 1 / inverse.sigma_min * (1 + 1e-9);
+        const double lost = at_q * k * shift;
+        const double radius = lost < 0.5 ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
+                                         : std::numeric_limits<double>::quiet_NaN();
+        if (radius >= 0 && radius < vertex.radius) {
+            vertex.radius = radius;
+            vertex.correction = correction;
+            vertex.rung = Rung::double_double;
+        } else if (iteration > 1) {
+            break;
+        }
+        factorisation.solve_velocities(f); // approach velocities equal to the gaps close them
+        for (std::size_t mu = 0; mu < n; ++mu) {
+            correction[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += f[mu];
+        }
+    }
+    return vertex;
+}
+
+template <int Dim>
+Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact) {
+    constexpr double root2 = 1.4142135623731;
+    if (contact.kind == ContactKind::held) {
+        return {0, 0};
+    }
+    if (vertex.correction.empty()) {
+        const double h = gap(packing, contact);
+        const double d = target(packing, contact);
+        return {h, (root2 * vertex.radius + 8 * u * (std::abs(h) + d)) * (1 + 4 * u)};
+    }
+    const dd_real h = gap_dd(packing, vertex.correction, contact);
+    const double value = h.x[0];
+    const double d = target(packing, contact);
+    return {value, (root2 * vertex.radius + 16 * dd_unit * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
+}
+
+template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
+template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
+                                                         const Factorisation&, const InverseBound&);
+template Enclosure gap_at_vertex<2>(const Packing<2>&, const VertexEnclosure&, const Contact&);
+
+} // namespace isostat

@@ -1,0 +1,175 @@
+#include <isostat/verified/force_solution.hpp>
+
+#include <qd/dd_real.h>
+
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+/// Relative error that is granted to one double-double operation of libqd (its own bounds are 2^-104 to 2^-102).
+constexpr double dd_unit = 0x1p-98;
+
+/// Residual F - H x in double, with a bound of its distance from the exact residual (exact H: entries of fl(H) carry 5u).
+/// Returns an upper bound of the 2-norm of the exact residual.
+double residual_in_double(const sparse::Matrix<double>& h, const std::vector<double>& x, const std::vector<double>& force,
+                          std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms) {
+    r = force;
+    const auto n = static_cast<std::size_t>(h.rows);
+    for (std::size_t i = 0; i < n; ++i) {
+        size[i] = std::abs(force[i]);
+    }
+    std::fill(terms.begin(), terms.end(), 7); // 5u of the entries, the product and the final sum
+    for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
+        for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
+            const auto s = static_cast<std::size_t>(e);
+            const auto i = static_cast<std::size_t>(h.row[s]);
+            const double term = h.value[s] * x[j];
+            r[i] -= term;
+            size[i] += std::abs(term);
+            ++terms[i];
+        }
+    }
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double bound = std::abs(r[i]) + terms[i] * u * 1.001 * size[i];
+        sum += bound * bound;
+    }
+    return std::sqrt(sum) * (1 + 1e-10);
+}
+
+double max_abs(const std::vector<double>& x) {
+    double largest = 0;
+    for (const double c : x) {
+        largest = std::max(largest, std::abs(c));
+    }
+    return largest;
+}
+
+} // namespace
+
+template <int Dim>
+ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+                           const InverseBound& inverse, const std::vector<double>& force) {
+    const sparse::Matrix<double>& h = structure.matrix();
+    const auto n = static_cast<std::size_t>(h.rows);
+    ForceSolution solution;
+    solution.value = force;
+    factorisation.solve_forces(solution.value);
+    std::vector<double> r(n);
+    std::vector<double> size(n);
+    std::vector<int> terms(n);
+    residual_in_double(h, solution.value, force, r, size, terms);
+    factorisation.solve_forces(r);
+    for (std::size_t l = 0; l < n; ++l) {
+        solution.value[l] += r[l];
+    }
+    const double residual = residual_in_double(h, solution.value, force, r, size, terms);
+    solution.residual = max_abs(r);
+    solution.bound = inverse.verdict == Verdict::proved ? residual / inverse.sigma_min * (1 + 4 * u)
+                                                        : std::numeric_limits<double>::infinity();
+    return solution;
+}
+
+template <int Dim>
+ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure) {
+    const sparse::Matrix<double>& h = structure.matrix();
+    ExtendedMatrix matrix{h.value, std::vector<double>(h.value.size(), 0.0)};
+    const DofMap<Dim>& dofs = structure.dofs();
+    for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
+        const Contact& contact = structure.contacts()[l];
+        if (contact.kind != ContactKind::disk_disk) {
+            continue; // entries +-1 are exact
+        }
+        std::array<dd_real, Dim> d;
+        dd_real square = 0.0;
+        for (int a = 0; a < Dim; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            d[axis] = dd_real(packing.coordinate(DiskId(contact.j), a)) - packing.coordinate(DiskId(contact.i), a);
+            square += d[axis] * d[axis];
+        }
+        const dd_real length = sqrt(square);
+        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+            const auto s = static_cast<std::size_t>(e);
+            const int coordinate = dofs.coordinate_of(h.row[s]);
+            dd_real value = d[static_cast<std::size_t>(coordinate % Dim)] / length;
+            if (coordinate / Dim == contact.j) {
+                value = -value;
+            }
+            matrix.high[s] = value.x[0];
+            matrix.low[s] = value.x[1];
+        }
+    }
+    return matrix;
+}
+
+template <int Dim>
+void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix, const IsostaticStructure<Dim>& structure,
+                          const Factorisation& factorisation, const InverseBound& inverse,
+                          const std::vector<double>& force) {
+    if (inverse.verdict != Verdict::proved) {
+        return;
+    }
+    const sparse::Matrix<double>& h = structure.matrix();
+    const auto n = static_cast<std::size_t>(h.rows);
+    std::vector<dd_real> x(n);
+    for (std::size_t l = 0; l < n; ++l) {
+        x[l] = dd_real(solution.value[l], solution.low.empty() ? 0.0 : solution.low[l]);
+    }
+    std::vector<dd_real> r(n);
+    std::vector<double> correction(n);
+    std::vector<double> size(n);
+    double best = std::numeric_limits<double>::infinity();
+    constexpr int max_iterations = 8; // each gains the factor cond * u; stagnation ends the loop before
+    for (int k = 0; k < max_iterations; ++k) {
+        for (std::size_t i = 0; i < n; ++i) {
+            r[i] = force[i];
+            size[i] = std::abs(force[i]);
+        }
+        for (std::size_t j = 0; j < n; ++j) {
+            for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
+                const auto s = static_cast<std::size_t>(e);
+                const auto i = static_cast<std::size_t>(h.row[s]);
+                r[i] -= dd_real(matrix.high[s], matrix.low[s]) * x[j];
+                size[i] += std::abs(matrix.high[s] * x[j].x[0]);
+            }
+        }
+        double sum = 0;
+        double largest = 0;
+        const double terms = 2 * static_cast<double>(n); // more than the entries of any row
+        for (std::size_t i = 0; i < n; ++i) {
+            correction[i] = r[i].x[0];
+            largest = std::max(largest, std::abs(correction[i]));
+            const double bound = std::abs(correction[i]) * (1 + 2 * u) + terms * dd_unit * size[i];
+            sum += bound * bound;
+        }
+        const double bound = std::sqrt(sum) * (1 + 1e-10) / inverse.sigma_min * (1 + 4 * u);
+        if (!(bound < best / 2)) {
+            break; // stagnation at the rounding of double-double; the previous iterate stands
+        }
+        best = bound;
+        solution.bound = bound;
+        solution.residual = largest;
+        solution.low.resize(n);
+        for (std::size_t l = 0; l < n; ++l) {
+            solution.value[l] = x[l].x[0];
+            solution.low[l] = x[l].x[1];
+        }
+        factorisation.solve_forces(correction);
+        for (std::size_t l = 0; l < n; ++l) {
+            x[l] += correction[l];
+        }
+    }
+    solution.rung = Rung::double_double;
+}
+
+template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&);
+template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
+                                       const std::vector<double>&);
+template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
+                                      const Factorisation&, const InverseBound&, const std::vector<double>&);
+
+} // namespace isostat

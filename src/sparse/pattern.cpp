@@ -1,0 +1,52 @@
+#include <isostat/sparse/pattern.hpp>
+
+#include <klu.h>
+
+namespace isostat::sparse {
+
+Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) : n_(n) {
+    klu_common common;
+    klu_defaults(&common);
+    klu_symbolic* symbolic = klu_analyze(n, const_cast<int*>(start.data()), const_cast<int*>(row.data()), &common);
+    if (symbolic == nullptr) {
+        return;
+    }
+    structural_rank_ = symbolic->structural_rank;
+    if (structural_rank_ == n) {
+        row_order_.assign(symbolic->P, symbolic->P + n);
+        column_order_.assign(symbolic->Q, symbolic->Q + n);
+        block_start_.assign(symbolic->R, symbolic->R + symbolic->nblocks + 1);
+    }
+    klu_free_symbolic(&symbolic, &common);
+}
+
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,
+                                               std::span<const int> loaded_rows) {
+    const std::size_t n = ordering.row_order().size();
+    std::vector<int> matched(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        matched[static_cast<std::size_t>(ordering.row_order()[k])] = ordering.column_order()[k];
+    }
+    std::vector<unsigned char> nonzero(n, 0);
+    std::vector<int> queue;
+    const auto reach = [&](int r) {
+        const int c = matched[static_cast<std::size_t>(r)];
+        if (nonzero[static_cast<std::size_t>(c)] == 0) {
+            nonzero[static_cast<std::size_t>(c)] = 1;
+            queue.push_back(c);
+        }
+    };
+    for (const int r : loaded_rows) {
+        reach(r);
+    }
+    while (!queue.empty()) {
+        const auto c = static_cast<std::size_t>(queue.back());
+        queue.pop_back();
+        for (int e = start[c]; e < start[c + 1]; ++e) {
+            reach(row[static_cast<std::size_t>(e)]);
+        }
+    }
+    return nonzero;
+}
+
+} // namespace isostat::sparse

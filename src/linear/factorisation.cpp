@@ -10,16 +10,14 @@ namespace isostat {
 
 struct Factorisation::Implementation {
     klu_common common{};
+    std::shared_ptr<void> analysis; ///< keeps `symbolic` alive
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
     int n = 0;
     Implementation() = default;
     Implementation(const Implementation&) = delete;
     Implementation& operator=(const Implementation&) = delete;
-    ~Implementation() {
-        klu_free_numeric(&numeric, &common);
-        klu_free_symbolic(&symbolic, &common);
-    }
+    ~Implementation() { klu_free_numeric(&numeric, &common); }
 };
 
 template <int Dim>
@@ -37,10 +35,9 @@ Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
     auto* start = const_cast<int*>(matrix.start.data());      // NOLINT(cppcoreguidelines-pro-type-const-cast)
     auto* row = const_cast<int*>(matrix.row.data());          // NOLINT(cppcoreguidelines-pro-type-const-cast)
     auto* value = const_cast<double*>(matrix.value.data());   // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    self.symbolic = klu_analyze(self.n, start, row, &self.common);
-    if (self.symbolic != nullptr) {
-        self.numeric = klu_factor(start, row, value, self.symbolic, &self.common);
-    }
+    self.analysis = structure.ordering().symbolic();
+    self.symbolic = static_cast<klu_symbolic*>(self.analysis.get());
+    self.numeric = klu_factor(start, row, value, self.symbolic, &self.common);
 }
 
 Factorisation::~Factorisation() = default;

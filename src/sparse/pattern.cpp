@@ -7,17 +7,25 @@ namespace isostat::sparse {
 Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) : n_(n) {
     klu_common common;
     klu_defaults(&common);
-    klu_symbolic* symbolic = klu_analyze(n, const_cast<int*>(start.data()), const_cast<int*>(row.data()), &common);
+    // KLU's interface is not const-correct; the pattern is only read.
+    klu_symbolic* symbolic = klu_analyze(n, const_cast<int*>(start.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                         const_cast<int*>(row.data()),       // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                         &common);
     if (symbolic == nullptr) {
         return;
     }
+    symbolic_ = std::shared_ptr<void>(symbolic, [](void* pointer) {
+        klu_common release;
+        klu_defaults(&release);
+        auto* typed = static_cast<klu_symbolic*>(pointer);
+        klu_free_symbolic(&typed, &release);
+    });
     structural_rank_ = symbolic->structural_rank;
     if (structural_rank_ == n) {
         row_order_.assign(symbolic->P, symbolic->P + n);
         column_order_.assign(symbolic->Q, symbolic->Q + n);
         block_start_.assign(symbolic->R, symbolic->R + symbolic->nblocks + 1);
     }
-    klu_free_symbolic(&symbolic, &common);
 }
 
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,

@@ -10,8 +10,8 @@
 namespace isostat {
 
 template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state) {
-    SingularVectorGuess guess;
-    auto made = Vertex<Dim>::make(state.packing, state.contacts, state.load, guess);
+    InverseBoundCache cache;
+    auto made = Vertex<Dim>::make(state.packing, state.contacts, state.load, cache);
     if (!made.ok()) {
         return made.failure();
     }

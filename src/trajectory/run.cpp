@@ -46,7 +46,7 @@ template <int Dim> class Run {
     /// Caches that belong to the last equilibrium only, so that a resumed run takes the same path.
     void fresh_caches(const Packing<Dim>& packing) {
         candidates_ = find_candidates(packing, candidate_fraction);
-        guess_ = {};
+        bound_cache_ = {};
     }
 
     void count(double margin, Rung rung, ArcRecord<Dim>* arc = nullptr) {
@@ -80,7 +80,7 @@ template <int Dim> class Run {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::unique_ptr<Vertex<Dim>> vertex_;
     CandidateList<Dim> candidates_;
-    SingularVectorGuess guess_;
+    InverseBoundCache bound_cache_;
     EquilibriumRecord<Dim> record_;
     double margin_ = infinity;        ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
@@ -110,7 +110,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         record.steps = path.steps;
         std::vector<Contact> contacts = from.structure.contacts();
         contacts[opening.contact.index()] = path.closed;
-        auto made = Vertex<Dim>::make(path.end, std::move(contacts), load, guess_);
+        auto made = Vertex<Dim>::make(path.end, std::move(contacts), load, bound_cache_);
         if (!made.ok()) {
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}", to_string<Dim>(record.opened),
                                                        to_string<Dim>(path.closed)));
@@ -283,7 +283,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
 
 template <int Dim> std::optional<Failure> Run<Dim>::start() {
     fresh_caches(state_.packing);
-    auto made = Vertex<Dim>::make(state_.packing, state_.contacts, state_.load, guess_);
+    auto made = Vertex<Dim>::make(state_.packing, state_.contacts, state_.load, bound_cache_);
     if (!made.ok()) {
         return located(made.failure(), "start");
     }

@@ -9,19 +9,19 @@
 namespace isostat {
 
 template <int Dim>
-Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, SingularVectorGuess& guess)
+Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure),
-      inverse(bound_inverse(structure, factorisation, guess)), enclosure(enclose_vertex(packing, structure, inverse)),
+      inverse(bound_inverse(structure, factorisation, cache)), enclosure(enclose_vertex(packing, structure, inverse)),
       statics(packing, load, structure, factorisation, inverse) {}
 
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                       const Load<Dim>& load, SingularVectorGuess& guess) {
+                                                       const Load<Dim>& load, InverseBoundCache& cache) {
     auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
     if (!structure.ok()) {
         return structure.failure();
     }
-    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, guess));
+    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, cache));
     if (vertex->inverse.verdict != Verdict::proved) {
         return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved in double precision: no sign "
                                                "of a force can be decided"};

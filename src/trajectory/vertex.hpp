@@ -19,7 +19,7 @@ template <int Dim> class Vertex {
     /// Proves the rank, factorises, bounds the inverse, solves the statics and encloses the true vertex.
     /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
     static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                                                SingularVectorGuess& guess);
+                                                InverseBoundCache& cache);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -42,7 +42,7 @@ template <int Dim> class Vertex {
     Result<Gaps> check_gaps(const CandidateList<Dim>& candidates);
 
   private:
-    Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, SingularVectorGuess& guess);
+    Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);
 };
 
 extern template class Vertex<2>;

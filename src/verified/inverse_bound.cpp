@@ -25,7 +25,7 @@ double norm(const std::vector<double>& x) {
 /// CHOLMOD objects with their lifetime; errors (not positive definite) are expected and silent.
 class Cholesky {
   public:
-    explicit Cholesky(const sparse::Matrix<double>& h) : h_(h) {
+    Cholesky(const sparse::Matrix<double>& h, std::vector<int>& permutation) : h_(h) {
         cholmod_start(&common_);
         common_.print = 0;
         common_.error_handler = nullptr;
@@ -33,7 +33,9 @@ class Cholesky {
         common_.final_ll = 1;
         common_.quick_return_if_not_posdef = 1;
         common_.nmethods = 1;
-        common_.method[0].ordering = CHOLMOD_AMD;
+        const bool given = permutation.size() == static_cast<std::size_t>(h.rows);
+        common_.method[0].ordering = given ? CHOLMOD_GIVEN : CHOLMOD_AMD;
+        common_.postorder = given ? 0 : 1;
         matrix_.nrow = static_cast<std::size_t>(h.rows);
         matrix_.ncol = static_cast<std::size_t>(h.cols);
         matrix_.nzmax = static_cast<std::size_t>(h.entries());
@@ -47,7 +49,11 @@ class Cholesky {
         matrix_.dtype = CHOLMOD_DOUBLE;
         matrix_.sorted = 1;
         matrix_.packed = 1;
-        factor_ = cholmod_analyze(&matrix_, &common_);
+        factor_ = cholmod_analyze_p(&matrix_, given ? permutation.data() : nullptr, nullptr, 0, &common_);
+        if (factor_ != nullptr && !given) {
+            const auto* order = static_cast<const int*>(factor_->Perm);
+            permutation.assign(order, order + factor_->n);
+        }
     }
     Cholesky(const Cholesky&) = delete;
     Cholesky& operator=(const Cholesky&) = delete;
@@ -190,22 +196,22 @@ InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& facto
 
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           SingularVectorGuess& guess, int row_limit) {
+                           InverseBoundCache& cache, int row_limit) {
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(h.rows);
-    int iterations = 3;
-    if (guess.vector.size() != n || !std::isfinite(norm(guess.vector)) || norm(guess.vector) == 0) {
-        guess.vector.resize(n);
+    int iterations = 2;
+    if (cache.vector.size() != n || !std::isfinite(norm(cache.vector)) || norm(cache.vector) == 0) {
+        cache.vector.resize(n);
         std::mt19937_64 random(12345);
-        for (double& c : guess.vector) {
+        for (double& c : cache.vector) {
             c = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
         }
         iterations = 8;
     }
     const double entry_error = rounding_of_entries(h);
-    double shift = 0.5 * estimate(factorisation, guess.vector, iterations);
+    double shift = 0.5 * estimate(factorisation, cache.vector, iterations);
     if (std::isfinite(shift) && shift > 0) {
-        Cholesky cholesky(h);
+        Cholesky cholesky(h, cache.permutation);
         for (int attempt = 0; attempt < 4; ++attempt, shift /= 8) {
             if (!cholesky.factorise(shift)) {
                 continue;
@@ -222,6 +228,6 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
     return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};
 }
 
-template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, SingularVectorGuess&, int);
+template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int);
 
 } // namespace isostat

@@ -2,6 +2,7 @@
 /// \file
 /// Compressed-column matrices and what their pattern alone says: matching, block triangular form, reachability.
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -32,11 +33,14 @@ class Ordering {
     [[nodiscard]] const std::vector<int>& column_order() const { return column_order_; }
     /// Block b is the range [block_start()[b], block_start()[b+1]) of positions.
     [[nodiscard]] const std::vector<int>& block_start() const { return block_start_; }
+    /// The analysis itself (a klu_symbolic), so that the factorisation of the same pattern need not repeat it.
+    [[nodiscard]] const std::shared_ptr<void>& symbolic() const { return symbolic_; }
 
   private:
     int n_ = 0;
     int structural_rank_ = 0;
     std::vector<int> row_order_, column_order_, block_start_;
+    std::shared_ptr<void> symbolic_;
 };
 
 /// Which unknowns of A x = b can be non-zero for *some* values with this pattern: breadth-first search from the rows where b is

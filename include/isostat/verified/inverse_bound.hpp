@@ -18,9 +18,10 @@ struct InverseBound {
     bool by_rows = false;  ///< the Cholesky route failed, the inverse was verified row by row
 };
 
-/// Guess of the singular vector that belongs to sigma_min, kept from one vertex to the next: changes the cost, never the validity.
-struct SingularVectorGuess {
-    std::vector<double> vector;
+/// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity.
+struct InverseBoundCache {
+    std::vector<double> vector;     ///< guess of the singular vector that belongs to sigma_min
+    std::vector<int> permutation;   ///< fill-reducing order of the degrees of freedom
 };
 
 /// First route: Cholesky factorisation (CHOLMOD, simplicial, in round to nearest) of H H^T - s I with s chosen from a few inverse iterations; when
@@ -29,9 +30,9 @@ struct SingularVectorGuess {
 /// the infinity norm (statement V2); one pair of solves per row. It is tried when size <= `row_limit`.
 /// Cost of the first route: 6-15 ms at n = 4900; of the second about 1 s there.
 template <int Dim>
-InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, SingularVectorGuess& guess,
+InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, InverseBoundCache& cache,
                            int row_limit = 20000);
 
-extern template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, SingularVectorGuess&, int);
+extern template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int);
 
 } // namespace isostat

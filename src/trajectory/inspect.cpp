@@ -7,53 +7,183 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace isostat {
 
+namespace {
+
+constexpr double u = 0x1p-53;
+
+/// Counting of a state, cheap when the gate will prove the rank anyway.
+template <int Dim> Counting count(const State<Dim>& state) {
+    Counting counting;
+    counting.dof_count = DofMap<Dim>(state.packing).dof_count();
+    counting.contact_count = static_cast<int>(state.contacts.size());
+    return counting.dof_count == counting.contact_count ? counting : count_contacts(state.packing, state.contacts);
+}
+
+/// d2W/ds2 = -sum f_l |u_t|^2 / d_l along the mechanism that moves the held coordinate in column `slot` at unit rate: with the kept
+/// gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l.
+template <int Dim> Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<double>& forces, std::size_t slot, double sigma) {
+    const auto& contacts = vertex.structure.contacts();
+    std::vector<double> on_dofs(contacts.size(), 0.0);
+    on_dofs[slot] = 1;
+    vertex.factorisation.solve_velocities(on_dofs);
+    std::vector<double> v(vertex.packing.q.size(), 0.0);
+    double largest = 0;
+    for (std::size_t mu = 0; mu < on_dofs.size(); ++mu) {
+        v[static_cast<std::size_t>(vertex.structure.dofs().coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
+        largest = std::max(largest, std::abs(on_dofs[mu]));
+    }
+    // |v - v~| <= |G v~ - e| / sigma_min: bounded here through the residual, row by row.
+    double residual = 0;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const GapGradient<Dim> g = gap_gradient(vertex.packing, contacts[l]);
+        double rate = l == slot ? 1.0 : 0.0;
+        double size = rate;
+        for (int k = 0; k < g.count; ++k) {
+            const auto e = static_cast<std::size_t>(k);
+            const double term = g.value[e] * v[static_cast<std::size_t>(g.coordinate[e])];
+            rate += term;
+            size += std::abs(term);
+        }
+        const double bound = std::abs(rate) + 16 * u * size;
+        residual += bound * bound;
+    }
+    const double velocity_error = std::sqrt(residual) * (1 + 1e-10) / vertex.inverse.sigma_min;
+    double value = 0;
+    double error = 0;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (contacts[l].kind != ContactKind::disk_disk) {
+            continue;
+        }
+        const double bend = gap_curvature(vertex.packing, contacts[l], v.data());
+        const double d = vertex.packing.radius[static_cast<std::size_t>(contacts[l].i)] + vertex.packing.radius[static_cast<std::size_t>(contacts[l].j)];
+        // |u_t|^2 changes by at most (2 |u_t| + e) e with e <= 2 velocity_error.
+        const double e = 2 * velocity_error;
+        const double bend_error = (2 * std::sqrt(bend * d) + e) * e / d + 16 * u * bend;
+        value -= forces[l] * bend;
+        error += vertex.statics.force(ContactId(l), sigma).radius * bend + std::abs(forces[l]) * bend_error;
+    }
+    const double scale = largest * largest;
+    return {value / scale, (error + 8 * u * std::abs(value)) / scale * 1.001};
+}
+
+/// 2-norm of the forces: what a change of the matrix acts on.
+template <int Dim> double force_norm(const Vertex<Dim>& vertex, double sigma) {
+    double sum = 0;
+    for (int l = 0; l < vertex.structure.size(); ++l) {
+        const double f = vertex.statics.force(ContactId(l), sigma).value;
+        sum += f * f;
+    }
+    return std::sqrt(sum);
+}
+
+} // namespace
+
 template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state) {
+    Inspection<Dim> inspection;
+    inspection.counting = count(state);
+    Counting& counting = inspection.counting;
+    inspection.contacts = state.contacts;
+    if (counting.dof_count != counting.contact_count) {
+        if (counting.hyperstaticity > 0) {
+            return Failure{FailureKind::not_isostatic,
+                           fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}: forces are not determined by the geometry", counting.dof_count,
+                                       counting.contact_count, counting.rank, counting.hyperstaticity, counting.mechanisms)};
+        }
+        const DofMap<Dim> dofs(state.packing);
+        for (const int dof : counting.free_dofs) {
+            inspection.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
+        }
+    }
     InverseBoundCache cache;
-    auto made = Vertex<Dim>::make(state.packing, state.contacts, state.load, cache);
+    auto made = Vertex<Dim>::make(state.packing, inspection.contacts, state.load, cache);
     if (!made.ok()) {
         return made.failure();
     }
     Vertex<Dim>& vertex = *made.value();
-    Inspection<Dim> inspection;
-    inspection.rattlers = rattlers(vertex);
-    inspection.forces = finite_forces(vertex, state.load);
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
+    if (counting.dof_count == counting.contact_count) {
+        counting.rank = counting.dof_count;
+        counting.rank_exact = Verdict::proved;
     }
     const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    inspection.rattlers = rattlers(vertex);
     auto gaps = vertex.check_gaps(find_candidates(state.packing, candidate_fraction));
-    auto decision = decide_opening(vertex.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
-    const bool in_equilibrium = decision.ok() && !decision.value().opening;
+    const bool isostatic = std::none_of(inspection.contacts.begin(), inspection.contacts.end(),
+                                        [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!gaps.ok()) {
         inspection.remark = gaps.failure().message;
     } else if (gaps.value().negative) {
         inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
-    } else if (!decision.ok()) {
-        inspection.remark = decision.failure().message;
-    } else if (!in_equilibrium) {
-        const Opening& opening = *decision.value().opening;
-        inspection.remark = fmt::format("not an equilibrium: {}force {:.6g} in contact {}", opening.infinitesimal ? "infinitesimal " : "",
-                                        opening.force.value, to_string<Dim>(state.contacts[opening.contact.index()]));
-    }
-    if (in_equilibrium) {
-        auto described = describe(vertex, state.load);
-        if (described.ok()) {
-            inspection.record = described.value();
-            inspection.equilibrium = inspection.remark.empty();
-            inspection.record.verdict = inspection.equilibrium ? Verdict::proved : Verdict::undecided;
-            inspection.record.decided_by = std::max(inspection.record.decided_by, decision.value().rung);
-            inspection.record.margin = std::min(inspection.record.margin, decision.value().margin);
-        } else if (inspection.remark.empty()) {
-            inspection.remark = described.failure().message;
-        }
     }
     EquilibriumRecord<Dim>& record = inspection.record;
+    if (isostatic) {
+        auto decision = decide_opening(vertex.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+        const bool balanced = decision.ok() && !decision.value().opening;
+        if (balanced) {
+            auto described = describe(vertex, state.load);
+            if (described.ok()) {
+                record = described.value();
+                record.decided_by = std::max(record.decided_by, decision.value().rung);
+                record.margin = std::min(record.margin, decision.value().margin);
+                inspection.equilibrium = inspection.remark.empty();
+                record.verdict = inspection.equilibrium ? Verdict::proved : Verdict::undecided;
+                inspection.stable = record.verdict; // isostatic, all forces positive: every motion opens a contact against a force
+            } else if (inspection.remark.empty()) {
+                inspection.remark = described.failure().message;
+            }
+        } else if (inspection.remark.empty()) {
+            inspection.remark = decision.ok() ? fmt::format("not an equilibrium: {}force {:.6g} in contact {}",
+                                                            decision.value().opening->infinitesimal ? "infinitesimal " : "",
+                                                            decision.value().opening->force.value,
+                                                            to_string<Dim>(inspection.contacts[decision.value().opening->contact.index()]))
+                                              : decision.failure().message;
+        }
+    }
+    inspection.forces = finite_forces(vertex, state.load);
+    for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
+        inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
+    }
+    if (!isostatic) {
+        vertex.statics.climb();
+        bool positive = true;
+        bool at_rest = true;
+        for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
+            const Enclosure f = vertex.statics.force(ContactId(l), sigma);
+            if (inspection.contacts[l].kind != ContactKind::held) {
+                positive = positive && (f.positive() || (vertex.statics.is_structural_zero(ContactId(l)) &&
+                                                         vertex.statics.infinitesimal(ContactId(l)).positive()));
+            } else {
+                ++record.held;
+                // Known only as well as the stored configuration: moving every coordinate by `radius` changes the matrix by about radius / R.
+                const double uncertain = 4 * vertex.enclosure.radius / state.packing.min_radius() * force_norm(vertex, sigma) / vertex.inverse.sigma_min;
+                at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
+                if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
+                    inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}", f.value,
+                                                    to_string<Dim>(inspection.contacts[l]));
+                }
+            }
+        }
+        if (positive && at_rest && counting.mechanisms == 1 && inspection.remark.empty()) {
+            inspection.second_order = curvature_of_potential(vertex, inspection.forces, inspection.contacts.size() - 1, sigma);
+            if (inspection.second_order.negative()) {
+                inspection.stable = Verdict::refuted;
+            }
+            inspection.remark = fmt::format("equilibrium with one mechanism (k = 1){}", inspection.second_order.negative()
+                                                                                              ? ", not stable: W has a maximum along it"
+                                                                                              : "");
+        }
+    }
     record.number = state.equilibrium;
-    record.dof_count = vertex.structure.size();
-    record.contact_count = vertex.structure.size();
-    record.rank = vertex.structure.size();
+    record.stress = sigma;
+    record.dof_count = counting.dof_count;
+    record.contact_count = counting.contact_count;
+    record.rank = counting.rank;
+    record.hyperstaticity = counting.hyperstaticity;
+    record.mechanisms = counting.mechanisms;
     record.rattlers = static_cast<int>(inspection.rattlers.size());
     record.backbone = vertex.statics.backbone_count();
     record.gap_residual = vertex.enclosure.max_gap;

@@ -89,6 +89,30 @@ BOOST_AUTO_TEST_CASE(two_disks_run_through_the_complete_hysteresis_loop) {
     BOOST_TEST((up.records.arcs.back().closed == bottom(1)));
 }
 
+BOOST_AUTO_TEST_CASE(the_five_contact_state_of_two_disks_is_an_equilibrium_that_is_not_stable) {
+    // Disk 1 on its way over disk 0: neither on the bottom nor on the left wall, tan(angle of 01) = F2 / F1.
+    for (const double angle : {0.6, 0.9}) {
+        const double x = 1 + 3 * std::cos(angle);
+        const double y = 1 + 3 * std::sin(angle);
+        const State<2> state = in_box({{1, 1, 1}, {2, x, y}}, x + 2, y + 2, 1, std::tan(angle), {left(0), bottom(0), pair(0, 1), right(1), top(1)});
+        const auto inspection = inspect_vertex(state);
+        BOOST_REQUIRE(inspection.ok());
+        BOOST_TEST(inspection.value().counting.mechanisms == 1);
+        BOOST_TEST(inspection.value().record.held == 1);
+        BOOST_TEST(!inspection.value().equilibrium);
+        BOOST_TEST((inspection.value().stable == Verdict::refuted), inspection.value().remark);
+        BOOST_TEST(inspection.value().second_order.negative());
+        BOOST_TEST(inspection.value().remark.find("not stable") != std::string::npos, inspection.value().remark);
+        // Off the balance of the two forces the mechanism moves, and that is what is said.
+        State<2> off = state;
+        off.load.stress[1] *= 1.01;
+        const auto moved = inspect_vertex(off);
+        BOOST_REQUIRE(moved.ok());
+        BOOST_TEST(moved.value().remark.find("mechanism moves") != std::string::npos, moved.value().remark);
+        BOOST_TEST((moved.value().stable == Verdict::undecided));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(unloading_inside_the_hysteresis_loop_changes_nothing) {
     const Played played = play(two_disks(1, 2, 1, 1), -1, {}, 0.5);
     BOOST_REQUIRE(played.outcome.completed);

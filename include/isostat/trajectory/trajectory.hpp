@@ -10,6 +10,7 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/rigidity/counting.hpp>
 #include <isostat/statics/decisions.hpp>
 #include <isostat/trajectory/records.hpp>
 
@@ -57,16 +58,27 @@ template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer);
 
-/// What is known of a vertex without moving it: the record that a run would make of it, forces included; failure when
-/// its contact matrix is not proved regular, or when its forces are not all compressive (named).
+/// What is known of a state without moving it: the record that a run would make of it, forces included.
+///
+/// With fewer contacts than degrees of freedom (h = 0, k > 0) coordinates are held until the structure is isostatic; when every
+/// force is positive and the multipliers of the held coordinates cannot be told from 0, the state is an equilibrium *as far as the stored numbers say*
+/// (`record.held` = k, `equilibrium` stays false), and `stable` tells what W does along the mechanism (k = 1; statement T8).
 template <int Dim> struct Inspection {
+    Counting counting;                       ///< N_f, N, rank, h, k
     EquilibriumRecord<Dim> record;
-    std::vector<double> forces;              ///< f0, one per contact
+    std::vector<Contact> contacts;           ///< those of the state, then the held coordinates
+    std::vector<double> forces;              ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
     std::vector<int> rattlers;               ///< disks without a force-carrying contact
-    bool equilibrium = false;                ///< all forces positive lexicographically, proved
-    std::string remark;                      ///< when not: which contact and by how much
+    bool equilibrium = false;                ///< isostatic and all forces positive lexicographically, proved
+    /// proved: strict local minimum of W (isostatic equilibrium); refuted: W has a maximum along the mechanism, the equilibrium is
+    /// not stable; undecided: neither was shown.
+    Verdict stable = Verdict::undecided;
+    Enclosure second_order;                  ///< d2W/ds2 along the mechanism (k = 1), s = the fastest coordinate
+    std::string remark;                      ///< when not an equilibrium: which contact and by how much
 };
+/// Failure: `not_isostatic` when h > 0 (the message gives N_f, N, rank, h, k), `undecided` when no bound of the inverse or no true
+/// vertex near the stored one was proved.
 template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state);
 
 extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&, RunObserver<2>&);

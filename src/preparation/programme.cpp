@@ -13,7 +13,7 @@ namespace isostat::preparation {
 
 namespace {
 
-constexpr double objective_scale = 64;
+constexpr double objective_scale = 256;
 constexpr double tolerance = 1e-9;
 /// Walls collect the displacements of all the disks in front of them.
 constexpr double wall_trust = 10;
@@ -177,12 +177,19 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
     } else {
         simplex.dual();
     }
+    const auto asked = [this] { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); };
+    long pivots = simplex.numberIterations();
+    if (simplex.status() != 0 && !asked()) {
+        // A bad basis can pass for an infeasible programme: believe only what the slack basis says.
+        simplex.allSlackBasis(true);
+        simplex.dual();
+        pivots += simplex.numberIterations();
+    }
 
     ProgrammeStep step;
     step.status = simplex.status();
-    step.pivots = simplex.numberIterations();
-    const bool asked = stop_ != nullptr && stop_->load(std::memory_order_relaxed);
-    if (asked) {
+    step.pivots = pivots;
+    if (asked()) {
         step.outcome = ProgrammeStep::Outcome::interrupted;
         return step;
     }

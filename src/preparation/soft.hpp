@@ -4,9 +4,10 @@
 /// packing under isotropic pressure, relaxed well enough for the linear programmes.
 ///
 /// Units: lengths of order the radii, contact stiffness 1 (force = overlap), so that pressure / stiffness is the
-/// overlap in units of the diameter. Every disk has mass 1: only the path depends on it. Each wall carries the disks
-/// with it affinely (displacements w are measured relative to the homogeneous deformation of the box) and has the mass
-/// n / 3 of the disks that it drags along.
+/// overlap in units of the diameter. Every disk has mass 1: only the path depends on it. A wall carries the disks with
+/// it affinely: velocities are measured relative to the homogeneous deformation of the box, and the force on a wall is
+/// the derivative of the energy with respect to its position at fixed relative coordinates (the virial). Equilibrium is
+/// the same as with walls that push only what they touch.
 
 #include "preparation/neighbours.hpp"
 
@@ -39,10 +40,12 @@ template <int Dim> class SoftDynamics {
 
     /// Fixed box: pushes overlapping disks apart until no overlap exceeds `overlap` mean diameters (or `max_steps`).
     SoftMeasures separate(double overlap, long max_steps);
-    /// Viscous compression at about `rate` (strain of one axis per unit time) until both walls feel `pressure` to 10 %.
+    /// Servo-controlled walls: rate of strain = `rate` x (pressure felt / pressure wanted - 1), at most `rate`; viscous
+    /// damping of the disks. Until both walls feel `pressure` to 10 %.
     SoftMeasures compress(double pressure, double rate, long max_steps);
     /// Damped dynamics with adaptive step (velocities turned towards the forces, stopped when they work against them:
     /// Bitzek et al., Phys. Rev. Lett. 97, 170201) until residual and pressure error are below `tolerance`.
+    /// A wall has the mass n / 3 of what it drags.
     SoftMeasures relax(double pressure, double tolerance, long max_steps);
 
   private:

@@ -11,11 +11,23 @@
 
 namespace isostat::preparation {
 
-/// Measures a stage from construction to `finish`.
+/// Wall clock and processor time since construction.
+class Stopwatch {
+  public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
+    }
+    [[nodiscard]] double cpu_seconds() const { return static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC; }
+
+  private:
+    std::chrono::steady_clock::time_point wall_ = std::chrono::steady_clock::now();
+    std::clock_t cpu_ = std::clock();
+};
+
+/// A stage from construction to `finish`.
 class Stage {
   public:
-    Stage(std::string name, const PreparationOptions& options)
-        : name_(std::move(name)), options_(&options), wall_(std::chrono::steady_clock::now()), cpu_(std::clock()) {
+    Stage(std::string name, const PreparationOptions& options) : name_(std::move(name)), options_(&options) {
         progress(0, "");
     }
 
@@ -29,8 +41,8 @@ class Stage {
     [[nodiscard]] PreparationStage finish() const {
         PreparationStage stage;
         stage.name = name_;
-        stage.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count();
-        stage.cpu_seconds = static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC;
+        stage.seconds = watch_.seconds();
+        stage.cpu_seconds = watch_.cpu_seconds();
         progress(1, "");
         return stage;
     }
@@ -38,8 +50,7 @@ class Stage {
   private:
     std::string name_;
     const PreparationOptions* options_;
-    std::chrono::steady_clock::time_point wall_;
-    std::clock_t cpu_;
+    Stopwatch watch_;
 };
 
 } // namespace isostat::preparation

@@ -50,7 +50,7 @@ struct PreparationOptions {
     double softness = 1e-5;      ///< pressure / contact stiffness at the end of the dynamics: overlap in diameters
     double relaxation = 1e-4;    ///< unbalanced force / (pressure x diameter) at the end of the dynamics
     long max_steps = 200000;     ///< of each stage of the dynamics; the next stage starts from what was reached
-    double infinitesimal_weight = 1e-5; ///< eps of the linear programmes: weight of g against the mean contact force
+    double infinitesimal_weight = 1e-7; ///< eps of the linear programmes: weight of g against the mean contact force
     int max_programmes = 200;
 };
 

@@ -1,4 +1,4 @@
-#include "preparation/attempt.hpp"
+#include "preparation/polish.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/statics/decisions.hpp>

@@ -23,9 +23,10 @@ template <int Dim> struct Polished {
 /// Newton on the gaps of `contacts` from `packing`, each step through a structure that was proved regular, until the
 /// gaps stop decreasing; then coordinates to the grid and the checks promised by `find_vertex`. `state.load` must hold
 /// kind, stress and infinitesimal loads; its reference lengths are set to the lengths found. `iterations` counts Newton
-/// steps. Failures: `not_isostatic`, `not_converged` (Newton), `undecided`, `overlap` (another pair overlaps), `tie`
-/// (another gap is 0 to the arithmetic), `no_limit` never; a negative force is reported as `not_converged` with the
-/// contact named.
+/// steps.
+/// Failures: `not_isostatic`; `not_converged` (Newton stopped short, or a force is not compressive: named); `overlap`
+/// (another pair does); `tie` (another gap is 0 as far as the arithmetic can tell); `undecided` (a bound that would
+/// prove the rest was not found).
 template <int Dim>
 Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts, Load<Dim> load, long& iterations);
 

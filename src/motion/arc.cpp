@@ -1,5 +1,7 @@
 #include <isostat/motion/arc.hpp>
 
+#include <isostat/contact/contact_set.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -228,12 +230,10 @@ template <int Dim> class Follower {
             active_.clear();
         }
         if (active_.empty()) {
-            std::vector<Contact> kept = structure_->contacts();
-            kept.push_back(opened_);
-            std::sort(kept.begin(), kept.end());
+            const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
-            std::set_difference(candidates_.contacts.begin(), candidates_.contacts.end(), kept.begin(), kept.end(),
-                                std::back_inserter(active_));
+            std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                         [&](const Contact& c) { return c != opened_ && !kept.contains(c); });
             if (opened_.kind != ContactKind::held) {
                 active_.push_back(opened_); // it may close again
             }

@@ -1,5 +1,7 @@
 #include "trajectory/vertex.hpp"
 
+#include <isostat/contact/contact_set.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,8 +38,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
 }
 
 template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(const CandidateList<Dim>& candidates) {
-    std::vector<Contact> kept = structure.contacts();
-    std::sort(kept.begin(), kept.end());
+    const ContactSet kept(structure.contacts(), packing.disk_count());
     Gaps gaps;
     gaps.smallest = std::numeric_limits<double>::infinity();
     gaps.margin = std::numeric_limits<double>::infinity();
@@ -57,7 +58,7 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(co
         }
     };
     for (const Contact& contact : candidates.contacts) {
-        if (!std::binary_search(kept.begin(), kept.end(), contact)) {
+        if (!kept.contains(contact)) {
             look(contact);
         }
     }

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Fast membership in a contact list.
+
+#include <vector>
+
+#include <isostat/contact/contact.hpp>
+
+namespace isostat {
+
+/// The contacts of a list bucketed by their first index: `contains` looks at the few contacts of one disk. Made in O(N).
+class ContactSet {
+  public:
+    ContactSet(const std::vector<Contact>& contacts, int disk_count);
+    [[nodiscard]] bool contains(const Contact& contact) const {
+        const auto i = static_cast<std::size_t>(contact.i);
+        for (int k = start_[i]; k < start_[i + 1]; ++k) {
+            if (members_[static_cast<std::size_t>(k)] == contact) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+  private:
+    std::vector<int> start_;
+    std::vector<Contact> members_;
+};
+
+} // namespace isostat

@@ -1,0 +1,28 @@
+#include <isostat/contact/contact_set.hpp>
+
+#include <algorithm>
+
+namespace isostat {
+
+ContactSet::ContactSet(const std::vector<Contact>& contacts, int disk_count) {
+    // A held coordinate's first index is a coordinate: it is never asked for, and left out.
+    start_.assign(static_cast<std::size_t>(disk_count) + 2, 0);
+    const auto counted = [](const Contact& contact) { return contact.kind != ContactKind::held; };
+    for (const Contact& contact : contacts) {
+        if (counted(contact)) {
+            ++start_[static_cast<std::size_t>(contact.i) + 2];
+        }
+    }
+    for (std::size_t i = 2; i < start_.size(); ++i) {
+        start_[i] += start_[i - 1];
+    }
+    members_.resize(static_cast<std::size_t>(start_.back()));
+    for (const Contact& contact : contacts) {
+        if (counted(contact)) {
+            members_[static_cast<std::size_t>(start_[static_cast<std::size_t>(contact.i) + 1]++)] = contact;
+        }
+    }
+    start_.pop_back();
+}
+
+} // namespace isostat

@@ -1,0 +1,40 @@
+#include <isostat/rigidity/counting.hpp>
+
+#include <isostat/exact/independent_columns.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <algorithm>
+
+namespace isostat {
+
+template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    const DofMap<Dim> dofs(packing);
+    Counting counting;
+    counting.dof_count = dofs.dof_count();
+    counting.contact_count = static_cast<int>(contacts.size());
+    // The identity behind H completes its independent columns to a basis: the unit columns used are the degrees of freedom to hold.
+    sparse::Matrix<std::uint64_t> matrix = exact_contact_matrix(packing, dofs, contacts);
+    for (int mu = 0; mu < counting.dof_count; ++mu) {
+        matrix.row.push_back(mu);
+        matrix.value.push_back(1);
+        matrix.start.push_back(static_cast<int>(matrix.row.size()));
+    }
+    matrix.cols += counting.dof_count;
+    for (const int column : exact::independent_columns(matrix)) {
+        if (column < counting.contact_count) {
+            ++counting.rank;
+        } else {
+            counting.free_dofs.push_back(column - counting.contact_count);
+        }
+    }
+    counting.hyperstaticity = counting.contact_count - counting.rank;
+    counting.mechanisms = counting.dof_count - counting.rank;
+    if (counting.rank == std::min(counting.dof_count, counting.contact_count)) {
+        counting.rank_exact = Verdict::proved;
+    }
+    return counting;
+}
+
+template Counting count_contacts<2>(const Packing<2>&, const std::vector<Contact>&);
+
+} // namespace isostat

@@ -1,0 +1,120 @@
+#pragma once
+/// \file
+/// From random disks to an exact equilibrium under isotropic pressure (paper, section 3): damped dynamics, sequential
+/// linear programming, Newton.
+
+#include <isostat/contact/state.hpp>
+#include <isostat/core/result.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// Diameters uniform in [smallest, largest], in the user's unit of length.
+struct DiameterLaw {
+    double smallest = 1;
+    double largest = 2;
+};
+
+/// `count` radii, independent, from a 64-bit Mersenne twister: the same seed gives the same bits on every machine.
+/// Throws `Error(bad_input)` for a law that is not 0 < smallest <= largest < infinity, or count < 1.
+std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t seed);
+
+/// Where a preparation is. `fraction` in [0, 1] is an estimate within the stage.
+struct PreparationProgress {
+    std::string stage;
+    double fraction = 0;
+    std::string text;
+};
+
+/// What to prepare. The defaults of the last group suit sizes 1 ... 10^4; they change the way and the cost, never the
+/// validity.
+struct PreparationOptions {
+    int disks = 0;             ///< n >= 1; ignored when `radii` is given
+    DiameterLaw diameters;     ///< ignored when `radii` is given
+    std::vector<double> radii; ///< a given list, in the order of the disks
+    std::uint64_t seed = 1;    ///< of radii, positions and infinitesimal loads (three derived streams)
+    double stress = 1;         ///< sigma_1 = sigma_2 > 0
+    double aspect = 1;         ///< Ly / Lx of the loose box; the final box is free
+    LoadKind load = LoadKind::nominal;
+
+    const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
+    std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept
+
+    double loose_fraction = 0.6; ///< solid fraction of the random start
+    double softness = 1e-5;      ///< pressure / contact stiffness at the end of the dynamics: overlap in diameters
+    double relaxation = 1e-4;    ///< unbalanced force / (pressure x diameter) at the end of the dynamics
+    long max_steps = 200000;     ///< of each stage of the dynamics; the next stage starts from what was reached
+    double infinitesimal_weight = 1e-7; ///< eps of the linear programmes: weight of g against the mean contact force
+    int max_programmes = 200;
+};
+
+/// Figures of one stage.
+struct PreparationStage {
+    std::string name;
+    bool completed = false; ///< its own goal was reached
+    double seconds = 0;     ///< wall clock
+    double cpu_seconds = 0; ///< this process
+    long iterations = 0;    ///< steps of the dynamics, pivots, Newton iterations
+    double solid_fraction = 0;
+    int contacts = 0;          ///< overlapping pairs of the dynamics; contacts of the basis
+    double residual = 0;       ///< dynamics: largest unbalanced force / (pressure x diameter); Newton: largest |gap|
+    double pressure_error = 0; ///< dynamics: largest relative error of the pressure on a wall
+    double overlap = 0;        ///< largest overlap / mean diameter
+};
+
+/// What was done, also after a failure.
+template <int Dim> struct PreparationReport {
+    std::vector<PreparationStage> stages;
+    int programmes = 0;                   ///< linear programmes solved
+    long pivots = 0;                      ///< simplex iterations in all of them
+    std::uint64_t infinitesimal_seed = 0; ///< argument of `generic_infinitesimal` for the loads of the state
+    double solid_fraction = 0;            ///< walls included
+    int rattlers = 0;                     ///< disks without a force-carrying contact
+    double min_force = 0;                 ///< smallest backbone force
+    double min_gap = 0;                   ///< smallest gap of a pair that is not a contact
+    double sigma_min_bound = 0;           ///< proved lower bound of the smallest singular value of H
+    std::optional<Packing<Dim>> last; ///< after a failure: the last configuration (overlaps of the dynamics included)
+};
+
+/// A vertex under isotropic pressure from random disks.
+/// 1. Radii; random positions in a loose box; disks pushed apart.
+/// 2. Soft disks (pressure / stiffness = 1e-3 first) compressed by servo-controlled walls with viscous damping, then
+/// relaxed by damped dynamics
+///    while the stiffness grows to 1 / softness.
+/// 3. `find_vertex`.
+/// \post On success the state is one as described for `find_vertex`, and depends on nothing but the options (same seed,
+/// same bits; lengths scaled by a power of two give the state scaled by it). On failure `report.last` holds what was
+/// reached. Throws `Error(bad_input)` for options that make no sense, naming the field and the value. Cost: see
+/// tests/bench/preparation.cpp; the dynamics takes most of it.
+template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report);
+
+/// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls (small
+/// overlaps are allowed).
+///
+/// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma Ly, F2 = sigma Lx of the current
+/// box, subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step within the trust bounds can bring into
+/// contact. Since |d + dx| >= n.(d + dx), a step never makes an overlap. The contacts are the rows with a multiplier in
+/// the basis (Clp, warm starts); once no trust bound is in the basis there are exactly N_f = 2n + 2 of them, and Newton
+/// solves gaps = 0.
+///
+/// \post On success: N_f contacts, sorted, from the basis; coordinates on the grid; rank proved for the stored
+/// coordinates; a true vertex within a proved distance; every other gap proved positive there; every force proved
+/// positive, lexicographically in (f0, f1), under stress_1 = stress_2 = options.stress with the *final* lengths as
+/// reference lengths. Any of these that cannot be proved is a failure (`tie`, `undecided`, `not_isostatic`,
+/// `not_converged`), never a state. Uses of `options`: seed, stress, load, stop, progress, infinitesimal_weight,
+/// max_programmes.
+template <int Dim>
+Result<State<Dim>> find_vertex(const Packing<Dim>& start, const PreparationOptions& options,
+                               PreparationReport<Dim>& report);
+
+extern template struct PreparationReport<2>;
+extern template Result<State<2>> prepare<2>(const PreparationOptions&, PreparationReport<2>&);
+extern template Result<State<2>> find_vertex<2>(const Packing<2>&, const PreparationOptions&, PreparationReport<2>&);
+
+} // namespace isostat

@@ -1,0 +1,231 @@
+#include "preparation/polish.hpp"
+#include "preparation/programme.hpp"
+#include "preparation/random.hpp"
+#include "preparation/scale.hpp"
+#include "preparation/stage.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace isostat {
+
+namespace preparation {
+
+namespace {
+
+/// Largest displacement of a disk per programme, in mean radii. Measured at n = 1936: 0.07 needs 13 programmes where
+/// 0.27 needs 9 (rattlers fall farther); a larger one adds rows that are never used.
+constexpr double trust_in_radii = 0.27;
+/// A failed attempt at Newton and the proofs only costs time. Worth it after a step below the first value (mean radii)
+/// when the basis has nearly settled, or below the second in any case.
+constexpr double attempt_below = 0.05;
+constexpr double attempt_always_below = 0.001;
+constexpr long settled_pivots = 2;
+/// Below this step (mean radii) and without pivots the next programme would do nothing new.
+constexpr double converged_below = 1e-8;
+/// The finite weight of the infinitesimal loads may tip a weak backbone contact; then it is divided by this, once.
+constexpr double weight_divisor = 10;
+
+/// Relative dilation about the lower corner that parts every overlapping pair.
+template <int Dim> double dilation_needed(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    double needed = 0;
+    for (const Contact& c : contacts) {
+        const double h = gap(packing, c);
+        if (h < 0) {
+            double range = packing.radius[static_cast<std::size_t>(c.i)];
+            if (c.kind == ContactKind::disk_disk) {
+                range += packing.radius[static_cast<std::size_t>(c.j)];
+            }
+            needed = std::max(needed, range / (range + h) - 1);
+        }
+    }
+    return needed;
+}
+
+template <int Dim> void require_sensible(const Packing<Dim>& start, const PreparationOptions& options) {
+    Packing<Dim> checked = start; // a soft packing may overlap its box a little
+    for (int a = 0; a < Dim && !start.radius.empty() && start.q.size() == Dim * (start.radius.size() + 1); ++a) {
+        checked.length(a) = start.length(a) > 0 ? std::max(start.length(a), 2 * start.max_radius()) : start.length(a);
+    }
+    validate(checked, "start of the linear programmes");
+    const auto is_fixed = [](unsigned char flag) { return flag != 0; };
+    if (!(start.walls == Walls<Dim>::box()) || std::any_of(start.fixed.begin(), start.fixed.end(), is_fixed)) {
+        throw Error(
+            ErrorKind::bad_input,
+            "start of the linear programmes: expected a box with two fixed and two movable walls and no fixed disk");
+    }
+    for (const auto& [name, value] :
+         {std::pair{"stress", options.stress}, {"weight of the infinitesimal loads", options.infinitesimal_weight}}) {
+        if (!(value > 0) || !std::isfinite(value)) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("preparation: {} is {}: expected a positive finite number", name, value));
+        }
+    }
+}
+
+/// The sequence of programmes with attempts at the vertex in between. Lengths in the internal unit until `polish`.
+template <int Dim> class VertexSearch {
+  public:
+    VertexSearch(const Packing<Dim>& start, const PreparationOptions& options, PreparationReport<Dim>& report)
+        : options_(options), report_(report), radius_(start.radius), scale_(start.radius),
+          packing_(scale_.to_internal(start)), stage_("linear programmes", options) {
+        report_.infinitesimal_seed = derived_seed(options.seed, Stream::infinitesimal);
+        load_.kind = options.load;
+        load_.stress.fill(options.stress);
+        load_.infinitesimal = generic_infinitesimal<Dim>(radius_, report_.infinitesimal_seed);
+    }
+
+    Result<State<Dim>> run() {
+        const std::vector<double> g = generic_infinitesimal<Dim>(packing_.radius, report_.infinitesimal_seed);
+        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), options_.stop);
+        double weight = options_.infinitesimal_weight;
+        bool divided = false;
+        while (programmes_ < options_.max_programmes) {
+            const ProgrammeStep step = programme.solve(packing_, weight);
+            ++programmes_;
+            pivots_ += step.pivots;
+            if (auto failure = judge(step, programme)) {
+                return give_up(*failure);
+            }
+            if (step.outcome == ProgrammeStep::Outcome::infeasible) {
+                continue;
+            }
+            move(step);
+            if (!worth_an_attempt(step)) {
+                continue;
+            }
+            const Stopwatch watch;
+            auto polished = polish(scale_.to_user(packing_, radius_), step.contacts, load_, newton_.iterations);
+            newton_.seconds += watch.seconds();
+            newton_.cpu_seconds += watch.cpu_seconds();
+            if (polished.ok()) {
+                return succeed(std::move(polished.value()));
+            }
+            // Not yet: the next programme sees the normals and the lengths of the point reached, unless it has nothing
+            // new to see.
+            if (step.pivots == 0 && step.largest <= converged_below * scale_.mean_radius()) {
+                if (divided || polished.failure().kind != FailureKind::not_converged) {
+                    return give_up(polished.failure());
+                }
+                weight /= weight_divisor;
+                divided = true;
+            }
+        }
+        return give_up({FailureKind::not_converged, fmt::format("no vertex after {} programmes", programmes_)});
+    }
+
+  private:
+    std::optional<Failure> judge(const ProgrammeStep& step, const ContactProgramme<Dim>& programme) {
+        switch (step.outcome) {
+        case ProgrammeStep::Outcome::optimal: return std::nullopt;
+        case ProgrammeStep::Outcome::interrupted:
+            return Failure{FailureKind::interrupted, fmt::format("stopped during programme {}", programmes_)};
+        case ProgrammeStep::Outcome::infeasible: {
+            // Overlaps that cannot be undone within the trust bounds: part the disks first.
+            const double needed = dilation_needed(packing_, programme.candidates(packing_));
+            if (dilated_ || !(needed > 0)) {
+                return Failure{FailureKind::overlap,
+                               fmt::format("programme {} has no feasible point, overlaps up to {:.3g} of a distance",
+                                           programmes_, needed)};
+            }
+            for (double& x : packing_.q) {
+                x *= 1 + needed;
+            }
+            dilated_ = true;
+            return std::nullopt;
+        }
+        case ProgrammeStep::Outcome::failed: break;
+        }
+        return Failure{FailureKind::not_converged,
+                       fmt::format("Clp ended programme {} with status {}", programmes_, step.status)};
+    }
+
+    void move(const ProgrammeStep& step) {
+        for (std::size_t k = 0; k < packing_.q.size(); ++k) {
+            packing_.q[k] += step.displacement[k];
+        }
+        contacts_ = static_cast<int>(step.contacts.size());
+        const double relative = step.largest / scale_.mean_radius();
+        stage_.progress(std::clamp(std::log(relative + converged_below) / std::log(converged_below), 0.0, 1.0),
+                        fmt::format("programme {}: {} pivots, {} of {} contacts, step {:.1e} radii", programmes_,
+                                    step.pivots, contacts_, packing_.q.size(), relative));
+    }
+
+    [[nodiscard]] bool worth_an_attempt(const ProgrammeStep& step) const {
+        const double below = step.pivots <= settled_pivots ? attempt_below : attempt_always_below;
+        return programmes_ > 1 // the first one keeps the overlaps of the start
+               && step.bounds == 0 && step.largest <= below * scale_.mean_radius();
+    }
+
+    void record(bool completed) {
+        PreparationStage entry = stage_.finish();
+        entry.seconds -= newton_.seconds;
+        entry.cpu_seconds -= newton_.cpu_seconds;
+        entry.completed = completed;
+        entry.iterations = pivots_;
+        entry.contacts = contacts_;
+        entry.solid_fraction = packing_.solid_fraction();
+        newton_.name = "newton and proofs";
+        newton_.completed = completed;
+        newton_.contacts = contacts_;
+        newton_.solid_fraction = entry.solid_fraction;
+        report_.solid_fraction = entry.solid_fraction;
+        report_.stages.push_back(std::move(entry));
+        report_.stages.push_back(newton_);
+        report_.programmes += programmes_;
+        report_.pivots += pivots_;
+    }
+
+    Failure give_up(const Failure& why) {
+        record(false);
+        report_.last = scale_.to_user(packing_, radius_);
+        return {why.kind, "linear programmes: " + why.message};
+    }
+
+    State<Dim> succeed(Polished<Dim> vertex) {
+        newton_.residual = vertex.max_gap;
+        record(true);
+        report_.solid_fraction = vertex.state.packing.solid_fraction();
+        report_.rattlers = vertex.rattlers;
+        report_.min_force = vertex.min_force;
+        report_.min_gap = vertex.min_gap;
+        report_.sigma_min_bound = vertex.sigma_min_bound;
+        report_.last.reset();
+        return std::move(vertex.state);
+    }
+
+    const PreparationOptions& options_;
+    PreparationReport<Dim>& report_;
+    std::vector<double> radius_; ///< the user's
+    Scale scale_;
+    Packing<Dim> packing_; ///< internal unit
+    Load<Dim> load_;
+    Stage stage_;
+    PreparationStage newton_;
+    int programmes_ = 0;
+    long pivots_ = 0;
+    int contacts_ = 0;
+    bool dilated_ = false;
+};
+
+} // namespace
+
+} // namespace preparation
+
+template <int Dim>
+Result<State<Dim>> find_vertex(const Packing<Dim>& start, const PreparationOptions& options,
+                               PreparationReport<Dim>& report) {
+    preparation::require_sensible(start, options);
+    return preparation::VertexSearch<Dim>(start, options, report).run();
+}
+
+template struct PreparationReport<2>;
+template Result<State<2>> find_vertex<2>(const Packing<2>&, const PreparationOptions&, PreparationReport<2>&);
+
+} // namespace isostat

@@ -1,0 +1,122 @@
+#include "preparation/neighbours.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace isostat::preparation {
+
+namespace {
+
+/// Cells of a bounding box, disks sorted by cell. A disk is found again from its own cell number, so rounding cannot
+/// lose it; pairs within one cell width are in adjacent cells up to rounding, which the margin in the width covers.
+template <int Dim> class Grid {
+  public:
+    Grid(const std::vector<double>& x, std::size_t n, double width) : cell_of_(n) {
+        std::array<double, Dim> lowest{};
+        std::array<double, Dim> highest{};
+        for (std::size_t a = 0; a < Dim; ++a) {
+            lowest[a] = highest[a] = x[a];
+            for (std::size_t i = 1; i < n; ++i) {
+                lowest[a] = std::min(lowest[a], x[Dim * i + a]);
+                highest[a] = std::max(highest[a], x[Dim * i + a]);
+            }
+        }
+        // More cells than disks cost memory and find nothing.
+        const double most = std::ceil(std::pow(static_cast<double>(n), 1.0 / Dim)) + 1;
+        std::array<double, Dim> step{};
+        int cells = 1;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double extent = highest[a] - lowest[a];
+            count_[a] = static_cast<int>(std::clamp(std::floor(extent / width), 1.0, most));
+            step[a] = extent > 0 ? extent / count_[a] : 1.0;
+            cells *= count_[a];
+        }
+        start_.assign(static_cast<std::size_t>(cells) + 1, 0);
+        for (std::size_t i = 0; i < n; ++i) {
+            int cell = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const int c = static_cast<int>((x[Dim * i + a] - lowest[a]) / step[a]);
+                cell = cell * count_[a] + std::clamp(c, 0, count_[a] - 1);
+            }
+            cell_of_[i] = cell;
+            ++start_[static_cast<std::size_t>(cell) + 1];
+        }
+        for (std::size_t c = 0; c < static_cast<std::size_t>(cells); ++c) {
+            start_[c + 1] += start_[c];
+        }
+        std::vector<int> next(start_.begin(), start_.end() - 1);
+        member_.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            member_[static_cast<std::size_t>(next[static_cast<std::size_t>(cell_of_[i])]++)] = static_cast<int>(i);
+        }
+    }
+
+    /// Calls `visit(j)` for the disks of the cell of i and of the cells around it.
+    template <class Visit> void around(std::size_t i, const Visit& visit) const {
+        std::array<int, Dim> centre{};
+        int cell = cell_of_[i];
+        for (std::size_t a = Dim; a-- > 0;) {
+            centre[a] = cell % count_[a];
+            cell /= count_[a];
+        }
+        walk(0, 0, centre, visit);
+    }
+
+  private:
+    template <class Visit>
+    void walk(std::size_t axis, int prefix, const std::array<int, Dim>& centre, const Visit& visit) const {
+        if (axis == Dim) {
+            const auto cell = static_cast<std::size_t>(prefix);
+            for (int k = start_[cell]; k < start_[cell + 1]; ++k) {
+                visit(member_[static_cast<std::size_t>(k)]);
+            }
+            return;
+        }
+        for (int c = std::max(0, centre[axis] - 1); c <= std::min(count_[axis] - 1, centre[axis] + 1); ++c) {
+            walk(axis + 1, prefix * count_[axis] + c, centre, visit);
+        }
+    }
+
+    std::array<int, Dim> count_{};
+    std::vector<int> start_, member_, cell_of_;
+};
+
+} // namespace
+
+template <int Dim>
+void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs) {
+    const std::size_t n = radius.size();
+    pairs.start.assign(1, 0);
+    pairs.partner.clear();
+    if (n == 0) {
+        return;
+    }
+    const double largest = *std::max_element(radius.begin(), radius.end());
+    const Grid<Dim> grid(x, n, (2 * largest + reach) * (1 + 1e-9));
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto first = static_cast<std::ptrdiff_t>(pairs.partner.size());
+        grid.around(i, [&](int partner) {
+            const auto j = static_cast<std::size_t>(partner);
+            if (j <= i) {
+                return;
+            }
+            double square = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const double d = x[Dim * j + a] - x[Dim * i + a];
+                square += d * d;
+            }
+            const double range = radius[i] + radius[j] + reach;
+            if (square < range * range) {
+                pairs.partner.push_back(partner);
+            }
+        });
+        std::sort(pairs.partner.begin() + first, pairs.partner.end());
+        pairs.start.push_back(static_cast<int>(pairs.partner.size()));
+    }
+}
+
+template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&);
+
+} // namespace isostat::preparation

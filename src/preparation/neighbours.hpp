@@ -1,0 +1,23 @@
+#pragma once
+/// \file
+/// Every pair of disks closer than a given reach, by a grid of cells. Overlaps are allowed, so that soft packings have
+/// complete lists too.
+
+#include <vector>
+
+namespace isostat::preparation {
+
+/// Pairs i < j, grouped by i: partners of i are `partner[start[i]] .. partner[start[i + 1] - 1]`, increasing.
+struct PairList {
+    std::vector<int> start;   ///< n + 1
+    std::vector<int> partner; ///< one per pair
+};
+
+/// All pairs with gap < reach: complete for any positions and radii. `x` holds Dim*n coordinates.
+/// The answer does not depend on the grid, hence not on rounding of the cell numbers. Cost O(n) for comparable radii.
+template <int Dim>
+void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs);
+
+extern template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&);
+
+} // namespace isostat::preparation

@@ -1,0 +1,204 @@
+#include "preparation/polish.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/statics/decisions.hpp>
+#include <isostat/verified/configuration.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace isostat::preparation {
+
+namespace {
+
+constexpr int max_newton = 30;
+/// Candidates beside the contacts; T6 allows up to 0.82.
+constexpr double candidate_fraction = 0.5;
+
+template <int Dim> double largest_gap(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    double largest = 0;
+    for (const Contact& contact : contacts) {
+        largest = std::max(largest, std::abs(gap(packing, contact)));
+    }
+    return largest;
+}
+
+/// One step; failure when the matrix is not proved regular.
+template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    const auto structure = IsostaticStructure<Dim>::prove(packing, contacts);
+    if (!structure.ok()) {
+        return structure.failure();
+    }
+    const Factorisation factorisation(structure.value());
+    std::vector<double> step(contacts.size());
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        step[l] = gap(packing, contacts[l]); // approach by the gap
+    }
+    factorisation.solve_velocities(step);
+    const DofMap<Dim>& dofs = structure.value().dofs();
+    for (std::size_t mu = 0; mu < step.size(); ++mu) {
+        packing.q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
+    }
+    return std::nullopt;
+}
+
+/// Newton until the largest gap is at the grid or stops decreasing.
+template <int Dim>
+std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>& contacts, long& iterations) {
+    double before = largest_gap(packing, contacts);
+    for (int k = 0; k < max_newton; ++k) {
+        Packing<Dim> next = packing;
+        if (auto failure = newton_step(next, contacts)) {
+            return failure;
+        }
+        ++iterations;
+        const double now = largest_gap(next, contacts);
+        if (!(now < before)) {
+            // Rounding level when the gaps are within a few grid steps; otherwise the start was too far.
+            if (before <= 64 * grid_step(packing)) {
+                return std::nullopt;
+            }
+            return Failure{FailureKind::not_converged,
+                           fmt::format("Newton on the gaps stopped at {:.3g} after {} steps", before, k + 1)};
+        }
+        packing = std::move(next);
+        before = now;
+        if (now <= grid_step(packing)) {
+            return std::nullopt;
+        }
+    }
+    return Failure{FailureKind::not_converged,
+                   fmt::format("Newton on the gaps: still {:.3g} after {} steps", before, max_newton)};
+}
+
+/// Every candidate beside the contacts has a positive gap at the true vertex: proved, or named.
+template <int Dim>
+Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                const Factorisation& factorisation, const InverseBound& inverse,
+                                VertexEnclosure vertex) {
+    const std::vector<Contact>& contacts = structure.contacts(); // sorted by the caller
+    std::vector<Contact> others;
+    for (const Contact& candidate : find_candidates(packing, candidate_fraction).contacts) {
+        if (!std::binary_search(contacts.begin(), contacts.end(), candidate)) {
+            others.push_back(candidate);
+        }
+    }
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const bool extended : {false, true}) {
+        if (extended) {
+            vertex = enclose_vertex_double_double(packing, structure, factorisation, inverse);
+        }
+        std::vector<Contact> doubtful;
+        for (const Contact& other : others) {
+            const Enclosure h = gap_at_vertex(packing, vertex, other);
+            if (h.negative()) {
+                return Failure{FailureKind::overlap,
+                               fmt::format("{} overlap by {:.3g}", to_string<Dim>(other), -h.value)};
+            }
+            if (h.positive()) {
+                smallest = std::min(smallest, h.value);
+            } else {
+                doubtful.push_back(other);
+            }
+        }
+        others = std::move(doubtful);
+        if (others.empty()) {
+            return smallest;
+        }
+    }
+    const Enclosure h = gap_at_vertex(packing, vertex, others.front());
+    return Failure{
+        FailureKind::tie,
+        fmt::format(
+            "{} more gaps than the {} contacts kept are 0 as far as double-double arithmetic can tell, first {} "
+            "({:.3g}, known to {:.3g})",
+            others.size(), contacts.size(), to_string<Dim>(others.front()), h.value, h.radius)};
+}
+
+template <int Dim> int count_rattlers(const Packing<Dim>& packing, const Statics<Dim>& statics) {
+    std::vector<unsigned char> carries(packing.radius.size(), 0);
+    const std::vector<Contact>& contacts = statics.structure().contacts();
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (!statics.is_structural_zero(ContactId(l))) {
+            carries[static_cast<std::size_t>(contacts[l].i)] = 1;
+            if (contacts[l].kind == ContactKind::disk_disk) {
+                carries[static_cast<std::size_t>(contacts[l].j)] = 1;
+            }
+        }
+    }
+    return static_cast<int>(std::count(carries.begin(), carries.end(), static_cast<unsigned char>(0)));
+}
+
+} // namespace
+
+template <int Dim>
+Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts, Load<Dim> load, long& iterations) {
+    std::sort(contacts.begin(), contacts.end());
+    if (auto failure = newton(packing, contacts, iterations)) {
+        return *failure;
+    }
+    snap_to_grid(packing);
+    const auto proved = IsostaticStructure<Dim>::prove(packing, contacts);
+    if (!proved.ok()) {
+        return proved.failure();
+    }
+    const IsostaticStructure<Dim>& structure = proved.value();
+    const Factorisation factorisation(structure);
+    InverseBoundCache cache;
+    const InverseBound inverse = bound_inverse(structure, factorisation, cache);
+    if (inverse.verdict != Verdict::proved) {
+        return Failure{FailureKind::undecided,
+                       "no bound of the inverse of the contact matrix was proved in double precision"};
+    }
+    const VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
+    if (vertex.verdict != Verdict::proved) {
+        return Failure{
+            FailureKind::undecided,
+            fmt::format("no true vertex was proved near the stored one: largest |gap| {:.3g}, smallest singular "
+                        "value at least {:.3g}",
+                        vertex.max_gap, inverse.sigma_min)};
+    }
+    const Result<double> others = check_other_gaps(packing, structure, factorisation, inverse, vertex);
+    if (!others.ok()) {
+        return others.failure();
+    }
+    for (int a = 0; a < Dim; ++a) {
+        load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
+    }
+    Statics<Dim> statics(packing, load, structure, factorisation, inverse);
+    const double sigma = load.stress[static_cast<std::size_t>(load.loaded_axis)];
+    const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+    if (!decision.ok()) {
+        return decision.failure();
+    }
+    if (decision.value().opening) {
+        const Opening& opening = *decision.value().opening;
+        return Failure{FailureKind::not_converged,
+                       fmt::format("{}force {:.3g} in contact {} is not compressive",
+                                   opening.infinitesimal ? "infinitesimal " : "", opening.force.value,
+                                   to_string<Dim>(contacts[opening.contact.index()]))};
+    }
+    Polished<Dim> result;
+    result.max_gap = vertex.max_gap;
+    result.min_gap = others.value();
+    result.sigma_min_bound = inverse.sigma_min;
+    result.min_force = std::numeric_limits<double>::infinity();
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (!statics.is_structural_zero(ContactId(l))) {
+            result.min_force = std::min(result.min_force, statics.force(ContactId(l), sigma).value);
+        }
+    }
+    result.rattlers = count_rattlers(packing, statics);
+    result.state.packing = std::move(packing);
+    result.state.load = std::move(load);
+    result.state.contacts = std::move(contacts);
+    return result;
+}
+
+template Result<Polished<2>> polish<2>(Packing<2>, std::vector<Contact>, Load<2>, long&);
+
+} // namespace isostat::preparation

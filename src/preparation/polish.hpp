@@ -1,0 +1,35 @@
+#pragma once
+/// \file
+/// From the contacts of a linear programme to a proved vertex, or the reason why they are not one.
+
+#include <isostat/contact/state.hpp>
+#include <isostat/core/result.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat::preparation {
+
+/// The vertex and the figures of its proof.
+template <int Dim> struct Polished {
+    State<Dim> state;
+    double max_gap = 0;   ///< largest |gap| of a contact, as computed
+    double min_gap = 0;   ///< smallest gap of the other candidates at the true vertex
+    double min_force = 0; ///< smallest backbone force
+    double sigma_min_bound = 0;
+    int rattlers = 0;
+};
+
+/// Newton on the gaps of `contacts` from `packing`, each step through a structure that was proved regular, until the
+/// gaps stop decreasing; then coordinates to the grid and the checks promised by `find_vertex`. `state.load` must hold
+/// kind, stress and infinitesimal loads; its reference lengths are set to the lengths found. `iterations` counts Newton
+/// steps.
+/// Failures: `not_isostatic`; `not_converged` (Newton stopped short, or a force is not compressive: named); `overlap`
+/// (another pair does); `tie` (another gap is 0 as far as the arithmetic can tell); `undecided` (a bound that would
+/// prove the rest was not found).
+template <int Dim>
+Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts, Load<Dim> load, long& iterations);
+
+extern template Result<Polished<2>> polish<2>(Packing<2>, std::vector<Contact>, Load<2>, long&);
+
+} // namespace isostat::preparation

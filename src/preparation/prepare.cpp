@@ -1,0 +1,153 @@
+#include "preparation/random.hpp"
+#include "preparation/scale.hpp"
+#include "preparation/soft.hpp"
+#include "preparation/stage.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace isostat {
+
+namespace preparation {
+
+namespace {
+
+/// Pressure / stiffness of the compression and of the first relaxation; then it falls by ten.
+constexpr double first_pressure = 1e-3;
+constexpr double pressure_divisor = 10;
+/// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
+/// diameter.
+constexpr double compression_rate = 1e-4;
+/// Overlap left by the random start, in diameters.
+constexpr double start_overlap = 1e-2;
+
+[[noreturn]] void bad(const std::string& what) {
+    throw Error(ErrorKind::bad_input, "preparation: " + what);
+}
+
+void require_positive(const char* field, double value) {
+    if (!(value > 0) || !std::isfinite(value)) {
+        bad(fmt::format("{} is {}: expected a positive finite number", field, value));
+    }
+}
+
+/// Random positions in a box of the wanted solid fraction and aspect, never narrower than the largest disk.
+template <int Dim>
+Packing<Dim> scatter(std::vector<double> radius, double fraction, double aspect, std::uint64_t seed) {
+    static_assert(Dim == 2);
+    Packing<Dim> packing;
+    packing.radius = std::move(radius);
+    double area = 0;
+    for (const double r : packing.radius) {
+        area += std::numbers::pi * r * r;
+    }
+    const double narrowest = 2.2 * packing.max_radius();
+    const double lx = std::max(narrowest, std::sqrt(area / (fraction * aspect)));
+    const std::array<double, Dim> length{lx, std::max(narrowest, lx * aspect)};
+    Uniform uniform(seed);
+    for (const double r : packing.radius) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+            packing.q.push_back(r + uniform() * (length[a] - 2 * r));
+        }
+    }
+    packing.q.insert(packing.q.end(), length.begin(), length.end());
+    return packing;
+}
+
+} // namespace
+
+} // namespace preparation
+
+std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t seed) {
+    using namespace preparation;
+    require_positive("smallest diameter", law.smallest);
+    if (!(law.largest >= law.smallest) || !std::isfinite(law.largest)) {
+        bad(fmt::format("largest diameter is {}: expected a finite number that is not below the smallest, {}",
+                        law.largest, law.smallest));
+    }
+    if (count < 1) {
+        bad(fmt::format("number of disks is {}: expected at least 1", count));
+    }
+    Uniform uniform(derived_seed(seed, Stream::radii));
+    std::vector<double> radius(static_cast<std::size_t>(count));
+    for (double& r : radius) {
+        r = (law.smallest + (law.largest - law.smallest) * uniform()) / 2;
+    }
+    return radius;
+}
+
+template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report) {
+    using namespace preparation;
+    require_positive("stress", options.stress);
+    require_positive("aspect", options.aspect);
+    require_positive("loose fraction", options.loose_fraction);
+    require_positive("softness", options.softness);
+    require_positive("relaxation", options.relaxation);
+    require_positive("weight of the infinitesimal loads", options.infinitesimal_weight);
+    if (options.loose_fraction > 0.8 || options.softness > first_pressure) {
+        bad(fmt::format("loose fraction {} and softness {}: expected at most 0.8 and {}", options.loose_fraction,
+                        options.softness, first_pressure));
+    }
+    for (std::size_t i = 0; i < options.radii.size(); ++i) {
+        require_positive(fmt::format("radius of disk {}", i).c_str(), options.radii[i]);
+    }
+    const std::vector<double> radius =
+        options.radii.empty() ? draw_radii(options.diameters, options.disks, options.seed) : options.radii;
+
+    const Scale scale(radius);
+    std::vector<double> internal = radius;
+    scale.to_internal(internal);
+    Packing<Dim> packing = scatter<Dim>(std::move(internal), options.loose_fraction, options.aspect,
+                                        derived_seed(options.seed, Stream::positions));
+    const auto run = [&](const std::string& name, const auto& work) {
+        Stage stage(name, options);
+        SoftDynamics<Dim> dynamics(packing, options.stop, [&](double fraction) {
+            stage.progress(fraction, fmt::format("solid fraction {:.4f}", packing.solid_fraction()));
+        });
+        const SoftMeasures measures = work(dynamics);
+        PreparationStage entry = stage.finish();
+        entry.completed = measures.converged;
+        entry.iterations = measures.steps;
+        entry.solid_fraction = packing.solid_fraction();
+        entry.contacts = measures.contacts;
+        entry.residual = measures.residual;
+        entry.pressure_error = measures.pressure_error;
+        entry.overlap = measures.overlap;
+        report.stages.push_back(entry);
+        return !measures.interrupted;
+    };
+    const auto interrupted = [&] {
+        report.last = scale.to_user(packing, radius);
+        report.solid_fraction = packing.solid_fraction();
+        const PreparationStage& stage = report.stages.back();
+        return Failure{FailureKind::interrupted,
+                       fmt::format("stopped during {} after {} steps", stage.name, stage.iterations)};
+    };
+
+    if (!run("separation", [&](auto& d) { return d.separate(start_overlap, options.max_steps); })) {
+        return interrupted();
+    }
+    if (!run("compression", [&](auto& d) { return d.compress(first_pressure, compression_rate, options.max_steps); })) {
+        return interrupted();
+    }
+    for (double pressure = first_pressure;; pressure = std::max(pressure / pressure_divisor, options.softness)) {
+        if (!run(fmt::format("relaxation at {:.0e}", pressure),
+                 [&](auto& d) { return d.relax(pressure, options.relaxation, options.max_steps); })) {
+            return interrupted();
+        }
+        if (pressure <= options.softness) {
+            break;
+        }
+    }
+    return find_vertex(scale.to_user(packing, radius), options, report);
+}
+
+template Result<State<2>> prepare<2>(const PreparationOptions&, PreparationReport<2>&);
+
+} // namespace isostat

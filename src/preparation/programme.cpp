@@ -1,0 +1,230 @@
+#include "preparation/programme.hpp"
+
+#include "preparation/neighbours.hpp"
+
+#include <ClpEventHandler.hpp>
+#include <ClpSimplex.hpp>
+#include <CoinPackedMatrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::preparation {
+
+namespace {
+
+constexpr double objective_scale = 256;
+constexpr double tolerance = 1e-9;
+/// Walls collect the displacements of all the disks in front of them.
+constexpr double wall_trust = 10;
+/// Share of a complete contact list above which overlapping pairs are worth being the first basis.
+constexpr double dense_enough = 0.9;
+
+/// Ends the simplex at the next iteration when the user asks for it.
+class StopHandler : public ClpEventHandler {
+  public:
+    explicit StopHandler(const std::atomic<bool>* stop) : stop_(stop) {}
+    int event(Event what) override {
+        const bool asked = what == endOfIteration && stop_ != nullptr && stop_->load(std::memory_order_relaxed);
+        return asked ? 0 : -1;
+    }
+    [[nodiscard]] ClpEventHandler* clone() const override { return new StopHandler(*this); } // owned by Clp
+
+  private:
+    const std::atomic<bool>* stop_;
+};
+
+} // namespace
+
+template <int Dim> struct ContactProgramme<Dim>::Rows {
+    std::vector<Contact> contact;
+    std::vector<double> gap;
+    std::vector<int> row, column;
+    std::vector<double> value;
+
+    void add(const Packing<Dim>& packing, const Contact& c) {
+        const GapGradient<Dim> g = gap_gradient(packing, c);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            row.push_back(static_cast<int>(contact.size()));
+            column.push_back(g.coordinate[k]);
+            value.push_back(g.value[k]);
+        }
+        contact.push_back(c);
+        gap.push_back(isostat::gap(packing, c));
+    }
+};
+
+template <int Dim>
+ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust,
+                                        const std::atomic<bool>* stop)
+    : infinitesimal_(&infinitesimal), trust_(trust), stop_(stop) {}
+
+template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
+    // Two disks approach by at most 2 sqrt(Dim) trust: a pair farther apart cannot overlap after the step.
+    const double reach = 2 * std::sqrt(static_cast<double>(Dim)) * trust_ * (1 + 1e-9);
+    PairList pairs;
+    find_pairs<Dim>(packing.q, packing.radius, reach, pairs);
+    const int n = packing.disk_count();
+    for (int i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
+            rows.add(packing, {ContactKind::disk_disk, i, pairs.partner[static_cast<std::size_t>(p)]});
+        }
+    }
+    // A wall moves farther than a disk: look as far as both together can go.
+    const double wall_reach = (wall_trust + 1) * trust_ * (1 + 1e-9);
+    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+        for (int i = 0; i < n; ++i) {
+            for (int a = 0; a < Dim; ++a) {
+                const Contact wall{kind, i, a};
+                if (isostat::gap(packing, wall) < (kind == ContactKind::upper_wall ? wall_reach : reach)) {
+                    rows.add(packing, wall);
+                }
+            }
+        }
+    }
+}
+
+template <int Dim> std::vector<Contact> ContactProgramme<Dim>::candidates(const Packing<Dim>& packing) const {
+    Rows rows;
+    collect(packing, rows);
+    return std::move(rows.contact);
+}
+
+template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>& packing, double eps) {
+    Rows rows;
+    collect(packing, rows);
+    const int columns = static_cast<int>(packing.q.size());
+    const auto disks = static_cast<int>(infinitesimal_->size());
+    const auto count = static_cast<int>(rows.contact.size());
+
+    std::vector<double> lower(packing.q.size(), -trust_);
+    std::vector<double> upper(packing.q.size(), trust_);
+    std::vector<double> cost(packing.q.size(), 0.0);
+    for (int k = 0; k < disks; ++k) {
+        cost[static_cast<std::size_t>(k)] = -objective_scale * eps * (*infinitesimal_)[static_cast<std::size_t>(k)];
+    }
+    for (int a = 0; a < Dim; ++a) {
+        const auto k = static_cast<std::size_t>(disks + a);
+        lower[k] *= wall_trust;
+        upper[k] *= wall_trust;
+        cost[k] = objective_scale;
+        for (int b = 0; b < Dim; ++b) {
+            cost[k] *= b == a ? 1.0 : packing.length(b);
+        }
+    }
+    std::vector<double> row_lower(rows.gap.size());
+    for (std::size_t k = 0; k < row_lower.size(); ++k) {
+        row_lower[k] = first_ ? std::min(0.0, -rows.gap[k]) : -rows.gap[k];
+    }
+    CoinPackedMatrix matrix(true, rows.row.data(), rows.column.data(), rows.value.data(),
+                            static_cast<CoinBigIndex>(rows.value.size()));
+    matrix.setDimensions(count, columns);
+
+    ClpSimplex simplex;
+    simplex.setLogLevel(0);
+    simplex.loadProblem(matrix, lower.data(), upper.data(), cost.data(), row_lower.data(), nullptr);
+    simplex.setPrimalTolerance(tolerance);
+    simplex.setDualTolerance(tolerance);
+    simplex.setPerturbation(100); // none: the multipliers are the result
+    StopHandler handler(stop_);
+    simplex.passInEventHandler(&handler);
+
+    bool primal = false;
+    if (first_) {
+        std::vector<int> degree(static_cast<std::size_t>(packing.disk_count()), 0);
+        int nonbasic = 0;
+        for (std::size_t k = 0; k < rows.gap.size(); ++k) {
+            if (rows.gap[k] <= 0) {
+                ++nonbasic;
+                ++degree[static_cast<std::size_t>(rows.contact[k].i)];
+                if (rows.contact[k].kind == ContactKind::disk_disk) {
+                    ++degree[static_cast<std::size_t>(rows.contact[k].j)];
+                }
+            }
+        }
+        const auto hanging =
+            static_cast<int>(std::count_if(degree.begin(), degree.end(), [](int d) { return d < Dim; }));
+        primal = nonbasic + Dim * hanging >= dense_enough * columns;
+        if (primal) {
+            for (int k = 0; k < count; ++k) {
+                simplex.setRowStatus(k, rows.gap[static_cast<std::size_t>(k)] <= 0 ? ClpSimplex::atLowerBound
+                                                                                   : ClpSimplex::basic);
+            }
+            for (int k = 0; k < columns; ++k) {
+                const bool loose = k < disks && degree[static_cast<std::size_t>(k / Dim)] < Dim;
+                simplex.setColumnStatus(k, loose ? ClpSimplex::superBasic : ClpSimplex::basic);
+            }
+            std::fill_n(simplex.primalColumnSolution(), columns, 0.0);
+            std::fill_n(simplex.primalRowSolution(), count, 0.0);
+        }
+    } else {
+        std::size_t old = 0;
+        for (int k = 0; k < count; ++k) {
+            const Contact& contact = rows.contact[static_cast<std::size_t>(k)];
+            while (old < row_contact_.size() && row_contact_[old] < contact) {
+                ++old;
+            }
+            const bool known = old < row_contact_.size() && row_contact_[old] == contact;
+            simplex.setRowStatus(k, known ? static_cast<ClpSimplex::Status>(row_status_[old]) : ClpSimplex::basic);
+        }
+        for (int k = 0; k < columns; ++k) {
+            simplex.setColumnStatus(k, static_cast<ClpSimplex::Status>(column_status_[static_cast<std::size_t>(k)]));
+        }
+    }
+    if (primal) {
+        simplex.primal(1); // 1: start from the values given, not only from the basis
+    } else {
+        simplex.dual();
+    }
+    const auto asked = [this] { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); };
+    long pivots = simplex.numberIterations();
+    if (simplex.status() != 0 && !asked()) {
+        // A bad basis can pass for an infeasible programme: believe only what the slack basis says.
+        simplex.allSlackBasis(true);
+        simplex.dual();
+        pivots += simplex.numberIterations();
+    }
+
+    ProgrammeStep step;
+    step.status = simplex.status();
+    step.pivots = pivots;
+    if (asked()) {
+        step.outcome = ProgrammeStep::Outcome::interrupted;
+        return step;
+    }
+    if (simplex.status() == 1) {
+        step.outcome = ProgrammeStep::Outcome::infeasible;
+        return step;
+    }
+    if (simplex.status() != 0) {
+        return step;
+    }
+    step.outcome = ProgrammeStep::Outcome::optimal;
+    const double* const solution = simplex.primalColumnSolution();
+    step.displacement.assign(solution, solution + columns);
+    for (int k = 0; k < disks; ++k) {
+        step.largest = std::max(step.largest, std::abs(solution[k]));
+    }
+    row_contact_ = std::move(rows.contact);
+    row_status_.resize(row_contact_.size());
+    column_status_.resize(packing.q.size());
+    for (int k = 0; k < count; ++k) {
+        const ClpSimplex::Status status = simplex.getRowStatus(k);
+        row_status_[static_cast<std::size_t>(k)] = status;
+        if (status != ClpSimplex::basic) {
+            step.contacts.push_back(row_contact_[static_cast<std::size_t>(k)]);
+        }
+    }
+    for (int k = 0; k < columns; ++k) {
+        const ClpSimplex::Status status = simplex.getColumnStatus(k);
+        column_status_[static_cast<std::size_t>(k)] = status;
+        step.bounds += status != ClpSimplex::basic ? 1 : 0;
+    }
+    first_ = false;
+    return step;
+}
+
+template class ContactProgramme<2>;
+
+} // namespace isostat::preparation

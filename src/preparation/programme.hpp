@@ -1,0 +1,64 @@
+#pragma once
+/// \file
+/// One linear programme of the sequence: linearised gaps around a configuration, solved by Clp from the basis of the
+/// one before.
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/packing/packing.hpp>
+
+#include <atomic>
+#include <vector>
+
+namespace isostat::preparation {
+
+/// What one linear programme gave.
+struct ProgrammeStep {
+    enum class Outcome { optimal, infeasible, interrupted, failed } outcome = Outcome::failed;
+    int status = 0; ///< Clp's own, for messages
+    long pivots = 0;
+    std::vector<double> displacement; ///< one per coordinate of q
+    std::vector<Contact> contacts;    ///< rows that are nonbasic: reduced gap 0, sorted
+    int bounds = 0;     ///< coordinates that are nonbasic: held by a trust bound; 0: a vertex of the gaps alone
+    double largest = 0; ///< largest |displacement| of a disk's coordinate
+};
+
+/// The sequence of programmes; keeps the basis, row by contact, from one to the next.
+///
+/// Scales: lengths of order the radii (mean radius in [0.5, 1)), stress 1, so that contact forces are of order 1. The
+/// objective is multiplied by 64, which puts Clp's dual tolerance 1e-9 at 2e-11 of a force and well below the
+/// multipliers eps g of rattlers.
+template <int Dim> class ContactProgramme {
+  public:
+    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step.
+    ContactProgramme(const std::vector<double>& infinitesimal, double trust, const std::atomic<bool>* stop);
+
+    /// Minimises sum_a F_a dL_a - eps g.dx, F_a = product of the other lengths, over displacements within the trust
+    /// bounds.
+    ///
+    /// First call: pairs that overlap are taken as contacts with gap 0 (their overlap stays, the next call removes it)
+    /// and as the starting basis: from a relaxed soft packing this basis is wrong in a few places only, and the primal
+    /// simplex mends it while it keeps the point 0, which is feasible. (Dual simplex from the same basis needs 40 times
+    /// more pivots: a few wrong rows put the basic solution far away.) When too few pairs overlap: dual simplex from
+    /// the slack basis. Later calls: dual simplex from the basis of the call before; candidates new to the list start
+    /// as slacks.
+    ProgrammeStep solve(const Packing<Dim>& packing, double eps);
+
+    /// The pairs that a programme at `packing` holds apart, sorted.
+    [[nodiscard]] std::vector<Contact> candidates(const Packing<Dim>& packing) const;
+
+  private:
+    struct Rows;
+    void collect(const Packing<Dim>& packing, Rows& rows) const;
+
+    const std::vector<double>* infinitesimal_;
+    double trust_;
+    const std::atomic<bool>* stop_;
+    bool first_ = true;
+    std::vector<Contact> row_contact_; ///< sorted
+    std::vector<int> row_status_;      ///< Clp's, one per row of the last programme
+    std::vector<int> column_status_;
+};
+
+extern template class ContactProgramme<2>;
+
+} // namespace isostat::preparation

@@ -1,0 +1,51 @@
+#pragma once
+/// \file
+/// Internal unit of length: a power of two, so that going there and back is exact.
+
+#include <isostat/packing/packing.hpp>
+
+#include <cmath>
+#include <vector>
+
+namespace isostat::preparation {
+
+/// Chosen so that the mean radius is in [0.5, 1).
+class Scale {
+  public:
+    explicit Scale(const std::vector<double>& radius) {
+        double sum = 0;
+        for (const double r : radius) {
+            sum += r;
+        }
+        mean_ = std::frexp(sum / static_cast<double>(radius.size()), &exponent_);
+    }
+
+    [[nodiscard]] double mean_radius() const { return mean_; } ///< internal unit
+
+    template <int Dim> [[nodiscard]] Packing<Dim> to_internal(Packing<Dim> packing) const {
+        multiply(packing.radius, -exponent_);
+        multiply(packing.q, -exponent_);
+        return packing;
+    }
+
+    /// `radius`: the user's, so that they come back as they were.
+    template <int Dim>
+    [[nodiscard]] Packing<Dim> to_user(Packing<Dim> packing, const std::vector<double>& radius) const {
+        packing.radius = radius;
+        multiply(packing.q, exponent_);
+        return packing;
+    }
+
+    void to_internal(std::vector<double>& lengths) const { multiply(lengths, -exponent_); }
+
+  private:
+    static void multiply(std::vector<double>& x, int exponent) {
+        for (double& c : x) {
+            c = std::ldexp(c, exponent);
+        }
+    }
+    int exponent_ = 0;
+    double mean_ = 0;
+};
+
+} // namespace isostat::preparation

@@ -13,6 +13,9 @@ namespace isostat {
 
 namespace {
 
+/// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no sign rests on them.
+constexpr double tangent_accuracy = 1e-7;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Smallest positive root of h + h1 s + h2 s^2 / 2, h >= 0; infinity when there is none.
@@ -184,12 +187,12 @@ template <int Dim> class Follower {
             if (!(size < previous)) {
                 break;
             }
-            if (size < 1e-10 * largest(t)) {
+            if (size < tangent_accuracy * largest(t)) {
                 return t;
             }
             previous = size;
         }
-        return previous < 1e-6 * largest(t) ? std::optional<Vector>(t) : std::nullopt;
+        return previous < 1e-4 * largest(t) ? std::optional<Vector>(t) : std::nullopt;
     }
 
     double power_of(const Packing<Dim>& at, const Vector& t) const {

@@ -39,25 +39,35 @@ bool is_zero(const std::vector<double>& x) {
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
                       const Factorisation& factorisation, const InverseBound& inverse)
-    : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse) {
+    : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
+      sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]) {
     const DofMap<Dim>& dofs = structure.dofs();
-    right_hand_side_ = {on_dofs(load.fixed_force(packing), dofs), on_dofs(load.unit_force(packing), dofs),
+    right_hand_side_ = {on_dofs(load.external_force(packing), dofs), on_dofs(load.unit_force(packing), dofs),
                         on_dofs(load.infinitesimal, dofs)};
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (is_zero(right_hand_side_[k])) {
-            solution_[k].value.assign(right_hand_side_[k].size(), 0.0); // exact, nothing to solve
-        } else {
-            solution_[k] = solve_forces(structure, factorisation, inverse, right_hand_side_[k]);
-        }
-    }
-    loaded_rows_ = nonzero_rows(right_hand_side_[0]);
-    const std::vector<int> wall = nonzero_rows(right_hand_side_[1]);
+    loaded_rows_ = nonzero_rows(on_dofs(load.fixed_force(packing), dofs));
+    const std::vector<int> wall = nonzero_rows(right_hand_side_[unit]);
     std::vector<int> all = loaded_rows_;
     all.insert(all.end(), wall.begin(), wall.end());
     loaded_wall_row_ = wall.empty() ? -1 : wall.front();
     const sparse::Matrix<double>& h = structure.matrix();
     backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.ordering(), all);
-    sloped_ = sparse::structural_nonzeros(h.start, h.row, structure.ordering(), wall);
+}
+
+template <int Dim> const ForceSolution& Statics<Dim>::solution(Part part) const {
+    std::optional<ForceSolution>& slot = solution_[part];
+    if (!slot) {
+        const std::vector<double>& force = right_hand_side_[part];
+        if (is_zero(force)) {
+            slot.emplace(); // exact, nothing to solve
+            slot->value.assign(force.size(), 0.0);
+        } else {
+            slot = solve_forces(*structure_, *factorisation_, *inverse_, force);
+            if (rung_ == Rung::double_double) {
+                refine_double_double(*slot, *extended_, *structure_, *factorisation_, *inverse_, force);
+            }
+        }
+    }
+    return *slot;
 }
 
 template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
@@ -65,34 +75,40 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
     if (backbone_[l] == 0) {
         return {0, 0};
     }
-    const ForceSolution& a = solution_[0];
-    const ForceSolution& b = solution_[1];
-    const double propagated = (a.bound + std::abs(sigma) * b.bound) * (1 + 4 * u);
-    if (a.low.empty() && b.low.empty()) {
-        const double product = sigma * b.value[l];
-        const double value = a.value[l] + product;
-        return {value, propagated + 2 * u * (std::abs(product) + std::abs(value))};
+    const ForceSolution& a = solution(present);
+    if (sigma == sigma_) {
+        const double low = a.low.empty() ? 0.0 : a.low[l];
+        return {a.value[l], a.bound + std::abs(low) * (1 + 2 * u)};
     }
+    const ForceSolution& b = solution(unit);
+    const dd_real distance = dd_real(sigma) - sigma_;
     const auto get = [l](const ForceSolution& s) { return dd_real(s.value[l], s.low.empty() ? 0.0 : s.low[l]); };
-    const dd_real sum = get(a) + get(b) * sigma;
+    const dd_real sum = get(a) + get(b) * distance;
     const double value = sum.x[0];
-    const double size = std::abs(a.value[l]) + std::abs(sigma * b.value[l]);
-    return {value, propagated + 0x1p-97 * size + 2 * u * std::abs(value)};
+    const double size = std::abs(a.value[l]) + std::abs(distance.x[0] * b.value[l]);
+    return {value, (a.bound + std::abs(distance.x[0]) * b.bound) * (1 + 4 * u) + 0x1p-96 * size + 2 * u * std::abs(value)};
+}
+
+template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
+    if (sloped_.empty()) {
+        const sparse::Matrix<double>& h = structure_->matrix();
+        sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(h.cols), 0)
+                                       : sparse::structural_nonzeros(h.start, h.row, structure_->ordering(), {&loaded_wall_row_, 1});
+    }
+    return sloped_[contact.index()] == 0;
 }
 
 template <int Dim> Enclosure Statics<Dim>::slope(ContactId contact) const {
     const std::size_t l = contact.index();
-    if (sloped_[l] == 0) {
+    if (slope_is_zero(contact)) {
         return {0, 0};
     }
-    const ForceSolution& b = solution_[1];
+    const ForceSolution& b = solution(unit);
     return {b.value[l], b.bound + (b.low.empty() ? 0.0 : std::abs(b.low[l]) * (1 + 2 * u))};
 }
 
-template <int Dim> Enclosure Statics<Dim>::fixed(ContactId contact) const { return force(contact, 0); }
-
 template <int Dim> Enclosure Statics<Dim>::infinitesimal(ContactId contact) const {
-    const ForceSolution& g = solution_[2];
+    const ForceSolution& g = solution(infinitesimal_part);
     const std::size_t l = contact.index();
     return {g.value[l], g.bound + (g.low.empty() ? 0.0 : std::abs(g.low[l]) * (1 + 2 * u))};
 }
@@ -105,10 +121,10 @@ template <int Dim> bool Statics<Dim>::climb() {
     if (rung_ != Rung::double_bound) {
         return false;
     }
-    const ExtendedMatrix matrix = extended_contact_matrix(*packing_, *structure_);
+    extended_ = extended_contact_matrix(*packing_, *structure_);
     for (std::size_t k = 0; k < 3; ++k) {
-        if (!is_zero(right_hand_side_[k])) {
-            refine_double_double(solution_[k], matrix, *structure_, *factorisation_, *inverse_, right_hand_side_[k]);
+        if (solution_[k] && !is_zero(right_hand_side_[k])) {
+            refine_double_double(*solution_[k], *extended_, *structure_, *factorisation_, *inverse_, right_hand_side_[k]);
         }
     }
     rung_ = Rung::double_double;
@@ -116,17 +132,17 @@ template <int Dim> bool Statics<Dim>::climb() {
 }
 
 template <int Dim> double Statics<Dim>::bound(double sigma) const {
-    return solution_[0].bound + std::abs(sigma) * solution_[1].bound;
+    return solution(present).bound + (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * solution(unit).bound);
 }
 
 template <int Dim> double Statics<Dim>::residual(double sigma) const {
-    return solution_[0].residual + std::abs(sigma) * solution_[1].residual;
+    return solution(present).residual + (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * solution(unit).residual);
 }
 
 template <int Dim> std::vector<double> Statics<Dim>::external_force(double sigma) const {
-    std::vector<double> force = right_hand_side_[0];
+    std::vector<double> force = right_hand_side_[present];
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
-        force[mu] += sigma * right_hand_side_[1][mu];
+        force[mu] += (sigma - sigma_) * right_hand_side_[unit][mu];
     }
     return force;
 }

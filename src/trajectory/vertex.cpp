@@ -29,6 +29,9 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
                                                "of a force can be decided"};
     }
     if (vertex->enclosure.verdict != Verdict::proved) {
+        vertex->enclosure = enclose_vertex_double_double(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
+    }
+    if (vertex->enclosure.verdict != Verdict::proved) {
         return Failure{FailureKind::undecided,
                        fmt::format("no true configuration with exactly these contacts was proved to exist near the stored one: largest "
                                    "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",

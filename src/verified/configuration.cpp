@@ -116,7 +116,7 @@ template <int Dim>
 VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                              const Factorisation& factorisation, const InverseBound& inverse) {
     VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
-    if (vertex.verdict != Verdict::proved) {
+    if (inverse.verdict != Verdict::proved) {
         return vertex;
     }
     const DofMap<Dim>& dofs = structure.dofs();
@@ -145,10 +145,11 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
         const double radius = lost < 0.5 ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
                                          : std::numeric_limits<double>::quiet_NaN();
         if (radius >= 0 && radius < vertex.radius) {
+            vertex.verdict = Verdict::proved;
             vertex.radius = radius;
             vertex.correction = correction;
             vertex.rung = Rung::double_double;
-        } else if (iteration > 1) {
+        } else if (iteration > 2) {
             break;
         }
         factorisation.solve_velocities(f); // approach velocities equal to the gaps close them

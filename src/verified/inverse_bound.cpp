@@ -199,7 +199,7 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
                            InverseBoundCache& cache, int row_limit) {
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(h.rows);
-    int iterations = 2;
+    int iterations = 1; // of a good guess: a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(norm(cache.vector)) || norm(cache.vector) == 0) {
         cache.vector.resize(n);
         std::mt19937_64 random(12345);

@@ -14,12 +14,13 @@
 
 namespace isostat {
 
-/// f_l(sigma) = fixed_l + sigma * unit_l, plus eps * infinitesimal_l (paper: alpha_l sigma_1 + beta_l (sigma_2 - sigma_1); here
-/// unit_l = beta_l and fixed_l = (alpha_l - beta_l) sigma_1), for the exact matrix of the stored configuration and eps > 0 infinitesimal.
+/// f_l(sigma) = f_l(sigma_0) + (sigma - sigma_0) * unit_l, plus eps * infinitesimal_l, sigma_0 the present loaded stress (paper: alpha_l sigma_1 +
+/// beta_l (sigma_2 - sigma_1), unit_l = beta_l), for the exact matrix of the stored configuration and eps > 0 infinitesimal.
 /// sigma is the loaded stress (sigma_2). Forces: stress x length; positive in compression.
 template <int Dim> class Statics {
   public:
-    /// Three right-hand sides, one factorisation. The arguments must outlive the object. Cost: 6 solves.
+    /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for (most vertices of a
+    /// rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2 for each part asked for.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
             const Factorisation& factorisation, const InverseBound& inverse);
 
@@ -27,14 +28,12 @@ template <int Dim> class Statics {
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;
     /// df/dsigma.
     [[nodiscard]] Enclosure slope(ContactId contact) const;
-    /// fixed part (sigma = 0).
-    [[nodiscard]] Enclosure fixed(ContactId contact) const;
     /// Infinitesimal part: decides the sign where the finite part is a structural zero.
     [[nodiscard]] Enclosure infinitesimal(ContactId contact) const;
     /// The finite part vanishes exactly for every load on the same degrees of freedom (statement T11): rattlers' contacts.
     [[nodiscard]] bool is_structural_zero(ContactId contact) const { return backbone_[contact.index()] == 0; }
     /// The slope vanishes exactly: this force does not depend on sigma.
-    [[nodiscard]] bool slope_is_zero(ContactId contact) const { return sloped_[contact.index()] == 0; }
+    [[nodiscard]] bool slope_is_zero(ContactId contact) const;
     /// Contacts whose finite force is not a structural zero.
     [[nodiscard]] int backbone_count() const;
 
@@ -49,7 +48,7 @@ template <int Dim> class Statics {
     [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return *factorisation_; }
     [[nodiscard]] const InverseBound& inverse() const { return *inverse_; }
-    /// Rows that carry a finite load (other than the loaded wall's), and the loaded wall's row (-1: it cannot move).
+    /// Rows that carry a finite load other than the loaded wall's, and the loaded wall's row (-1: it cannot move).
     [[nodiscard]] const std::vector<int>& loaded_rows() const { return loaded_rows_; }
     [[nodiscard]] int loaded_wall_row() const { return loaded_wall_row_; }
     /// Finite external force on the degrees of freedom at sigma, and the infinitesimal one.
@@ -57,16 +56,21 @@ template <int Dim> class Statics {
     [[nodiscard]] const std::vector<double>& infinitesimal_force() const { return right_hand_side_[2]; }
 
   private:
+    enum Part : std::size_t { present, unit, infinitesimal_part };
+    const ForceSolution& solution(Part part) const;
+
     const Packing<Dim>* packing_;
     const IsostaticStructure<Dim>* structure_;
     const Factorisation* factorisation_;
     const InverseBound* inverse_;
-    std::array<std::vector<double>, 3> right_hand_side_; ///< fixed, unit, infinitesimal
-    std::array<ForceSolution, 3> solution_;
+    double sigma_;                                       ///< sigma_0
+    std::array<std::vector<double>, 3> right_hand_side_; ///< at sigma_0, unit, infinitesimal
+    mutable std::array<std::optional<ForceSolution>, 3> solution_;
+    mutable std::optional<ExtendedMatrix> extended_;     ///< made by the first climb
     std::vector<int> loaded_rows_;
     int loaded_wall_row_ = -1;
     std::vector<unsigned char> backbone_;
-    std::vector<unsigned char> sloped_;
+    mutable std::vector<unsigned char> sloped_;          ///< empty until asked for
     Rung rung_ = Rung::double_bound;
 };
 

@@ -33,10 +33,56 @@ std::uint64_t square_repeatedly(std::uint64_t a, int times) {
     return a;
 }
 
+/// Arithmetic of the elimination mod 2^61 - 1. `Work` holds a number congruent to the value, below 2^61 + 8.
+struct Field61 {
+    using Value = std::uint64_t;
+    using Work = std::uint64_t;
+    static Work add_product(Work x, Value a, Value b) { return fold_once(x + product(a, b)); } // < 2^61 + 8 + 2^62 + 16: no overflow
+    static Value reduce(Work x) { return canonical(x); }
+    static Value negative_inverse(Value a) { return mersenne61 - inverse(a); }
+    static Value scaled(Work x, Value a) { return canonical(product(fold_once(x), a)); }
+};
+
+/// The same mod 2^31 - 1, half the memory and no 128-bit products. `Work` is below 2^63.
+struct Field31 {
+    using Value = std::uint32_t;
+    using Work = std::uint64_t;
+    static constexpr std::uint64_t p = mersenne31;
+    static Work add_product(Work x, Value a, Value b) {
+        return (x & p) + (x >> 31) + static_cast<std::uint64_t>(a) * b; // < 2^31 + 2^32 + 2^62
+    }
+    static Value reduce(Work x) {
+        x = (x & p) + (x >> 31);
+        x = (x & p) + (x >> 31);
+        return static_cast<Value>(x >= p ? x - p : x);
+    }
+    static Value times(Value a, Value b) { return reduce(static_cast<std::uint64_t>(a) * b); }
+    static Value squared(Value a, int times_) {
+        for (int k = 0; k < times_; ++k) {
+            a = times(a, a);
+        }
+        return a;
+    }
+    static Value negative_inverse(Value a) {
+        // Fermat: a^(2^31 - 3), 2^31 - 3 = 4 (2^29 - 1) + 1; x_n = a^(2^n - 1).
+        const Value x2 = times(squared(a, 1), a);
+        const Value x3 = times(squared(x2, 1), a);
+        const Value x6 = times(squared(x3, 3), x3);
+        const Value x7 = times(squared(x6, 1), a);
+        const Value x14 = times(squared(x7, 7), x7);
+        const Value x28 = times(squared(x14, 14), x14);
+        const Value x29 = times(squared(x28, 1), a);
+        return static_cast<Value>(p - times(squared(x29, 2), a));
+    }
+    static Value scaled(Work x, Value a) { return times(reduce(x), a); }
+};
+
 /// Left-looking (Gilbert-Peierls) elimination of one diagonal block: symbolic reach by depth-first search with symmetric pruning. The
 /// matched diagonal is preferred as pivot, for the sake of fill; any other row with a non-zero value serves when it vanishes. Rows carry the label of
 /// their position in the block; pivot j is the j-th pivot found.
-class BlockElimination {
+template <class Field> class BlockElimination {
+    using Value = typename Field::Value;
+
   public:
     explicit BlockElimination(std::size_t largest)
         : value_(largest, 0), mark_(largest), pivot_of_(largest), row_of_(largest), stack_(largest), resume_(largest), order_(largest) {
@@ -67,7 +113,7 @@ class BlockElimination {
     template <class Column> void eliminate(int k, Column column) {
         top_ = static_cast<int>(order_.size());
         below_.clear();
-        column(k, [&](int i, std::uint64_t a) {
+        column(k, [&](int i, Value a) {
             if (mark_[static_cast<std::size_t>(i)] != k) {
                 visit(i, k);
             }
@@ -76,22 +122,21 @@ class BlockElimination {
         for (std::size_t t = static_cast<std::size_t>(top_); t < order_.size(); ++t) {
             const auto j = static_cast<std::size_t>(order_[t]);
             const auto pivot_row = static_cast<std::size_t>(row_of_[j]);
-            const std::uint64_t factor = fold_once(value_[pivot_row]);
+            const Value factor = Field::reduce(value_[pivot_row]);
             value_[pivot_row] = 0;
             for (int e = lower_start_[j]; e < lower_end_[j]; ++e) {
                 const auto s = static_cast<std::size_t>(e);
                 auto& x = value_[static_cast<std::size_t>(lower_row_[s])];
-                // x < 2^61 + 8 and the product < 2^62 + 16: no overflow, and folding brings the sum back below 2^61 + 8.
-                x = fold_once(x + product(lower_value_[s], factor));
+                x = Field::add_product(x, lower_value_[s], factor);
             }
         }
         const auto diagonal = static_cast<std::size_t>(k);
         int chosen = -1;
-        if (mark_[diagonal] == k && pivot_of_[diagonal] < 0 && canonical(value_[diagonal]) != 0) {
+        if (mark_[diagonal] == k && pivot_of_[diagonal] < 0 && Field::reduce(value_[diagonal]) != 0) {
             chosen = k;
         }
         for (std::size_t b = 0; b < below_.size() && chosen < 0; ++b) {
-            if (canonical(value_[static_cast<std::size_t>(below_[b])]) != 0) {
+            if (Field::reduce(value_[static_cast<std::size_t>(below_[b])]) != 0) {
                 chosen = below_[b];
             }
         }
@@ -100,11 +145,11 @@ class BlockElimination {
             const int begin = static_cast<int>(lower_row_.size());
             if (below_.size() > 1) {
                 // The multipliers are stored negated, so that elimination adds.
-                const std::uint64_t scale = mersenne61 - inverse(canonical(value_[pivot_row]));
+                const Value scale = Field::negative_inverse(Field::reduce(value_[pivot_row]));
                 for (const int i : below_) {
                     if (i != chosen) { // zeros stay too: pruning relies on the structural pattern
                         lower_row_.push_back(i);
-                        lower_value_.push_back(fold_once(product(fold_once(value_[static_cast<std::size_t>(i)]), scale)));
+                        lower_value_.push_back(Field::scaled(value_[static_cast<std::size_t>(i)], scale));
                     }
                 }
             }
@@ -192,13 +237,43 @@ class BlockElimination {
         }
     }
 
-    std::vector<std::uint64_t> value_; ///< the column in work, below 2^61 + 8, 0 elsewhere
+    std::vector<typename Field::Work> value_; ///< the column in work, 0 elsewhere
     std::vector<int> mark_, pivot_of_, row_of_, stack_, resume_, order_, below_;
     std::vector<int> lower_start_, lower_end_, pruned_end_, lower_row_;
-    std::vector<std::uint64_t> lower_value_;
+    std::vector<Value> lower_value_;
     int top_ = 0;
     int pivots_ = 0;
 };
+
+template <class Field> int rank_in_blocks(const sparse::Matrix<typename Field::Value>& matrix, const sparse::Ordering& ordering) {
+    assert(ordering.structurally_regular());
+    const std::vector<int>& block_start = ordering.block_start();
+    std::vector<int> position(static_cast<std::size_t>(matrix.rows));
+    for (std::size_t k = 0; k < position.size(); ++k) {
+        position[static_cast<std::size_t>(ordering.row_order()[k])] = static_cast<int>(k);
+    }
+    int largest = 1;
+    for (std::size_t b = 0; b + 1 < block_start.size(); ++b) {
+        largest = std::max(largest, block_start[b + 1] - block_start[b]);
+    }
+    BlockElimination<Field> elimination(static_cast<std::size_t>(largest));
+    int total = 0;
+    for (std::size_t b = 0; b + 1 < block_start.size(); ++b) {
+        const int first = block_start[b];
+        const int last = block_start[b + 1];
+        total += elimination.rank(last - first, [&](int k, auto visit) {
+            const auto column = static_cast<std::size_t>(ordering.column_order()[static_cast<std::size_t>(first + k)]);
+            for (int e = matrix.start[column]; e < matrix.start[column + 1]; ++e) {
+                const auto s = static_cast<std::size_t>(e);
+                const int i = position[static_cast<std::size_t>(matrix.row[s])];
+                if (i >= first && i < last) {
+                    visit(i - first, matrix.value[s]);
+                }
+            }
+        });
+    }
+    return total;
+}
 
 } // namespace
 
@@ -236,34 +311,25 @@ std::uint64_t residue(double value) {
     return value < 0 && r != 0 ? mersenne61 - r : r;
 }
 
+std::uint32_t residue31(double value) {
+    assert(std::isfinite(value));
+    if (value == 0) {
+        return 0;
+    }
+    int exponent = 0;
+    const double mantissa = std::frexp(std::abs(value), &exponent);
+    const auto integer = static_cast<std::uint64_t>(std::ldexp(mantissa, 53));
+    const int shift = ((exponent - 53) % 31 + 31) % 31;
+    const auto r = Field31::reduce(static_cast<std::uint64_t>(Field31::reduce(integer)) << shift);
+    return value < 0 && r != 0 ? mersenne31 - r : r;
+}
+
 int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering) {
-    assert(ordering.structurally_regular());
-    const std::vector<int>& block_start = ordering.block_start();
-    std::vector<int> position(static_cast<std::size_t>(matrix.rows));
-    for (std::size_t k = 0; k < position.size(); ++k) {
-        position[static_cast<std::size_t>(ordering.row_order()[k])] = static_cast<int>(k);
-    }
-    int largest = 1;
-    for (std::size_t b = 0; b + 1 < block_start.size(); ++b) {
-        largest = std::max(largest, block_start[b + 1] - block_start[b]);
-    }
-    BlockElimination elimination(static_cast<std::size_t>(largest));
-    int total = 0;
-    for (std::size_t b = 0; b + 1 < block_start.size(); ++b) {
-        const int first = block_start[b];
-        const int last = block_start[b + 1];
-        total += elimination.rank(last - first, [&](int k, auto visit) {
-            const auto column = static_cast<std::size_t>(ordering.column_order()[static_cast<std::size_t>(first + k)]);
-            for (int e = matrix.start[column]; e < matrix.start[column + 1]; ++e) {
-                const auto s = static_cast<std::size_t>(e);
-                const int i = position[static_cast<std::size_t>(matrix.row[s])];
-                if (i >= first && i < last) {
-                    visit(i - first, matrix.value[s]);
-                }
-            }
-        });
-    }
-    return total;
+    return rank_in_blocks<Field61>(matrix, ordering);
+}
+
+int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& ordering) {
+    return rank_in_blocks<Field31>(matrix, ordering);
 }
 
 int rank(const sparse::Matrix<std::uint64_t>& matrix) { return static_cast<int>(independent_columns(matrix).size()); }

@@ -1,5 +1,6 @@
 #include <isostat/sparse/pattern.hpp>
 
+#include <btf.h>
 #include <klu.h>
 
 namespace isostat::sparse {
@@ -28,6 +29,20 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     }
 }
 
+std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<const int> row) {
+    std::vector<int> matched(static_cast<std::size_t>(n));
+    std::vector<int> work(5 * static_cast<std::size_t>(n));
+    double operations = 0;
+    // BTF's interface is not const-correct; the pattern is only read. No limit on the work.
+    const int rank = btf_maxtrans(n, n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                  const_cast<int*>(row.data()),         // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                  0, &operations, matched.data(), work.data());
+    if (rank < n) {
+        matched.clear();
+    }
+    return matched;
+}
+
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,
                                                std::span<const int> loaded_rows) {
     const std::size_t n = ordering.row_order().size();
@@ -35,7 +50,12 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
     for (std::size_t k = 0; k < n; ++k) {
         matched[static_cast<std::size_t>(ordering.row_order()[k])] = ordering.column_order()[k];
     }
-    std::vector<unsigned char> nonzero(n, 0);
+    return structural_nonzeros(start, row, matched, loaded_rows);
+}
+
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, std::span<const int> matched,
+                                               std::span<const int> loaded_rows) {
+    std::vector<unsigned char> nonzero(matched.size(), 0);
     std::vector<int> queue;
     const auto reach = [&](int r) {
         const int c = matched[static_cast<std::size_t>(r)];

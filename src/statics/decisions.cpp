@@ -204,11 +204,11 @@ template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics,
         start.push_back(static_cast<int>(row.size()));
     }
     std::vector<ContactId> members{opens};
-    const sparse::Ordering ordering(h.rows, start, row);
-    if (!ordering.structurally_regular()) {
+    const std::vector<int> matched = sparse::perfect_matching(h.rows, start, row);
+    if (matched.empty()) {
         return members; // cannot happen when the slope of `opens` is not zero; then no tie is claimed
     }
-    const auto nonzero = sparse::structural_nonzeros(start, row, ordering, statics.loaded_rows());
+    const auto nonzero = sparse::structural_nonzeros(start, row, matched, statics.loaded_rows());
     for (std::size_t j = 0; j < nonzero.size(); ++j) {
         const ContactId l(j);
         if (l != opens && nonzero[j] == 0 && !statics.is_structural_zero(l)) {

@@ -501,6 +501,9 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 if (!(reached >= -noise) || reached > 1.5 * std::max(s_max, s_event) + noise) {
                     break; // another root
                 }
+                if (at_start && closing == opened_ && reached < 0.25 * s_event) {
+                    break; // the start itself: the gap that opens is zero there too
+                }
                 s = std::max(reached, 0.0);
                 if (s > noise) {
                     if (const auto violation = first_violation(at, s, closing, noise)) {

@@ -319,9 +319,11 @@ template <int Dim> class Follower {
             const double h0 = start_gap_[c];
             const double h1 = gap(at, active_[c]);
             const Dip dip = lowest_point(h0, d0, h1, d1, s);
-            // The cubic is good to a small part of the depth of the dip; a tenth of it is kept as distance.
+            // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step); h is taken as 40 depths, far above what
+            // a disk rolling through a step of a tenth of a radius has. It vanishes at the ends, where the gap is known.
             const double depth = std::max(h0, h1) - dip.value;
-            if (dip.value <= 0.1 * depth && (!where || dip.position < *where)) {
+            const double x = dip.position / s;
+            if (dip.value <= 1.6 * depth * x * x * (1 - x) * (1 - x) && (!where || dip.position < *where)) {
                 where = dip.position;
             }
         }

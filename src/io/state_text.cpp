@@ -49,6 +49,23 @@ template <int Dim> std::vector<Json> vectors(const std::vector<double>& values, 
     return rows;
 }
 
+/// The members "length" and "disks".
+template <int Dim> void append_disks(std::string& text, const Packing<Dim>& packing) {
+    const std::size_t first_length = Dim * packing.radius.size();
+    text +=
+        fmt::format("  \"length\": {},\n", numbers(std::span(packing.q).subspan(first_length, Dim), "length").dump());
+
+    std::vector<Json> rows;
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        Json row = Json::array({finite(packing.radius[i], "disks (radius)")});
+        for (std::size_t a = 0; a < Dim; ++a) {
+            row.push_back(finite(packing.q[Dim * i + a], "disks (position)"));
+        }
+        rows.push_back(std::move(row));
+    }
+    json::append_rows(text, "disks", rows);
+}
+
 } // namespace
 
 template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces) {
@@ -72,21 +89,9 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
         walls["upper"].push_back(word(packing.walls.upper[a]));
     }
     text += fmt::format("  \"walls\": {},\n", walls.dump());
-    const std::size_t first_length = Dim * packing.radius.size();
-    text +=
-        fmt::format("  \"length\": {},\n", numbers(std::span(packing.q).subspan(first_length, Dim), "length").dump());
-
+    append_disks(text, packing);
     std::vector<Json> rows;
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        Json row = Json::array({finite(packing.radius[i], "disks (radius)")});
-        for (std::size_t a = 0; a < Dim; ++a) {
-            row.push_back(finite(packing.q[Dim * i + a], "disks (position)"));
-        }
-        rows.push_back(std::move(row));
-    }
-    json::append_rows(text, "disks", rows);
 
-    rows.clear();
     for (std::size_t i = 0; i < packing.fixed.size(); ++i) {
         if (packing.fixed[i] != 0) {
             rows.emplace_back(i);
@@ -127,6 +132,15 @@ void write_state(const std::filesystem::path& path, const State<Dim>& state, std
     write_atomically(path, state_text(state, forces));
 }
 
+template <int Dim>
+void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason) {
+    std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 1,\n";
+    text += fmt::format("  \"incomplete\": {},\n", Json(reason).dump());
+    append_disks(text, packing);
+    write_atomically(path, text + "\n}\n");
+}
+
+template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
 template std::string state_text<2>(const State<2>&, std::span<const double>);
 template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
 

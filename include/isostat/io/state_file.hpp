@@ -27,6 +27,11 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
 template <int Dim>
 void write_state(const std::filesystem::path& path, const State<Dim>& state, std::span<const double> forces = {});
 
+/// Writes what a failed preparation reached, for pictures: format "isostat-packing", disks and box only, with the
+/// reason. No command takes it for a state. Throws `Error(cannot_write)`.
+template <int Dim>
+void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason);
+
 /// Reads a state from text; `source` (a file name) starts every message. Numbers may also be strings with a hexadecimal
 /// float. Throws `Error(bad_input)` with file, field, value and what was expected: text that is not complete JSON,
 /// unknown or missing fields, numbers that are not finite, radii that are not positive, disks larger than the box,
@@ -46,6 +51,7 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
 
 extern template std::string state_text<2>(const State<2>&, std::span<const double>);
 extern template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
+extern template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
 extern template StateFile<2> parse_state<2>(const std::string&, const std::string&);
 extern template StateFile<2> read_state<2>(const std::filesystem::path&);
 extern template void check_start<2>(const State<2>&, const std::string&);

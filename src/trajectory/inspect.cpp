@@ -120,22 +120,28 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
         inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
     }
     EquilibriumRecord<Dim>& record = inspection.record;
+    const bool overlaps = gaps.ok() && gaps.value().negative;
+    if (!isostatic || overlaps) {
+        record.verdict = Verdict::refuted;
+    }
     if (isostatic) {
         auto decision = decide_opening(vertex.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
         const bool balanced = decision.ok() && !decision.value().opening;
         if (balanced) {
             auto described = describe(vertex, state.load);
             if (described.ok()) {
+                const Verdict before = record.verdict;
                 record = described.value();
                 record.decided_by = std::max(record.decided_by, decision.value().rung);
                 record.margin = std::min(record.margin, decision.value().margin);
                 inspection.equilibrium = inspection.remark.empty();
-                record.verdict = inspection.equilibrium ? Verdict::proved : Verdict::undecided;
+                record.verdict = inspection.equilibrium ? Verdict::proved : before;
                 inspection.stable = record.verdict; // isostatic, all forces positive: every motion opens a contact against a force
             } else if (inspection.remark.empty()) {
                 inspection.remark = described.failure().message;
             }
         } else if (inspection.remark.empty()) {
+            record.verdict = decision.ok() ? Verdict::refuted : Verdict::undecided;
             inspection.remark = decision.ok() ? fmt::format("not an equilibrium: {}force {:.6g} in contact {}",
                                                             decision.value().opening->infinitesimal ? "infinitesimal " : "",
                                                             decision.value().opening->force.value,

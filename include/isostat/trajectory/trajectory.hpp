@@ -65,7 +65,7 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
 /// (`record.held` = k, `equilibrium` stays false), and `stable` tells what W does along the mechanism (k = 1; statement T8).
 template <int Dim> struct Inspection {
     Counting counting;                       ///< N_f, N, rank, h, k
-    EquilibriumRecord<Dim> record;
+    EquilibriumRecord<Dim> record;           ///< `record.verdict`: is it an isostatic equilibrium
     std::vector<Contact> contacts;           ///< those of the state, then the held coordinates
     std::vector<double> forces;              ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls

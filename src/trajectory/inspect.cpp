@@ -136,7 +136,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
                 record.margin = std::min(record.margin, decision.value().margin);
                 inspection.equilibrium = inspection.remark.empty();
                 record.verdict = inspection.equilibrium ? Verdict::proved : before;
-                inspection.stable = record.verdict; // isostatic, all forces positive: every motion opens a contact against a force
+                inspection.stable = inspection.equilibrium ? Verdict::proved : Verdict::undecided; // isostatic, all forces positive: every motion opens a contact against a force
             } else if (inspection.remark.empty()) {
                 inspection.remark = described.failure().message;
             }

@@ -1,6 +1,6 @@
-#include <isostat/contact/candidates.hpp>
-
 #include "contact/gap_sign.hpp"
+
+#include <isostat/contact/candidates.hpp>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
@@ -15,15 +15,18 @@ namespace isostat {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
+using VertexBase =
+    CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, CGAL::Regular_triangulation_face_base_2<Kernel>>;
 using Triangulation = CGAL::Regular_triangulation_2<Kernel, Structure>;
 
-/// Overlap, in units of the smallest radius, up to which the edges are still complete: C4 needs the overlaps to be below one
-/// hundredth of the slack between 0.82 and 2 (sqrt 2 - 1); 1e-9 leaves seven orders.
+/// Overlap, in units of the smallest radius, up to which the edges are still complete: C4 needs the overlaps to be
+/// below one hundredth of the slack between 0.82 and 2 (sqrt 2 - 1); 1e-9 leaves seven orders.
 constexpr double tolerated_overlap = 1e-9;
 
-Contact disk_pair(int i, int j) { return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)}; }
+Contact disk_pair(int i, int j) {
+    return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+}
 
 /// Edges of the regular triangulation with weights R^2; empty optional-like flag when a vertex is hidden.
 struct Edges {
@@ -38,7 +41,9 @@ template <int Dim> Edges triangulation_edges(const Packing<Dim>& packing) {
     for (int i = 0; i < packing.disk_count(); ++i) {
         const double r = packing.radius[static_cast<std::size_t>(i)];
         points.emplace_back(
-            Triangulation::Weighted_point(Kernel::Point_2(packing.coordinate(DiskId(i), 0), packing.coordinate(DiskId(i), 1)), r * r), i);
+            Triangulation::Weighted_point(
+                Kernel::Point_2(packing.coordinate(DiskId(i), 0), packing.coordinate(DiskId(i), 1)), r * r),
+            i);
     }
     Triangulation triangulation(points.begin(), points.end());
     Edges edges;
@@ -65,16 +70,21 @@ template <int Dim> std::vector<Contact> pairs_by_cells(const Packing<Dim>& packi
     };
     std::vector<Entry> entries;
     for (int i = 0; i < packing.disk_count(); ++i) {
-        entries.push_back({{std::floor(packing.coordinate(DiskId(i), 0) / side), std::floor(packing.coordinate(DiskId(i), 1) / side)}, i});
+        entries.push_back(
+            {{std::floor(packing.coordinate(DiskId(i), 0) / side), std::floor(packing.coordinate(DiskId(i), 1) / side)},
+             i});
     }
-    const auto before = [](const Entry& a, const Entry& b) { return a.cell != b.cell ? a.cell < b.cell : a.disk < b.disk; };
+    const auto before = [](const Entry& a, const Entry& b) {
+        return a.cell != b.cell ? a.cell < b.cell : a.disk < b.disk;
+    };
     std::sort(entries.begin(), entries.end(), before);
     std::vector<Contact> pairs;
     for (const Entry& entry : entries) {
         for (double ox = -1; ox <= 1; ++ox) {
             const Entry low{{entry.cell[0] + ox, entry.cell[1] - 1}, -1};
             for (auto other = std::lower_bound(entries.begin(), entries.end(), low, before);
-                 other != entries.end() && other->cell[0] == low.cell[0] && other->cell[1] <= entry.cell[1] + 1; ++other) {
+                 other != entries.end() && other->cell[0] == low.cell[0] && other->cell[1] <= entry.cell[1] + 1;
+                 ++other) {
                 if (other->disk > entry.disk && gap(packing, disk_pair(entry.disk, other->disk)) < reach) {
                     pairs.push_back(disk_pair(entry.disk, other->disk));
                 }
@@ -145,7 +155,8 @@ template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packin
 }
 
 template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing, double allowance) {
-    // The list holds every pair with gap < 0.4 R_min (C4, or unconditionally by cells); each of them is then decided exactly.
+    // The list holds every pair with gap < 0.4 R_min (C4, or unconditionally by cells); each of them is then decided
+    // exactly.
     std::vector<Contact> near = complete_pairs(packing, 0.4 * packing.min_radius());
     append_walls(packing, 0.4 * packing.min_radius(), near);
     Admissibility result;

@@ -19,7 +19,8 @@ template <int Dim> int exact_pair_sign(const Packing<Dim>& packing, const Contac
     }
     mpq_class value = -target * target;
     for (int a = 0; a < Dim; ++a) {
-        const mpq_class d = mpq_class(packing.coordinate(DiskId(contact.j), a)) - mpq_class(packing.coordinate(DiskId(contact.i), a));
+        const mpq_class d =
+            mpq_class(packing.coordinate(DiskId(contact.j), a)) - mpq_class(packing.coordinate(DiskId(contact.i), a));
         value += d * d;
     }
     return sgn(value);
@@ -55,7 +56,8 @@ template <int Dim> int sign_of_gap_plus(const Packing<Dim>& packing, const Conta
     if (std::abs(value) > 4 * u * (std::abs(wall) + std::abs(x) + r + std::abs(allowance))) {
         return value > 0 ? 1 : -1;
     }
-    const mpq_class exact = (lower ? mpq_class(x) : mpq_class(wall) - mpq_class(x)) - mpq_class(r) + mpq_class(allowance);
+    const mpq_class exact =
+        (lower ? mpq_class(x) : mpq_class(wall) - mpq_class(x)) - mpq_class(r) + mpq_class(allowance);
     return sgn(exact);
 }
 

@@ -1,6 +1,5 @@
-#include <isostat/exact/rank.hpp>
-
 #include <isostat/exact/independent_columns.hpp>
+#include <isostat/exact/rank.hpp>
 
 #include <cassert>
 #include <cmath>
@@ -13,7 +12,9 @@ namespace {
 __extension__ using Wide = unsigned __int128;
 
 /// Brings a sum below 2^64 into [0, 2^61 + 7]: congruent, not canonical.
-std::uint64_t fold_once(std::uint64_t x) { return (x & mersenne61) + (x >> 61); }
+std::uint64_t fold_once(std::uint64_t x) {
+    return (x & mersenne61) + (x >> 61);
+}
 
 std::uint64_t canonical(std::uint64_t x) {
     x = fold_once(x);
@@ -37,7 +38,9 @@ std::uint64_t square_repeatedly(std::uint64_t a, int times) {
 struct Field61 {
     using Value = std::uint64_t;
     using Work = std::uint64_t;
-    static Work add_product(Work x, Value a, Value b) { return fold_once(x + product(a, b)); } // < 2^61 + 8 + 2^62 + 16: no overflow
+    static Work add_product(Work x, Value a, Value b) {
+        return fold_once(x + product(a, b));
+    } // < 2^61 + 8 + 2^62 + 16: no overflow
     static Value reduce(Work x) { return canonical(x); }
     static Value negative_inverse(Value a) { return mersenne61 - inverse(a); }
     static Value scaled(Work x, Value a) { return canonical(product(fold_once(x), a)); }
@@ -77,21 +80,23 @@ struct Field31 {
     static Value scaled(Work x, Value a) { return times(reduce(x), a); }
 };
 
-/// Left-looking (Gilbert-Peierls) elimination of one diagonal block: symbolic reach by depth-first search with symmetric pruning. The
-/// matched diagonal is preferred as pivot, for the sake of fill; any other row with a non-zero value serves when it vanishes. Rows carry the label of
-/// their position in the block; pivot j is the j-th pivot found.
+/// Left-looking (Gilbert-Peierls) elimination of one diagonal block: symbolic reach by depth-first search with
+/// symmetric pruning. The matched diagonal is preferred as pivot, for the sake of fill; any other row with a non-zero
+/// value serves when it vanishes. Rows carry the label of their position in the block; pivot j is the j-th pivot found.
 template <class Field> class BlockElimination {
     using Value = typename Field::Value;
 
   public:
     explicit BlockElimination(std::size_t largest)
-        : value_(largest, 0), mark_(largest), pivot_of_(largest), row_of_(largest), stack_(largest), resume_(largest), order_(largest) {
+        : value_(largest, 0), mark_(largest), pivot_of_(largest), row_of_(largest), stack_(largest), resume_(largest),
+          order_(largest) {
         lower_start_.reserve(largest);
         lower_end_.reserve(largest);
         pruned_end_.reserve(largest);
     }
 
-    /// Number of independent columns. `column(k, visit)` calls visit(i, a) for the entries of column k, in positions of the block.
+    /// Number of independent columns. `column(k, visit)` calls visit(i, a) for the entries of column k, in positions of
+    /// the block.
     template <class Column> int rank(int size, Column column) {
         lower_row_.clear();
         lower_value_.clear();
@@ -167,7 +172,8 @@ template <class Field> class BlockElimination {
         }
     }
 
-    /// Depth-first search from row i through the columns of L already made; appends to the topological order or to `below_`.
+    /// Depth-first search from row i through the columns of L already made; appends to the topological order or to
+    /// `below_`.
     void visit(int i, int k) {
         mark_[static_cast<std::size_t>(i)] = k;
         if (pivot_of_[static_cast<std::size_t>(i)] < 0) {
@@ -206,8 +212,8 @@ template <class Field> class BlockElimination {
         }
     }
 
-    /// Symmetric pruning: once U has (pivot of j, k) and L's column j has the new pivot row, later searches from j may stop at the rows that
-    /// are pivotal by now: the others are reached through the new pivot.
+    /// Symmetric pruning: once U has (pivot of j, k) and L's column j has the new pivot row, later searches from j may
+    /// stop at the rows that are pivotal by now: the others are reached through the new pivot.
     void prune(int new_pivot_row) {
         for (std::size_t t = static_cast<std::size_t>(top_); t < order_.size(); ++t) {
             const auto j = static_cast<std::size_t>(order_[t]);
@@ -245,7 +251,8 @@ template <class Field> class BlockElimination {
     int pivots_ = 0;
 };
 
-template <class Field> int rank_in_blocks(const sparse::Matrix<typename Field::Value>& matrix, const sparse::Ordering& ordering) {
+template <class Field>
+int rank_in_blocks(const sparse::Matrix<typename Field::Value>& matrix, const sparse::Ordering& ordering) {
     assert(ordering.structurally_regular());
     const std::vector<int>& block_start = ordering.block_start();
     std::vector<int> position(static_cast<std::size_t>(matrix.rows));
@@ -277,9 +284,13 @@ template <class Field> int rank_in_blocks(const sparse::Matrix<typename Field::V
 
 } // namespace
 
-std::uint64_t multiply(std::uint64_t a, std::uint64_t b) { return canonical(product(a, b)); }
+std::uint64_t multiply(std::uint64_t a, std::uint64_t b) {
+    return canonical(product(a, b));
+}
 
-std::uint64_t subtract(std::uint64_t a, std::uint64_t b) { return a >= b ? a - b : a + mersenne61 - b; }
+std::uint64_t subtract(std::uint64_t a, std::uint64_t b) {
+    return a >= b ? a - b : a + mersenne61 - b;
+}
 
 std::uint64_t inverse(std::uint64_t a) {
     assert(a != 0);
@@ -307,7 +318,8 @@ std::uint64_t residue(double value) {
     const auto integer = static_cast<std::uint64_t>(std::ldexp(mantissa, 53)); // exact: 53 bits, also for denormals
     const int shift = ((exponent - 53) % 61 + 61) % 61;                        // 2^61 = 1: powers of two rotate
     const Wide wide = static_cast<Wide>(integer) << shift;
-    const std::uint64_t r = canonical((static_cast<std::uint64_t>(wide) & mersenne61) + static_cast<std::uint64_t>(wide >> 61));
+    const std::uint64_t r =
+        canonical((static_cast<std::uint64_t>(wide) & mersenne61) + static_cast<std::uint64_t>(wide >> 61));
     return value < 0 && r != 0 ? mersenne61 - r : r;
 }
 
@@ -332,6 +344,8 @@ int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& or
     return rank_in_blocks<Field31>(matrix, ordering);
 }
 
-int rank(const sparse::Matrix<std::uint64_t>& matrix) { return static_cast<int>(independent_columns(matrix).size()); }
+int rank(const sparse::Matrix<std::uint64_t>& matrix) {
+    return static_cast<int>(independent_columns(matrix).size());
+}
 
 } // namespace isostat::exact

@@ -1,6 +1,5 @@
-#include <isostat/rigidity/isostatic.hpp>
-
 #include <isostat/exact/rank.hpp>
+#include <isostat/rigidity/isostatic.hpp>
 
 #include <fmt/format.h>
 
@@ -42,10 +41,11 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
     return matrix;
 }
 
-/// H with columns scaled by the distance of the centres, over the field with `modulus` elements; `reduce` maps a double to it.
+/// H with columns scaled by the distance of the centres, over the field with `modulus` elements; `reduce` maps a double
+/// to it.
 template <int Dim, class Value, class Reduce>
-sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts,
-                                             Value modulus, Reduce reduce) {
+sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
+                                             const std::vector<Contact>& contacts, Value modulus, Reduce reduce) {
     std::vector<Value> residue(packing.q.size());
     for (std::size_t k = 0; k < residue.size(); ++k) {
         residue[k] = reduce(packing.q[k]);
@@ -122,9 +122,10 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
     const int dof_count = structure.dofs_->dof_count();
     const int contact_count = static_cast<int>(contacts.size());
     if (dof_count != contact_count) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
-                                   dof_count, contact_count)};
+        return Failure{
+            FailureKind::not_isostatic,
+            fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
+                        dof_count, contact_count)};
     }
     structure.matrix_ = contact_matrix(packing, *structure.dofs_, contacts);
     auto ordering = std::make_shared<const sparse::Ordering>(structure.matrix_);
@@ -134,7 +135,8 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
                                    dof_count, ordering->structural_rank())};
     }
     // Full rank over any prime field is a proof; the small field is tried first because it costs half.
-    int rank = exact::rank(reduced_contact_matrix(packing, *structure.dofs_, contacts, exact::mersenne31, exact::residue31), *ordering);
+    int rank = exact::rank(
+        reduced_contact_matrix(packing, *structure.dofs_, contacts, exact::mersenne31, exact::residue31), *ordering);
     if (rank != dof_count) {
         rank = exact::rank(exact_contact_matrix(packing, *structure.dofs_, contacts), *ordering);
     }

@@ -9,9 +9,10 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     klu_common common;
     klu_defaults(&common);
     // KLU's interface is not const-correct; the pattern is only read.
-    klu_symbolic* symbolic = klu_analyze(n, const_cast<int*>(start.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-                                         const_cast<int*>(row.data()),       // NOLINT(cppcoreguidelines-pro-type-const-cast)
-                                         &common);
+    klu_symbolic* symbolic =
+        klu_analyze(n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                    const_cast<int*>(row.data()),      // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                    &common);
     if (symbolic == nullptr) {
         return;
     }
@@ -43,8 +44,8 @@ std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<c
     return matched;
 }
 
-std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,
-                                               std::span<const int> loaded_rows) {
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
+                                               const Ordering& ordering, std::span<const int> loaded_rows) {
     const std::size_t n = ordering.row_order().size();
     std::vector<int> matched(n);
     for (std::size_t k = 0; k < n; ++k) {
@@ -53,8 +54,8 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
     return structural_nonzeros(start, row, matched, loaded_rows);
 }
 
-std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, std::span<const int> matched,
-                                               std::span<const int> loaded_rows) {
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
+                                               std::span<const int> matched, std::span<const int> loaded_rows) {
     std::vector<unsigned char> nonzero(matched.size(), 0);
     std::vector<int> queue;
     const auto reach = [&](int r) {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double start_angle = 0.2;
 
-/// Disk 0 fixed at the origin (radius 1), the free disk 2 (radius 1) on it at `start_angle`, held there by the fixed disk 1; further fixed disks
-/// are obstacles. No walls.
+/// Disk 0 fixed at the origin (radius 1), the free disk 2 (radius 1) on it at `start_angle`, held there by the fixed
+/// disk 1; further fixed disks are obstacles. No walls.
 struct Rolling {
     State<2> state;
 
@@ -58,8 +58,8 @@ struct Rolling {
         CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
         ArcOptions options;
         options.step_fraction = step_fraction;
-        return follow_arc(state.packing, structure.value(), factorisation, ContactId(1), +1, PowerLoad<2>{&state.load, false, false}, candidates,
-                          options);
+        return follow_arc(state.packing, structure.value(), factorisation, ContactId(1), +1,
+                          PowerLoad<2>{&state.load, false, false}, candidates, options);
     }
     static double angle(const Arc<2>& arc) { return std::atan2(arc.end.q[5], arc.end.q[4]); }
 };
@@ -90,8 +90,10 @@ BOOST_AUTO_TEST_CASE(a_grazing_dip_counts_and_a_near_miss_does_not) {
                 rolling.stop(2.0);
                 rolling.push(-1, 0.1);
                 const auto arc = rolling.roll(fraction);
-                BOOST_TEST_REQUIRE(arc.ok(), "clearance " << sign * clearance << ": " << (arc.ok() ? "" : arc.failure().message));
-                BOOST_TEST((arc.value().closed == (sign > 0 ? pair(2, 4) : pair(2, 3))), "clearance " << sign * clearance << " step " << fraction);
+                BOOST_TEST_REQUIRE(arc.ok(),
+                                   "clearance " << sign * clearance << ": " << (arc.ok() ? "" : arc.failure().message));
+                BOOST_TEST((arc.value().closed == (sign > 0 ? pair(2, 4) : pair(2, 3))),
+                           "clearance " << sign * clearance << " step " << fraction);
             }
         }
     }
@@ -107,7 +109,8 @@ BOOST_AUTO_TEST_CASE(an_exactly_grazing_gap_is_never_followed_by_a_guess_beyond_
         // Whatever side the stored numbers are on, no gap is below rounding on the way and the end is one of the two.
         BOOST_TEST((arc.value().closed == pair(2, 3) || arc.value().closed == pair(2, 4)));
     } else {
-        BOOST_TEST((arc.failure().kind == FailureKind::undecided || arc.failure().kind == FailureKind::not_converged), arc.failure().message);
+        BOOST_TEST((arc.failure().kind == FailureKind::undecided || arc.failure().kind == FailureKind::not_converged),
+                   arc.failure().message);
     }
 }
 
@@ -118,7 +121,8 @@ BOOST_AUTO_TEST_CASE(the_power_of_the_load_turns_before_the_next_contact) {
     const auto arc = rolling.roll(0.1);
     BOOST_TEST_REQUIRE(arc.ok());
     BOOST_TEST((arc.value().kind == ArcEnd::power_turn));
-    BOOST_TEST((arc.value().closed == Contact{ContactKind::held, 4, 0}), "the fastest coordinate at the top is x of disk 2");
+    BOOST_TEST((arc.value().closed == Contact{ContactKind::held, 4, 0}),
+               "the fastest coordinate at the top is x of disk 2");
     BOOST_TEST(Rolling::angle(arc.value()) == std::numbers::pi / 2, boost::test_tools::tolerance(1e-9));
 }
 

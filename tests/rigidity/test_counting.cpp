@@ -6,7 +6,6 @@
 #include <isostat/rigidity/counting.hpp>
 
 #include <boost/test/unit_test.hpp>
-
 #include <gmpxx.h>
 
 #include <random>
@@ -117,7 +116,8 @@ BOOST_AUTO_TEST_CASE(a_contact_taken_away_is_a_mechanism_and_its_release_is_foun
     BOOST_TEST(counting.mechanisms == 1);
     BOOST_TEST(counting.hyperstaticity == 0);
     BOOST_TEST_REQUIRE(counting.free_dofs.size() == 1U);
-    state.contacts.push_back({ContactKind::held, DofMap<2>(state.packing).coordinate_of(counting.free_dofs.front()), 0});
+    state.contacts.push_back(
+        {ContactKind::held, DofMap<2>(state.packing).coordinate_of(counting.free_dofs.front()), 0});
     BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
 }
 
@@ -132,7 +132,8 @@ BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices)
     const auto refused = IsostaticStructure<2>::prove(fewer.packing, fewer.contacts);
     BOOST_TEST_REQUIRE(!refused.ok());
     BOOST_TEST(refused.failure().message.find("N_f = 6") != std::string::npos, refused.failure().message);
-    // Six contacts, but the right and the left wall would have to carry different forces: disk 0 touches neither disk 1 nor the top.
+    // Six contacts, but the right and the left wall would have to carry different forces: disk 0 touches neither disk 1
+    // nor the top.
     State<2> special = one_disk(1, 1);
     special.contacts = {left(0), right(0), left(0), top(0)};
     BOOST_TEST(!IsostaticStructure<2>::prove(special.packing, special.contacts).ok());
@@ -217,7 +218,9 @@ BOOST_AUTO_TEST_CASE(bead_by_bead_piles_are_isostatic_and_balance_by_back_substi
 BOOST_AUTO_TEST_CASE(exchanging_a_row_multiplies_the_determinant_by_the_closing_speed) {
     // det G' = det G (g . v) with G v = e_l0, over the rationals and without any rounding.
     std::mt19937_64 random(5);
-    const auto entry = [&] { return mpq_class(static_cast<long>(random() % 41) - 20, static_cast<unsigned long>(random() % 7 + 1)); };
+    const auto entry = [&] {
+        return mpq_class(static_cast<long>(random() % 41) - 20, static_cast<unsigned long>(random() % 7 + 1));
+    };
     for (int k = 0; k < 200; ++k) {
         const std::size_t n = 2 + random() % 6;
         std::vector<std::vector<mpq_class>> g(n, std::vector<mpq_class>(n));

@@ -23,7 +23,8 @@ struct Loaded {
     Statics<2> statics;
 
     explicit Loaded(State<2> s)
-        : state(std::move(s)), structure(proved(state)), factorisation(structure), inverse(bound_inverse(structure, factorisation, cache)),
+        : state(std::move(s)), structure(proved(state)), factorisation(structure),
+          inverse(bound_inverse(structure, factorisation, cache)),
           statics(state.packing, state.load, structure, factorisation, inverse) {}
     static IsostaticStructure<2> proved(const State<2>& s) {
         auto result = IsostaticStructure<2>::prove(s.packing, s.contacts);
@@ -61,7 +62,9 @@ BOOST_AUTO_TEST_CASE(forces_that_share_one_support_vanish_as_a_structural_class)
     BOOST_TEST(std::abs(limit.value().stress) <= limit.value().stress_error + 1e-15);
     // The member with the smallest f1 / |slope|.
     for (const ContactId l : limit.value().tie_class) {
-        const auto key = [&](ContactId c) { return loaded.statics.infinitesimal(c).value / std::abs(loaded.statics.slope(c).value); };
+        const auto key = [&](ContactId c) {
+            return loaded.statics.infinitesimal(c).value / std::abs(loaded.statics.slope(c).value);
+        };
         BOOST_TEST(key(limit.value().opens) <= key(l));
     }
 }
@@ -85,8 +88,9 @@ BOOST_AUTO_TEST_CASE(classes_of_prepared_packings_vanish_together_and_nothing_el
                 }
                 const Enclosure f = loaded.statics.force(id, limit.value().stress);
                 if (members.count(id.value()) != 0) {
-                    BOOST_TEST(std::abs(f.value) <=
-                               f.radius + limit.value().stress_error * (std::abs(loaded.statics.slope(id).value) * 1.001 + loaded.statics.slope(id).radius));
+                    BOOST_TEST(std::abs(f.value) <= f.radius + limit.value().stress_error *
+                                                                   (std::abs(loaded.statics.slope(id).value) * 1.001 +
+                                                                    loaded.statics.slope(id).radius));
                 } else {
                     BOOST_TEST(f.positive());
                 }
@@ -97,12 +101,14 @@ BOOST_AUTO_TEST_CASE(classes_of_prepared_packings_vanish_together_and_nothing_el
 }
 
 BOOST_AUTO_TEST_CASE(two_equal_tractions_are_a_tie_and_unequal_ones_are_ordered) {
-    // A small disk pulled out of the notch between two equal ones: equal tractions in its two lower contacts, larger than in the upper one.
+    // A small disk pulled out of the notch between two equal ones: equal tractions in its two lower contacts, larger
+    // than in the upper one.
     Loaded equal(three_disks(1, 1, 0.1, 1, -1));
     const auto tie = decide_opening(equal.statics, equal.sigma(), OpeningRule::most_negative, ContactId(), 0);
     BOOST_TEST_REQUIRE(!tie.ok());
     BOOST_TEST((tie.failure().kind == FailureKind::tie), tie.failure().message);
-    BOOST_TEST((tie.failure().message.find("0-2") != std::string::npos && tie.failure().message.find("1-2") != std::string::npos),
+    BOOST_TEST((tie.failure().message.find("0-2") != std::string::npos &&
+                tie.failure().message.find("1-2") != std::string::npos),
                tie.failure().message);
     BOOST_TEST((equal.statics.rung() == Rung::double_double)); // not given up before the second rung
     for (const double delta : {1e-1, 1e-3, 1e-6, 1e-9, 1e-12}) {
@@ -167,7 +173,8 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
 
 BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undecided) {
     // Disk 1 lies in the corner between bottom and right wall without touching anything else.
-    State<2> state = in_box({{2, 2, 2}, {0.5, 3.5, 0.5}}, 4, 4, 1, 1, {left(0), right(0), bottom(0), top(0), right(1), bottom(1)});
+    State<2> state =
+        in_box({{2, 2, 2}, {0.5, 3.5, 0.5}}, 4, 4, 1, 1, {left(0), right(0), bottom(0), top(0), right(1), bottom(1)});
     state.load.infinitesimal = {0.1, -1, 0.1, -1}; // into the corner
     Loaded resting(state);
     BOOST_TEST(resting.statics.is_structural_zero(ContactId(4)));

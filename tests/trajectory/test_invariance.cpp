@@ -1,4 +1,5 @@
-// The sequence of events is a property of the packing: not of the predictor, the labels, the side from which one looks, or the unit.
+// The sequence of events is a property of the packing: not of the predictor, the labels, the side from which one looks,
+// or the unit.
 #include "support/crafted.hpp"
 
 #include <isostat/preparation/preparation.hpp>
@@ -31,18 +32,22 @@ template <class Map> std::vector<std::pair<Contact, Contact>> events(const Recor
     }
     return list;
 }
-Contact same(const Contact& contact) { return contact; }
+Contact same(const Contact& contact) {
+    return contact;
+}
 
 void check_same_sequence(const Played& a, const Played& b, const std::vector<std::pair<Contact, Contact>>& events_b) {
     const auto events_a = events(a.records, same);
     BOOST_TEST_REQUIRE(events_a.size() == events_b.size());
     for (std::size_t k = 0; k < events_a.size(); ++k) {
         BOOST_TEST((events_a[k] == events_b[k]), "arc " << k + 1 << ": " << to_string<2>(events_a[k].first) << " -> "
-                                                        << to_string<2>(events_a[k].second) << " against " << to_string<2>(events_b[k].first)
-                                                        << " -> " << to_string<2>(events_b[k].second));
+                                                        << to_string<2>(events_a[k].second) << " against "
+                                                        << to_string<2>(events_b[k].first) << " -> "
+                                                        << to_string<2>(events_b[k].second));
     }
     for (std::size_t k = 0; k < a.records.equilibria.size(); ++k) {
-        BOOST_TEST(a.records.equilibria[k].stress == b.records.equilibria[k].stress, boost::test_tools::tolerance(1e-8));
+        BOOST_TEST(a.records.equilibria[k].stress == b.records.equilibria[k].stress,
+                   boost::test_tools::tolerance(1e-8));
     }
 }
 
@@ -88,9 +93,10 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_labels, Base) {
         }
     }
     const auto relabel = [](const Contact& c, const std::vector<int>& to) {
-        return c.kind == ContactKind::disk_disk ? pair(to[static_cast<std::size_t>(c.i)], to[static_cast<std::size_t>(c.j)])
-               : c.kind == ContactKind::held    ? Contact{c.kind, 2 * to[static_cast<std::size_t>(c.i / 2)] + c.i % 2, 0}
-                                                : Contact{c.kind, to[static_cast<std::size_t>(c.i)], c.j};
+        return c.kind == ContactKind::disk_disk
+                   ? pair(to[static_cast<std::size_t>(c.i)], to[static_cast<std::size_t>(c.j)])
+               : c.kind == ContactKind::held ? Contact{c.kind, 2 * to[static_cast<std::size_t>(c.i / 2)] + c.i % 2, 0}
+                                             : Contact{c.kind, to[static_cast<std::size_t>(c.i)], c.j};
     };
     for (Contact& c : shuffled.contacts) {
         c = relabel(c, inverse);
@@ -135,7 +141,9 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_exchanging_the_axes, Bas
     std::swap(turned.load.reference_length[0], turned.load.reference_length[1]);
     turned.load.loaded_axis = 0;
     const auto exchange = [](const Contact& c) {
-        return c.kind == ContactKind::disk_disk ? c : c.kind == ContactKind::held ? Contact{c.kind, c.i ^ 1, 0} : Contact{c.kind, c.i, 1 - c.j};
+        return c.kind == ContactKind::disk_disk ? c
+               : c.kind == ContactKind::held    ? Contact{c.kind, c.i ^ 1, 0}
+                                                : Contact{c.kind, c.i, 1 - c.j};
     };
     for (Contact& c : turned.contacts) {
         c = exchange(c);
@@ -212,12 +220,15 @@ BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_openi
 
 BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
     const State<2> start = prepared(40, 2);
-    for (const OpeningRule rule : {OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::random, OpeningRule::least_negative}) {
+    for (const OpeningRule rule :
+         {OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::random, OpeningRule::least_negative}) {
         RunOptions options;
         options.rule = rule;
         const Played run = play(start, +1, 6, {}, options);
-        // A strut that turns exactly at a power turn carries the same force in both contacts: a true tie, named, is an honest end.
-        BOOST_TEST((run.outcome.completed || run.outcome.failure->kind == FailureKind::cap_reached || run.outcome.failure->kind == FailureKind::tie),
+        // A strut that turns exactly at a power turn carries the same force in both contacts: a true tie, named, is an
+        // honest end.
+        BOOST_TEST((run.outcome.completed || run.outcome.failure->kind == FailureKind::cap_reached ||
+                    run.outcome.failure->kind == FailureKind::tie),
                    run.why());
         BOOST_TEST(run.records.equilibria.size() > 1U);
         for (const auto& e : run.records.equilibria) {
@@ -239,12 +250,14 @@ BOOST_AUTO_TEST_CASE(dead_loads_make_the_potential_decrease_along_every_arc) {
     const Played run = play(prepared(80, 4), +1, 10);
     BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
     for (const auto& arc : run.records.arcs) {
-        BOOST_TEST((arc.work > 0 || arc.kind == "rattler"), "arc " << arc.step << " " << arc.kind << " work " << arc.work);
+        BOOST_TEST((arc.work > 0 || arc.kind == "rattler"),
+                   "arc " << arc.step << " " << arc.kind << " work " << arc.work);
     }
 }
 
 BOOST_AUTO_TEST_CASE(an_opening_gap_that_turns_back_is_followed_past_its_start, *boost::unit_test::label("slow")) {
-    // Both runs meet an arc whose opened contact is predicted to close again: the start is a root of the event equations too.
+    // Both runs meet an arc whose opened contact is predicted to close again: the start is a root of the event
+    // equations too.
     for (const std::uint64_t seed : {4U, 9U}) {
         const Played run = play(prepared(400, seed), +1, 60);
         BOOST_TEST(run.outcome.completed, run.why());
@@ -261,7 +274,8 @@ BOOST_AUTO_TEST_CASE(true_stress_loads_follow_the_current_lengths) {
     BOOST_TEST(last.load.external_force(last.packing)[2 * 40] == -last.load.stress[0] * last.packing.length(1));
     // The first limit is a property of the start: the two kinds of load agree there.
     const Played dead = play(prepared(40, 9), +1, 1);
-    BOOST_TEST(run.records.equilibria[1].stress == dead.records.equilibria[1].stress, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(run.records.equilibria[1].stress == dead.records.equilibria[1].stress,
+               boost::test_tools::tolerance(1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {

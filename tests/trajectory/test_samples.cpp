@@ -13,7 +13,9 @@ using namespace crafted;
 
 namespace {
 
-State<2> sample(const std::string& name) { return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state; }
+State<2> sample(const std::string& name) {
+    return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
+}
 
 /// Rows of a sequence file: equilibrium, sigma2/sigma1, eps2, eps1, backbone, rattlers, arcs.
 std::vector<std::array<double, 7>> sequence(const std::string& name) {
@@ -56,9 +58,13 @@ void compare(const std::string& vertex, const std::string& expected, double tole
 
 BOOST_AUTO_TEST_SUITE(trajectory)
 
-BOOST_AUTO_TEST_CASE(the_sample_of_100_disks_reaches_the_same_14_equilibria) { compare("vertex100.txt", "sequence100.txt", 1e-9); }
+BOOST_AUTO_TEST_CASE(the_sample_of_100_disks_reaches_the_same_14_equilibria) {
+    compare("vertex100.txt", "sequence100.txt", 1e-9);
+}
 
-BOOST_AUTO_TEST_CASE(the_sample_of_400_disks_reaches_the_same_20_equilibria) { compare("vertex400.txt", "sequence400.txt", 1e-9); }
+BOOST_AUTO_TEST_CASE(the_sample_of_400_disks_reaches_the_same_20_equilibria) {
+    compare("vertex400.txt", "sequence400.txt", 1e-9);
+}
 
 BOOST_AUTO_TEST_CASE(the_sample_of_1936_disks_is_an_equilibrium_and_makes_ten_more) {
     const State<2> start = sample("vertex1936.txt");

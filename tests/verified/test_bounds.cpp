@@ -132,7 +132,8 @@ bool check(const Packing<2>& packing, const std::vector<Contact>& contacts, cons
         return false;
     }
     const Real norm = spectral_norm(reference, 30);
-    BOOST_TEST(Real(bound.sigma_min) * norm <= 1, "sigma_min " << bound.sigma_min << " above the true one " << 1 / norm.convert_to<double>());
+    BOOST_TEST(Real(bound.sigma_min) * norm <= 1,
+               "sigma_min " << bound.sigma_min << " above the true one " << 1 / norm.convert_to<double>());
     std::vector<Real> exact(force.size(), Real(0));
     for (std::size_t l = 0; l < exact.size(); ++l) {
         for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -152,7 +153,8 @@ bool check(const Packing<2>& packing, const std::vector<Contact>& contacts, cons
     BOOST_TEST(in_double <= Real(solution.bound), "double: error above the bound");
     const double double_bound = solution.bound;
     refine_double_double(solution, extended_contact_matrix(packing, structure), structure, factorisation, bound, force);
-    BOOST_TEST(error() <= Real(solution.bound), "double-double: error " << error().convert_to<double>() << " above the bound " << solution.bound);
+    BOOST_TEST(error() <= Real(solution.bound),
+               "double-double: error " << error().convert_to<double>() << " above the bound " << solution.bound);
     if (bound.sigma_min > 1e-10) {
         BOOST_TEST(solution.bound < 1e-8 * double_bound);
     }
@@ -225,12 +227,14 @@ BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {
     const Real root2 = sqrt(Real(2));
     const std::vector<Real> exact{1, 1, 1 + 2 * root2, 2, 3 + 2 * root2, 4};
     for (const bool extended : {false, true}) {
-        const VertexEnclosure vertex = extended ? enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound)
-                                                : enclose_vertex(state.packing, proved.value(), bound);
+        const VertexEnclosure vertex =
+            extended ? enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound)
+                     : enclose_vertex(state.packing, proved.value(), bound);
         BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
         Real square = 0;
         for (std::size_t k = 0; k < exact.size(); ++k) {
-            const Real at = Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
+            const Real at =
+                Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
             square += (at - exact[k]) * (at - exact[k]);
         }
         BOOST_TEST(sqrt(square) <= Real(vertex.radius));

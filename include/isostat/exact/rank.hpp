@@ -2,10 +2,10 @@
 /// \file
 /// Exact rank of a sparse matrix by elimination over a prime field.
 
+#include <isostat/sparse/pattern.hpp>
+
 #include <cstdint>
 #include <span>
-
-#include <isostat/sparse/pattern.hpp>
 
 namespace isostat::exact {
 
@@ -26,12 +26,12 @@ std::uint64_t multiply(std::uint64_t a, std::uint64_t b);
 /// 1 / a mod p. \pre a != 0. Cost: 60 squarings, about 0.2 us.
 std::uint64_t inverse(std::uint64_t a);
 
-/// Rank of a matrix of residues. `rank_p <= rank over Q` of any matrix that reduces to it (statement T4): when it equals
-/// min(rows, cols) it *proves* full rank; when it is smaller it proves nothing about Q (chance of a false deficiency ~ n/p per prime).
-/// `ordering` must belong to the pattern of `matrix` (square, structurally regular).
-/// Only the diagonal blocks of the block triangular form are eliminated: the determinant is the product of theirs. With a deficient block the
-/// sum of the blocks' ranks is returned, still a lower bound of the rank.
-/// Cost: 2.5 ms at n = 1936 (0.4 of one UMFPACK analysis + factorisation).
+/// Rank of a matrix of residues. `rank_p <= rank over Q` of any matrix that reduces to it (statement T4): when it
+/// equals min(rows, cols) it *proves* full rank; when it is smaller it proves nothing about Q (chance of a false
+/// deficiency ~ n/p per prime). `ordering` must belong to the pattern of `matrix` (square, structurally regular). Only
+/// the diagonal blocks of the block triangular form are eliminated: the determinant is the product of theirs. With a
+/// deficient block the sum of the blocks' ranks is returned, still a lower bound of the rank. Cost: 2.5 ms at n = 1936
+/// (0.4 of one UMFPACK analysis + factorisation).
 int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering);
 int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& ordering);
 

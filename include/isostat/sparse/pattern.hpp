@@ -18,12 +18,13 @@ template <class Value> struct Matrix {
     [[nodiscard]] int entries() const { return start.empty() ? 0 : start.back(); }
 };
 
-/// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing order inside
-/// the blocks (KLU: BTF + AMD). No number is looked at, so it may precede the rank check.
+/// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing order
+/// inside the blocks (KLU: BTF + AMD). No number is looked at, so it may precede the rank check.
 class Ordering {
   public:
     /// \pre square. `structurally_regular()` tells whether a perfect matching exists; if not, the rest is empty.
-    template <class Value> explicit Ordering(const Matrix<Value>& matrix) : Ordering(matrix.rows, matrix.start, matrix.row) {}
+    template <class Value>
+    explicit Ordering(const Matrix<Value>& matrix) : Ordering(matrix.rows, matrix.start, matrix.row) {}
     Ordering(int n, std::span<const int> start, std::span<const int> row);
 
     [[nodiscard]] bool structurally_regular() const { return structural_rank_ == n_; }
@@ -43,17 +44,19 @@ class Ordering {
     std::shared_ptr<void> symbolic_;
 };
 
-/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: breadth-first search from the rows where b is
-/// non-zero, through the matching. Unknown c is false => x_c = 0 exactly, for the values stored (when A is regular) and for every
-/// other choice; true => non-zero for generic values, and says nothing of the values stored. Statement T11 (proofs/). Cost O(entries).
-std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,
-                                              std::span<const int> loaded_rows);
+/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: breadth-first search from the rows
+/// where b is non-zero, through the matching. Unknown c is false => x_c = 0 exactly, for the values stored (when A is
+/// regular) and for every other choice; true => non-zero for generic values, and says nothing of the values stored.
+/// Statement T11 (proofs/). Cost O(entries).
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
+                                               const Ordering& ordering, std::span<const int> loaded_rows);
 
 /// The same with the matching alone (`matched[r]` = column matched to row r): a fifth of the cost of an `Ordering`.
-std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, std::span<const int> matched,
-                                              std::span<const int> loaded_rows);
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
+                                               std::span<const int> matched, std::span<const int> loaded_rows);
 
-/// A perfect matching of rows to columns of a square pattern (BTF), or empty when there is none: the matrix is then singular for all values.
+/// A perfect matching of rows to columns of a square pattern (BTF), or empty when there is none: the matrix is then
+/// singular for all values.
 std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<const int> row);
 
 } // namespace isostat::sparse

@@ -76,11 +76,12 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
     }
     if (mode == Mode::resume) {
         open_for_resume();
-    } else {
+    } else if (holds_a_run) {
         for (const char* name : run_files) {
             fs::remove(directory_ / name);
         }
         fs::remove_all(directory_ / "states");
+        fs::remove_all(directory_ / "figures");
     }
     make_directory(directory_ / "states");
     fs::remove(directory_ / "summary.json"); // of the interrupted run: it must not look like that of this one
@@ -135,6 +136,7 @@ void RunDirectory::open_for_resume() {
     point.counters = counters_from(file.at("counters"));
     StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path.string());
     point.state = state.state;
+    segment_ = point.segment;
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);
     for (const char* name : {"events.jsonl", "equilibria.csv"}) {
@@ -151,7 +153,7 @@ void RunDirectory::open_for_resume() {
 
 std::optional<State<2>> RunDirectory::start() const {
     const fs::path path = directory_ / "start.json";
-    if (!fs::exists(path)) {
+    if (!resumed_ || !fs::exists(path)) { // a file of that name in a new folder is not ours
         return std::nullopt;
     }
     return read_state<2>(path).state;

@@ -70,7 +70,7 @@ class RunDirectory final : public RunObserver<2> {
     [[nodiscard]] const std::optional<Checkpoint>& checkpoint() const { return checkpoint_; }
     /// "completed", "failed: ...", ... of the interrupted run; "running" when it was killed; empty in a fresh one.
     [[nodiscard]] const std::string& previous_status() const { return previous_status_; }
-    /// The state that the run starts from, kept beside it (start.json): none before `store_start`.
+    /// The state that the interrupted run started from, kept beside it (start.json); none in a fresh run.
     [[nodiscard]] std::optional<State<2>> start() const;
     void store_start(const State<2>& state);
     /// The state of an equilibrium that was stored. Throws `Error(bad_input)` when it was not.
@@ -97,6 +97,7 @@ class RunDirectory final : public RunObserver<2> {
     std::filesystem::path directory_;
     RunHeader header_;
     const RunCounters& counters_;
+    bool resumed_;
     std::unique_ptr<Files> files_;
     std::optional<Checkpoint> checkpoint_;
     std::string previous_status_, provenance_, summary_;

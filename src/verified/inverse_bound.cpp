@@ -1,5 +1,7 @@
 #include <isostat/verified/inverse_bound.hpp>
 
+#include "verified/extended_cholesky.hpp"
+
 #include <cholmod.h>
 
 #include <algorithm>
@@ -191,7 +193,7 @@ InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& facto
     if (!std::isfinite(bound)) {
         return {};
     }
-    return {Verdict::proved, 1 / bound * (1 - 1e-15), true};
+    return {Verdict::proved, 1 / bound * (1 - 1e-15), InverseBound::Route::rows};
 }
 
 } // namespace
@@ -211,7 +213,8 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
         iterations = 8;
     }
     const double entry_error = rounding_of_entries(h);
-    double shift = 0.5 * estimate(factorisation, cache.vector, iterations);
+    const double estimated = estimate(factorisation, cache.vector, iterations);
+    double shift = 0.5 * estimated;
     if (std::isfinite(shift) && shift > 0) {
         Cholesky cholesky(h, cache.permutation);
         for (int attempt = 0; attempt < 4; ++attempt, shift /= 8) {
@@ -222,9 +225,19 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
             // A bound that lost more than half to rounding is better made by rows.
             const double sigma = square > 0 ? std::sqrt(square) * (1 - 4 * u) - entry_error : 0;
             if (square > 0.25 * shift && sigma > 0) {
-                return {Verdict::proved, sigma, false};
+                return {Verdict::proved, sigma, InverseBound::Route::cholesky};
             }
             break;
+        }
+    }
+    for (double square = 0.5 * estimated; square > 1e-24 && std::isfinite(square); square /= 64) {
+        const double proved = shifted_cholesky_double_double(h, square);
+        const double sigma = proved > 0 ? std::sqrt(proved) * (1 - 4 * u) - entry_error : 0;
+        if (sigma > 0) {
+            return {Verdict::proved, sigma, InverseBound::Route::double_double};
+        }
+        if (proved > 0) {
+            break; // the entries themselves are not known well enough
         }
     }
     return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};

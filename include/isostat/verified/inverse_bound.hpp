@@ -15,7 +15,8 @@ namespace isostat {
 struct InverseBound {
     Verdict verdict = Verdict::undecided;
     double sigma_min = 0;
-    bool by_rows = false; ///< the Cholesky route failed, the inverse was verified row by row
+    /// Which argument proved it.
+    enum class Route : unsigned char { cholesky, double_double, rows } route = Route::cholesky;
 };
 
 /// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity.
@@ -26,10 +27,10 @@ struct InverseBoundCache {
 
 /// First route: Cholesky factorisation (CHOLMOD, simplicial, in round to nearest) of H H^T - s I with s chosen from a
 /// few inverse iterations; when it runs to the end, lambda_min(H H^T) >= s - E with E bounded a priori (statement V1 in
-/// proofs/). Works down to sigma_min ~ 1e-5. Second route, when the first fails at every useful s: R ~ H^-1 row by row
-/// from the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement V2); one pair of
-/// solves per row. It is tried when size <= `row_limit`. Cost of the first route: 6-15 ms at n = 4900; of the second
-/// about 1 s there.
+/// proofs/). Works down to sigma_min ~ 1e-5; 3 to 9 ms at n = 1936 to 4900. Second route, when rounding hides sigma_min
+/// there: the same in double-double (Eigen), down to sigma_min ~ 1e-12; about 0.3 s at n = 4900. Third route:
+/// R ~ H^-1 row by row from the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement
+/// V2); one solve per row, tried when size <= `row_limit`.
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
                            InverseBoundCache& cache, int row_limit = 20000);

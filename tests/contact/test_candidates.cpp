@@ -180,15 +180,50 @@ BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
         std::fill(packing.radius.begin(), packing.radius.end(), scale);
         check_against_every_pair(packing, 0.82);
         check_verdict(packing, 0);
-        packing.q[0] = std::nextafter(packing.q[2] - 2 * scale, packing.q[2]);
-        packing.q[0] = packing.q[2];
-        packing.q[1] = packing.q[3] - 2 * scale;
+        packing.q[1] = packing.q[3] - 2 * scale; // tangent to the next one
+        check_verdict(packing, 0);
+        packing.q[1] = std::nextafter(packing.q[1], packing.q[3]);
         check_verdict(packing, 0);
     }
     Packing<2> giant = pair_at(1e9 + 1, 0, 1e9, 1);
     append(giant, 1e9 + 1, 2.5, 1);
     check_against_every_pair(giant, 0.82);
     check_verdict(giant, 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found_though_no_edge_overlaps) {
+    // The small disk is hidden in the triangulation; the others are apart.
+    Packing<2> packing = square_lattice(4, 2.25);
+    append(packing, 2.3, 2.2, 0.25);
+    BOOST_TEST(!near_pairs_by_triangulation(packing, 0.2).has_value());
+    check_against_every_pair(packing, 0.82);
+    check_verdict(packing, 0);
+}
+
+BOOST_AUTO_TEST_CASE(deep_overlaps_without_hidden_disk_are_found) {
+    // Equal disks on a step far below their diameter: no vertex is hidden, most overlapping pairs are no edges.
+    Packing<2> packing = square_lattice(6, 0.5);
+    BOOST_TEST(!near_pairs_by_triangulation(packing, 0.5).has_value());
+    check_against_every_pair(packing, 0.82);
+    check_verdict(packing, 0);
+    check_verdict(packing, 1.5);
+}
+
+BOOST_AUTO_TEST_CASE(powers_of_two_in_the_unit_change_nothing) {
+    Random random(5);
+    Packing<2> packing = grown_cluster(80, 8, random, [&] { return random.real(0, 1); });
+    enclose(packing, 0.25);
+    const std::vector<Contact> reference = find_candidates(packing, 0.82).contacts;
+    for (const int exponent : {-900, -560, -20, 20, 560, 900}) {
+        Packing<2> scaled = packing;
+        for (std::vector<double>* lengths : {&scaled.q, &scaled.radius}) {
+            for (double& x : *lengths) {
+                x = std::ldexp(x, exponent);
+            }
+        }
+        BOOST_TEST((find_candidates(scaled, 0.82).contacts == reference));
+        check_verdict(scaled, 0);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(fixed_disks_are_listed_only_against_what_can_move) {
@@ -262,6 +297,25 @@ BOOST_AUTO_TEST_CASE(overlaps_below_double_precision_are_seen) {
     BOOST_TEST((certify_admissible(packing, 0).verdict == Verdict::refuted));
     packing.q[0] = -0x1p-1000;
     BOOST_TEST((certify_admissible(packing, 0).verdict == Verdict::proved));
+    // A right triangle with 52-bit integer sides: double-double is full with the squares alone.
+    const double m = 80000001;
+    const double k = 31415926;
+    Packing<2> wide = pair_at(m * m - k * k, 2 * m * k, m * m, k * k);
+    BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::proved));
+    wide.q[0] = 0x1p-300;
+    BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::refuted));
+    wide.q[0] = -0x1p-300;
+    BOOST_TEST((certify_admissible(wide, 0).verdict == Verdict::proved));
+    // The same for a wall.
+    Packing<2> wall = empty_cluster();
+    append(wall, 1, 1, 1);
+    wall.walls = Walls<2>::box();
+    wall.q = {1, 1, 2, 2};
+    BOOST_TEST((certify_admissible(wall, 0).verdict == Verdict::proved));
+    BOOST_TEST((certify_admissible(wall, 0x1p-1000).verdict == Verdict::proved));
+    wall.q[3] = std::nextafter(2.0, 0.0);
+    BOOST_TEST((certify_admissible(wall, 0x1p-52).verdict == Verdict::proved));
+    BOOST_TEST((certify_admissible(wall, std::nextafter(0x1p-52, 0.0)).verdict == Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_CASE(verdicts_agree_with_rationals_on_tangent_clusters) {

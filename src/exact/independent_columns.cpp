@@ -1,5 +1,4 @@
 #include <isostat/exact/independent_columns.hpp>
-
 #include <isostat/exact/rank.hpp>
 
 #include <algorithm>
@@ -34,7 +33,8 @@ std::vector<int> independent_columns(const sparse::Matrix<std::uint64_t>& matrix
                 }
             }
         };
-        for (int e = matrix.start[static_cast<std::size_t>(column)]; e < matrix.start[static_cast<std::size_t>(column) + 1]; ++e) {
+        for (int e = matrix.start[static_cast<std::size_t>(column)];
+             e < matrix.start[static_cast<std::size_t>(column) + 1]; ++e) {
             const auto s = static_cast<std::size_t>(e);
             x[static_cast<std::size_t>(matrix.row[s])] = matrix.value[s];
             touch(matrix.row[s]);

@@ -35,12 +35,40 @@ struct Distance {
     double error;
 };
 
+/// \pre lengths between `smallest_length` and `largest_length`.
 Distance measure(const Packing<2>& packing, std::size_t i, std::size_t j) {
-    // hypot neither overflows nor underflows; its error is below 1 ulp.
+    const double dx = packing.q[2 * j] - packing.q[2 * i];
+    const double dy = packing.q[2 * j + 1] - packing.q[2 * i + 1];
+    const double distance = std::sqrt(dx * dx + dy * dy);
+    const double radii = packing.radius[i] + packing.radius[j];
+    return {distance - radii, rounding(distance, radii)};
+}
+
+/// The same for any lengths: hypot neither overflows nor underflows, and its error is below 1 ulp.
+Distance measure_any(const Packing<2>& packing, std::size_t i, std::size_t j) {
     const double distance =
         std::hypot(packing.q[2 * j] - packing.q[2 * i], packing.q[2 * j + 1] - packing.q[2 * i + 1]);
     const double radii = packing.radius[i] + packing.radius[j];
     return {distance - radii, rounding(distance, radii)};
+}
+
+/// Sorts disk pairs in linear time: buckets by the first disk, each a few pairs long.
+void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
+    std::vector<std::size_t> end(disk_count + 1, 0);
+    for (const Contact& pair : pairs) {
+        ++end[static_cast<std::size_t>(pair.i) + 1];
+    }
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Contact> sorted(pairs.size());
+    std::vector<std::size_t> next(end.begin(), end.end() - 1);
+    for (const Contact& pair : pairs) {
+        sorted[next[static_cast<std::size_t>(pair.i)]++] = pair;
+    }
+    for (std::size_t i = 0; i < disk_count; ++i) {
+        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(end[i]),
+                  sorted.begin() + static_cast<std::ptrdiff_t>(end[i + 1]));
+    }
+    pairs = std::move(sorted);
 }
 
 } // namespace
@@ -73,6 +101,7 @@ std::optional<std::vector<Contact>> near_pairs_by_triangulation<2>(const Packing
         return std::nullopt;
     }
     std::vector<Contact> pairs;
+    pairs.reserve(3 * points.size());
     for (const auto& [face, opposite] : triangulation.finite_edges()) {
         const int a = face->vertex(Triangulation::ccw(opposite))->info();
         const int b = face->vertex(Triangulation::cw(opposite))->info();
@@ -86,7 +115,7 @@ std::optional<std::vector<Contact>> near_pairs_by_triangulation<2>(const Packing
             pairs.push_back({ContactKind::disk_disk, static_cast<int>(i), static_cast<int>(j)});
         }
     }
-    std::sort(pairs.begin(), pairs.end());
+    sort_pairs(pairs, packing.radius.size());
     return pairs;
 }
 
@@ -96,7 +125,7 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
     double extent = reach;
     for (std::size_t i = 0; i < n; ++i) {
         left[i] = {packing.q[2 * i] - packing.radius[i], i};
-        extent = std::max(extent, std::abs(packing.q[2 * i]) + packing.radius[i]);
+        extent = std::max({extent, std::abs(packing.q[2 * i]) + packing.radius[i], std::abs(packing.q[2 * i + 1])});
     }
     std::sort(left.begin(), left.end());
     const double slack = reach + 16 * u * extent;
@@ -106,14 +135,17 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
         const double right = packing.q[2 * i] + packing.radius[i] + slack;
         for (std::size_t b = a + 1; b < n && left[b].first <= right; ++b) {
             const std::size_t j = left[b].second;
-            const Distance d = measure(packing, i, j);
+            if (std::abs(packing.q[2 * j + 1] - packing.q[2 * i + 1]) > packing.radius[i] + packing.radius[j] + slack) {
+                continue; // apart along the other axis already
+            }
+            const Distance d = measure_any(packing, i, j);
             if (d.gap - d.error < reach) {
                 pairs.push_back(
                     {ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
             }
         }
     }
-    std::sort(pairs.begin(), pairs.end());
+    sort_pairs(pairs, n);
     return pairs;
 }
 

@@ -2,17 +2,26 @@
 
 #include <klu.h>
 
+#include <cassert>
+#include <new>
+
 namespace isostat::sparse {
 
 Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) : n_(n) {
+    if (n == 0) {
+        block_start_ = {0}; // KLU refuses an empty matrix
+        return;
+    }
     klu_common common;
     klu_defaults(&common);
     // KLU's interface is not const-correct; the pattern is only read.
-    klu_symbolic* symbolic = klu_analyze(n, const_cast<int*>(start.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-                                         const_cast<int*>(row.data()),       // NOLINT(cppcoreguidelines-pro-type-const-cast)
-                                         &common);
+    klu_symbolic* symbolic =
+        klu_analyze(n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                    const_cast<int*>(row.data()),      // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                    &common);
     if (symbolic == nullptr) {
-        return;
+        assert(common.status != KLU_INVALID); // n < 0, or no arrays: a programming error; otherwise memory is short
+        throw std::bad_alloc();
     }
     symbolic_ = std::shared_ptr<void>(symbolic, [](void* pointer) {
         klu_common release;
@@ -28,8 +37,9 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     }
 }
 
-std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row, const Ordering& ordering,
-                                               std::span<const int> loaded_rows) {
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
+                                               const Ordering& ordering, std::span<const int> loaded_rows) {
+    assert(ordering.structurally_regular());
     const std::size_t n = ordering.row_order().size();
     std::vector<int> matched(n);
     for (std::size_t k = 0; k < n; ++k) {

@@ -38,7 +38,8 @@ template <int Dim> std::string to_string(const Contact& contact) {
     case ContactKind::lower_wall: return fmt::format("{}-{}", contact.i, lower_name[axis]);
     case ContactKind::upper_wall: return fmt::format("{}-{}", contact.i, upper_name[axis]);
     case ContactKind::held:
-        return fmt::format("held {} of grain {}", axis_name[static_cast<std::size_t>(contact.i % Dim)], contact.i / Dim);
+        return fmt::format("held {} of grain {}", axis_name[static_cast<std::size_t>(contact.i % Dim)],
+                           contact.i / Dim);
     }
     return {};
 }
@@ -94,7 +95,8 @@ template <int Dim> double gap_curvature(const Packing<Dim>& packing, const Conta
     double speed = 0;
     double square = 0;
     for (std::size_t a = 0; a < Dim; ++a) {
-        const double u = v[static_cast<std::size_t>(Dim * contact.j) + a] - v[static_cast<std::size_t>(Dim * contact.i) + a];
+        const double u =
+            v[static_cast<std::size_t>(Dim * contact.j) + a] - v[static_cast<std::size_t>(Dim * contact.i) + a];
         speed += u * d[a] / length;
         square += u * u;
     }

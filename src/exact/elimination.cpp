@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 
 namespace isostat::exact {
 
-void Elimination::start(std::size_t rows) {
+template <class Field> void Elimination<Field>::start(std::size_t rows) {
     work_.assign(rows, 0);
     state_.assign(rows, -1);
     row_of_.clear();
@@ -23,8 +22,9 @@ void Elimination::start(std::size_t rows) {
     pivots_ = 0;
 }
 
-bool Elimination::append(std::span<const int> rows, std::span<const std::uint64_t> values, int preferred,
-                         std::span<const int> weight) {
+template <class Field>
+bool Elimination<Field>::append(std::span<const int> rows, std::span<const Value> values, int preferred,
+                                std::span<const int> weight) {
     below_.clear();
     reached_.clear();
     for (std::size_t e = 0; e < rows.size(); ++e) {
@@ -47,7 +47,7 @@ bool Elimination::append(std::span<const int> rows, std::span<const std::uint64_
 }
 
 /// Depth-first search from one row through the nodes: fills `below_`, `reached_` and `low_`.
-void Elimination::reach(int row) {
+template <class Field> void Elimination<Field>::reach(int row) {
     const int mark = -2 - column_;
     if (state_[static_cast<std::size_t>(row)] < 0) {
         if (state_[static_cast<std::size_t>(row)] != mark) {
@@ -81,7 +81,7 @@ void Elimination::reach(int row) {
 }
 
 /// The search meets a pivot: whether its node is new to the column in work, and then it is put on the stack.
-bool Elimination::enter(int pivot) {
+template <class Field> bool Elimination<Field>::enter(int pivot) {
     const int node = node_of_[static_cast<std::size_t>(pivot)];
     const auto s = static_cast<std::size_t>(node);
     const int first_column = pivot - nodes_[s].first;
@@ -95,46 +95,37 @@ bool Elimination::enter(int pivot) {
     return true;
 }
 
-namespace {
-
-/// x[row[q]] += sum over k of l[k][q] * factor[k]. One reduction for all: at most four products below (2^61 + 7) 2^61
-/// make a folded sum below 4 (2^61 + 7) + 2^61, so that adding x does not overflow.
-template <std::size_t Columns, std::size_t... K>
-void add_products(const std::array<const std::uint64_t*, Columns>& l, const std::array<std::uint64_t, Columns>& factor,
-                  const int* row, int begin, int end, std::uint64_t* x, std::index_sequence<K...>) {
-    static_assert(Columns <= 4);
-    for (std::ptrdiff_t q = begin; q < end; ++q) {
-        const Wide sum = ((static_cast<Wide>(std::get<K>(l)[q]) * std::get<K>(factor)) + ...);
-        x[row[q]] = fold(x[row[q]] + fold_wide(sum));
-    }
-}
-
-} // namespace
-
 /// Subtracts from the column in work what makes its rows at `Columns` successive pivots of the node vanish.
-template <int Columns> void Elimination::act_together(const Node& node, int column) {
-    std::array<std::uint64_t, Columns> factor{};
-    std::array<const std::uint64_t*, Columns> l{};
-    const int* const row = rows_.data() + node.begin;
-    for (int c = 0; c < Columns; ++c) {
-        const auto pivot = static_cast<std::size_t>(node.first + column + c);
-        const auto k = static_cast<std::size_t>(c);
-        std::uint64_t entry = work_[static_cast<std::size_t>(row_of_[pivot])];
-        work_[static_cast<std::size_t>(row_of_[pivot])] = 0;
+template <class Field>
+template <std::size_t Columns>
+void Elimination<Field>::act_together(const Node& node, int column) {
+    std::array<Value, Columns> factor{};
+    std::array<const Value*, Columns> l{};
+    for (std::size_t k = 0; k < Columns; ++k) {
+        const auto pivot = static_cast<std::size_t>(node.first + column) + k;
         l[k] = column_values(static_cast<int>(pivot));
-        for (std::size_t b = 0; b < k; ++b) { // what the first of these columns do to the pivot rows of the others
-            entry = fold(entry + product(l[b][column + c - 1], factor[b]));
+    }
+    for (std::size_t k = 0; k < Columns; ++k) {
+        const auto pivot = static_cast<std::size_t>(node.first + column) + k;
+        // What the first of these columns do to the pivot rows of the others.
+        Word entry = std::exchange(work_[static_cast<std::size_t>(row_of_[pivot])], 0);
+        for (std::size_t b = 0; b < k; ++b) {
+            entry = Field::template add_products<1>(entry, {l[b]}, {factor[b]}, column + static_cast<int>(k) - 1);
         }
         if (reciprocal_[pivot] == 0) {
             invert_pending();
         }
-        factor[k] = mersenne61 - canonical(product(entry, reciprocal_[pivot])); // negated: elimination adds
+        factor[k] = Field::negate(Field::multiply(Field::canonical(entry), reciprocal_[pivot])); // elimination adds
     }
-    add_products(l, factor, row, column + Columns - 1, node.end - node.begin, work_.data(),
-                 std::make_index_sequence<Columns>());
+    const int* const row = rows_.data() + node.begin;
+    Word* const work = work_.data();
+    const std::ptrdiff_t end = node.end - node.begin;
+    for (std::ptrdiff_t q = column + static_cast<int>(Columns) - 1; q < end; ++q) {
+        work[row[q]] = Field::add_products(work[row[q]], l, factor, q);
+    }
 }
 
-void Elimination::act(const Node& node, int first_column) {
+template <class Field> void Elimination<Field>::act(const Node& node, int first_column) {
     int column = first_column;
     for (; node.width - column >= 4; column += 4) {
         act_together<4>(node, column);
@@ -147,8 +138,8 @@ void Elimination::act(const Node& node, int first_column) {
     }
 }
 
-int Elimination::choose_pivot(int preferred, std::span<const int> weight) const {
-    const auto candidate = [&](int row) { return canonical(work_[static_cast<std::size_t>(row)]) != 0; };
+template <class Field> int Elimination<Field>::choose_pivot(int preferred, std::span<const int> weight) const {
+    const auto candidate = [&](int row) { return Field::canonical(work_[static_cast<std::size_t>(row)]) != 0; };
     if (preferred >= 0) {
         const auto r = static_cast<std::size_t>(preferred);
         if (state_[r] == -2 - column_ && candidate(preferred)) {
@@ -169,13 +160,13 @@ int Elimination::choose_pivot(int preferred, std::span<const int> weight) const 
 }
 
 /// Makes the column in work a column of L: of the last node when the rows agree, otherwise of a new one.
-void Elimination::store(int pivot_row) {
+template <class Field> void Elimination<Field>::store(int pivot_row) {
     const auto r = static_cast<std::size_t>(pivot_row);
     state_[r] = pivots_;
     row_of_.push_back(pivot_row);
     reciprocal_.push_back(0);
     if (below_.size() > 1) {
-        pending_.emplace_back(static_cast<std::size_t>(pivots_), canonical(work_[r]));
+        pending_.emplace_back(static_cast<std::size_t>(pivots_), Field::canonical(work_[r]));
     } else {
         reciprocal_.back() = 1; // acts on nothing
     }
@@ -192,11 +183,11 @@ void Elimination::store(int pivot_row) {
         rows_.resize(static_cast<std::size_t>(end));
         values_.resize(values_.size() + below_.size() - 1);
         int* next_row = rows_.data() + begin;
-        std::uint64_t* next_value = column_values(pivots_);
+        Value* next_value = column_values(pivots_);
         for (const int row : below_) {
             if (row != pivot_row) { // zeros stay too: pruning and supernodes rely on the structural pattern
                 *next_row++ = row;
-                *next_value++ = work_[static_cast<std::size_t>(row)];
+                *next_value++ = Field::canonical(work_[static_cast<std::size_t>(row)]);
             }
         }
         nodes_.push_back({pivots_, 1, begin, end, end, false});
@@ -208,20 +199,20 @@ void Elimination::store(int pivot_row) {
     prune(pivot_row);
 }
 
-void Elimination::join(Node& node, int pivot_row) {
+template <class Field> void Elimination<Field>::join(Node& node, int pivot_row) {
     const int place = node.begin + node.width - 1;
     const auto* found = std::find(rows_.data() + place, rows_.data() + node.end, pivot_row);
     exchange_rows(node, place, static_cast<int>(found - rows_.data()));
     ++node.width;
     value_begin_.push_back(static_cast<std::ptrdiff_t>(values_.size()) - (node.width - 1));
     for (int q = place + 1; q < node.end; ++q) {
-        values_.push_back(work_[static_cast<std::size_t>(rows_[static_cast<std::size_t>(q)])]);
+        values_.push_back(Field::canonical(work_[static_cast<std::size_t>(rows_[static_cast<std::size_t>(q)])]));
     }
 }
 
 /// Symmetric pruning: when a node acted on this column and has the new pivot row, later searches from it may stop at
 /// the rows that are pivotal by now: the others are reached through the new pivot.
-void Elimination::prune(int pivot_row) {
+template <class Field> void Elimination<Field>::prune(int pivot_row) {
     for (const int reached : reached_) {
         Node& node = nodes_[static_cast<std::size_t>(reached)];
         if (node.pruned || reached == node_of_.back()) {
@@ -244,32 +235,35 @@ void Elimination::prune(int pivot_row) {
     }
 }
 
-void Elimination::exchange_rows(const Node& node, int a, int b) {
+template <class Field> void Elimination<Field>::exchange_rows(const Node& node, int a, int b) {
     if (a == b) {
         return;
     }
     std::swap(rows_[static_cast<std::size_t>(a)], rows_[static_cast<std::size_t>(b)]);
     for (int c = 0; c < node.width; ++c) {
-        std::uint64_t* const values = column_values(node.first + c);
+        Value* const values = column_values(node.first + c);
         std::swap(values[a - node.begin], values[b - node.begin]);
     }
 }
 
 /// Reciprocals of all pivots found since the last call, with a single inversion: the product of all is inverted and
 /// taken apart.
-void Elimination::invert_pending() {
-    std::uint64_t all = 1;
+template <class Field> void Elimination<Field>::invert_pending() {
+    Value all = 1;
     for (const auto& [pivot, value] : pending_) {
         reciprocal_[pivot] = all; // product of the pivots before, for the way back
-        all = product(all, value);
+        all = Field::multiply(all, value);
     }
-    all = inverse(canonical(all));
+    all = Field::inverse(all);
     for (std::size_t b = pending_.size(); b-- > 0;) {
         const auto& [pivot, value] = pending_[b];
-        reciprocal_[pivot] = product(reciprocal_[pivot], all);
-        all = product(all, value);
+        reciprocal_[pivot] = Field::multiply(reciprocal_[pivot], all);
+        all = Field::multiply(all, value);
     }
     pending_.clear();
 }
+
+template class Elimination<Field<61>>;
+template class Elimination<Field<31>>;
 
 } // namespace isostat::exact

@@ -16,10 +16,11 @@ namespace isostat::exact {
 namespace {
 
 /// Rank of one diagonal block. `position` numbers the rows of the whole matrix in the order of the blocks.
-int block_rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering,
-               const std::vector<int>& position, int first, int last, Elimination& elimination) {
+template <class Field>
+int block_rank(const sparse::Matrix<typename Field::Value>& matrix, const sparse::Ordering& ordering,
+               const std::vector<int>& position, int first, int last, Elimination<Field>& elimination) {
     std::vector<int> rows;
-    std::vector<std::uint64_t> values;
+    std::vector<typename Field::Value> values;
     elimination.start(static_cast<std::size_t>(last - first));
     for (int k = first; k < last; ++k) {
         rows.clear();
@@ -55,9 +56,8 @@ std::vector<int> colamd_order(const sparse::Matrix<std::uint64_t>& matrix) {
     return order;
 }
 
-} // namespace
-
-int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering) {
+template <class Field>
+int rank_in_blocks(const sparse::Matrix<typename Field::Value>& matrix, const sparse::Ordering& ordering) {
     assert(ordering.structurally_regular() && ordering.row_order().size() == static_cast<std::size_t>(matrix.rows));
     const std::vector<int>& block_start = ordering.block_start();
     std::vector<int> position(static_cast<std::size_t>(matrix.rows));
@@ -65,12 +65,22 @@ int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& or
         position[static_cast<std::size_t>(ordering.row_order()[k])] = static_cast<int>(k);
     }
     // Kept between calls: a run proves the rank of ten thousands of matrices of the same size.
-    thread_local Elimination elimination;
+    thread_local Elimination<Field> elimination;
     int total = 0;
     for (std::size_t b = 0; b + 1 < block_start.size(); ++b) {
         total += block_rank(matrix, ordering, position, block_start[b], block_start[b + 1], elimination);
     }
     return total;
+}
+
+} // namespace
+
+int rank(const sparse::Matrix<std::uint64_t>& matrix, const sparse::Ordering& ordering) {
+    return rank_in_blocks<Field<61>>(matrix, ordering);
+}
+
+int rank(const sparse::Matrix<std::uint32_t>& matrix, const sparse::Ordering& ordering) {
+    return rank_in_blocks<Field<31>>(matrix, ordering);
 }
 
 int rank(const sparse::Matrix<std::uint64_t>& matrix) {
@@ -81,7 +91,7 @@ int rank(const sparse::Matrix<std::uint64_t>& matrix) {
     for (const int row : matrix.row) {
         ++weight[static_cast<std::size_t>(row)];
     }
-    Elimination elimination;
+    Elimination<Field<61>> elimination;
     elimination.start(weight.size());
     for (const int column : colamd_order(matrix)) {
         const auto begin = static_cast<std::size_t>(matrix.start[static_cast<std::size_t>(column)]);

@@ -32,9 +32,9 @@ Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
     self.common.halt_if_singular = 0;
     self.n = matrix.rows;
     // KLU's interface is not const-correct; it does not write to the pattern or the values.
-    auto* start = const_cast<int*>(matrix.start.data());      // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    auto* row = const_cast<int*>(matrix.row.data());          // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    auto* value = const_cast<double*>(matrix.value.data());   // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    auto* start = const_cast<int*>(matrix.start.data());    // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    auto* row = const_cast<int*>(matrix.row.data());        // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    auto* value = const_cast<double*>(matrix.value.data()); // NOLINT(cppcoreguidelines-pro-type-const-cast)
     self.analysis = structure.ordering().symbolic();
     self.symbolic = static_cast<klu_symbolic*>(self.analysis.get());
     self.numeric = klu_factor(start, row, value, self.symbolic, &self.common);

@@ -1,6 +1,5 @@
-#include <isostat/motion/arc.hpp>
-
 #include <isostat/contact/contact_set.hpp>
+#include <isostat/motion/arc.hpp>
 
 #include <fmt/format.h>
 
@@ -13,7 +12,8 @@ namespace isostat {
 
 namespace {
 
-/// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no sign rests on them.
+/// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
+/// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -139,7 +139,8 @@ template <int Dim> class Follower {
         double previous = infinity;
         last_iterations_ = 0;
         for (int k = 0; k < 60; ++k) {
-            chord([&](const Contact& c) { return gap(at, c); }, [&](const Vector& v) { return row(at, v); }, target(at));
+            chord([&](const Contact& c) { return gap(at, c); }, [&](const Vector& v) { return row(at, v); },
+                  target(at));
             const double size = largest(y_);
             if (!(size < infinity)) {
                 return false;
@@ -161,7 +162,8 @@ template <int Dim> class Follower {
 
     bool converge_to_coordinate(Packing<Dim>& at) {
         return converge(
-            at, [&](const Packing<Dim>&, const Vector& v) { return v[fastest_]; }, [](const Packing<Dim>&) { return 0.0; });
+            at, [&](const Packing<Dim>&, const Vector& v) { return v[fastest_]; },
+            [](const Packing<Dim>&) { return 0.0; });
     }
 
     bool converge_to_event(Packing<Dim>& at, const Contact& closing) {
@@ -305,7 +307,8 @@ template <int Dim> class Follower {
     }
 
     /// A candidate that dips to or below 0 inside a step of length s without being negative at its end.
-    std::optional<double> suspicious_dip(const Packing<Dim>& at, const Vector& t, double s, const Contact& except) const {
+    std::optional<double> suspicious_dip(const Packing<Dim>& at, const Vector& t, double s,
+                                         const Contact& except) const {
         std::optional<double> where;
         for (std::size_t c = 0; c < active_.size(); ++c) {
             const double d0 = start_rate_[c];
@@ -319,9 +322,12 @@ template <int Dim> class Follower {
             const double h0 = start_gap_[c];
             const double h1 = gap(at, active_[c]);
             const Dip dip = lowest_point(h0, d0, h1, d1, s);
-            // The cubic is good to a small part of the depth of the dip; a tenth of it is kept as distance.
+            // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step); h is taken as 40 depths, far
+            // above what a disk rolling through a step of a tenth of a radius has. It vanishes at the ends, where the
+            // gap is known.
             const double depth = std::max(h0, h1) - dip.value;
-            if (dip.value <= 0.1 * depth && (!where || dip.position < *where)) {
+            const double x = dip.position / s;
+            if (dip.value <= 1.6 * depth * x * x * (1 - x) * (1 - x) && (!where || dip.position < *where)) {
                 where = dip.position;
             }
         }
@@ -329,8 +335,8 @@ template <int Dim> class Follower {
     }
 
     /// Candidate that is below 0 at `at` and whose gap reached 0 first, with the estimate of where.
-    std::optional<std::pair<std::size_t, double>> first_violation(const Packing<Dim>& at, double s, const Contact& except,
-                                                                  double noise) const {
+    std::optional<std::pair<std::size_t, double>> first_violation(const Packing<Dim>& at, double s,
+                                                                  const Contact& except, double noise) const {
         std::optional<std::pair<std::size_t, double>> found;
         for (std::size_t c = 0; c < active_.size(); ++c) {
             if (active_[c] == except) {
@@ -410,7 +416,8 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
     tangent_ = best->tangent;
     choose_fastest();
     snap_to_grid(best->at);
-    return finish(std::move(best->at), ArcEnd::power_turn, Contact{ContactKind::held, static_cast<int>(fastest_), 0}, p_best);
+    return finish(std::move(best->at), ArcEnd::power_turn, Contact{ContactKind::held, static_cast<int>(fastest_), 0},
+                  p_best);
 }
 
 template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
@@ -473,7 +480,8 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
             point = step_to(s);
             if (!point) {
                 if (shrink < 1e-9) {
-                    return Failure{FailureKind::not_converged, "the path could not be followed: steps became too short"};
+                    return Failure{FailureKind::not_converged,
+                                   "the path could not be followed: steps became too short"};
                 }
                 if (auto failure = narrow()) {
                     return *failure;
@@ -501,6 +509,9 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 if (!(reached >= -noise) || reached > 1.5 * std::max(s_max, s_event) + noise) {
                     break; // another root
                 }
+                if (at_start && closing == opened_ && reached < 0.25 * s_event) {
+                    break; // the start itself: the gap that opens is zero there too
+                }
                 s = std::max(reached, 0.0);
                 if (s > noise) {
                     if (const auto violation = first_violation(at, s, closing, noise)) {
@@ -519,8 +530,8 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
             if (!accepted) {
                 // The direct solve failed: shorten the step, and renew the factors when that does not help.
                 if (s_max < 1e-12 * step_limit_ || shrink < 1e-9) {
-                    return Failure{FailureKind::not_converged,
-                                   fmt::format("the event at contact {} was not reached", to_string<Dim>(active_[event]))};
+                    return Failure{FailureKind::not_converged, fmt::format("the event at contact {} was not reached",
+                                                                           to_string<Dim>(active_[event]))};
                 }
                 if (!renewed_here) {
                     if (auto failure = renew()) {
@@ -537,14 +548,16 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         if (s > noise) {
             if (const auto dip = suspicious_dip(point->at, point->tangent, s, closing)) {
                 if (*dip < 1e-9 * step_limit_) {
-                    return Failure{FailureKind::undecided, "a gap touches zero inside an arc and cannot be told from a contact"};
+                    return Failure{FailureKind::undecided,
+                                   "a gap touches zero inside an arc and cannot be told from a contact"};
                 }
                 forced_step = std::max(*dip, 0.05 * s);
                 continue;
             }
         }
         const double p_end = power_of(point->at, point->tangent);
-        // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force in the new contact.
+        // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
+        // in the new contact.
         const bool judged = !(power_.starts_at_zero && at_start);
         if (judged && p_end < 0 && p_start > 0) {
             return power_turn(0.0, p_start, s, p_end);
@@ -573,8 +586,9 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         shrink = std::min(1.0, 2 * shrink);
         for (int a = 0; a < Dim; ++a) {
             if (std::abs(q_.length(a) / start_.length(a) - 1) > options_.max_length_change) {
-                return Failure{FailureKind::unbounded, fmt::format("the motion has no end: L along axis {} went from {} to {}", a,
-                                                                   start_.length(a), q_.length(a))};
+                return Failure{FailureKind::unbounded,
+                               fmt::format("the motion has no end: L along axis {} went from {} to {}", a,
+                                           start_.length(a), q_.length(a))};
             }
         }
     }
@@ -590,7 +604,7 @@ Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<
     return Follower<Dim>(start, structure, factorisation, opened, direction, power, candidates, options).run();
 }
 
-template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId, int,
-                                      const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
+template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId,
+                                      int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
 
 } // namespace isostat

@@ -33,7 +33,8 @@ template <int Dim> std::vector<double> Load<Dim>::fixed_force(const Packing<Dim>
     for (int a = 0; a < Dim; ++a) {
         const auto axis = static_cast<std::size_t>(a);
         if (a != loaded_axis && packing.walls.upper[axis] == WallKind::movable) {
-            force[static_cast<std::size_t>(Dim * packing.disk_count() + a)] = -stress[axis] * force_per_stress(packing, a);
+            force[static_cast<std::size_t>(Dim * packing.disk_count() + a)] =
+                -stress[axis] * force_per_stress(packing, a);
         }
     }
     return force;

@@ -1,6 +1,5 @@
-#include <isostat/packing/packing.hpp>
-
 #include <isostat/core/error.hpp>
+#include <isostat/packing/packing.hpp>
 
 #include <fmt/format.h>
 
@@ -31,8 +30,12 @@ template <int Dim> Walls<Dim> Walls<Dim>::none() {
     return walls;
 }
 
-template <int Dim> double Packing<Dim>::min_radius() const { return *std::min_element(radius.begin(), radius.end()); }
-template <int Dim> double Packing<Dim>::max_radius() const { return *std::max_element(radius.begin(), radius.end()); }
+template <int Dim> double Packing<Dim>::min_radius() const {
+    return *std::min_element(radius.begin(), radius.end());
+}
+template <int Dim> double Packing<Dim>::max_radius() const {
+    return *std::max_element(radius.begin(), radius.end());
+}
 
 template <int Dim> double Packing<Dim>::solid_fraction() const {
     static_assert(Dim == 2);
@@ -44,8 +47,7 @@ template <int Dim> double Packing<Dim>::solid_fraction() const {
 }
 
 template <int Dim>
-DofMap<Dim>::DofMap(const Packing<Dim>& packing)
-    : disks_(packing.disk_count()), dof_of_(packing.q.size(), -1) {
+DofMap<Dim>::DofMap(const Packing<Dim>& packing) : disks_(packing.disk_count()), dof_of_(packing.q.size(), -1) {
     coordinate_of_.reserve(packing.q.size());
     const auto add = [&](std::size_t coordinate) {
         dof_of_[coordinate] = static_cast<int>(coordinate_of_.size());

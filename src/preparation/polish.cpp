@@ -162,6 +162,15 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
                         "value at least {:.3g}",
                         vertex.max_gap, inverse.sigma_min)};
     }
+    // The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are
+    // within `max_gap` of touching, as computed; the grid steps cover the error of computing it.
+    const Admissibility admissible = certify_admissible(packing, 2 * vertex.max_gap + 4 * grid_step(packing));
+    if (admissible.verdict != Verdict::proved) {
+        const bool overlap = admissible.verdict == Verdict::refuted;
+        return Failure{overlap ? FailureKind::overlap : FailureKind::undecided,
+                       fmt::format("{}: {} has gap {:.3g}", overlap ? "overlap" : "non-overlap was not proved",
+                                   to_string<Dim>(admissible.worst), admissible.worst_gap)};
+    }
     const Result<double> others = check_other_gaps(packing, structure, factorisation, inverse, vertex);
     if (!others.ok()) {
         return others.failure();

@@ -211,7 +211,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
         }
         advance(dt, true);
         if (step % report_interval == 0) {
-            progress_(1 - error);
+            progress_(std::clamp(1 - error, 0.0, 1.0));
         }
     }
     std::fill(velocity_.begin(), velocity_.end(), 0.0);

@@ -1,6 +1,5 @@
-#include <isostat/rigidity/counting.hpp>
-
 #include <isostat/exact/independent_columns.hpp>
+#include <isostat/rigidity/counting.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <algorithm>
@@ -12,7 +11,8 @@ template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const st
     Counting counting;
     counting.dof_count = dofs.dof_count();
     counting.contact_count = static_cast<int>(contacts.size());
-    // The identity behind H completes its independent columns to a basis: the unit columns used are the degrees of freedom to hold.
+    // The identity behind H completes its independent columns to a basis: the unit columns used are the degrees of
+    // freedom to hold.
     sparse::Matrix<std::uint64_t> matrix = exact_contact_matrix(packing, dofs, contacts);
     for (int mu = 0; mu < counting.dof_count; ++mu) {
         matrix.row.push_back(mu);

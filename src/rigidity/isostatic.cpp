@@ -1,6 +1,5 @@
-#include <isostat/rigidity/isostatic.hpp>
-
 #include <isostat/exact/rank.hpp>
+#include <isostat/rigidity/isostatic.hpp>
 
 #include <fmt/format.h>
 
@@ -42,6 +41,52 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
     return matrix;
 }
 
+/// H with columns scaled by the distance of the centres, over the field with `modulus` elements; `reduce` maps a double
+/// to it.
+template <int Dim, class Value, class Reduce>
+sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
+                                             const std::vector<Contact>& contacts, Value modulus, Reduce reduce) {
+    std::vector<Value> residue(packing.q.size());
+    for (std::size_t k = 0; k < residue.size(); ++k) {
+        residue[k] = reduce(packing.q[k]);
+    }
+    const auto subtract = [modulus](Value a, Value b) { return a >= b ? a - b : a + (modulus - b); };
+    const Value one = 1;
+    const Value minus_one = modulus - 1;
+    auto matrix = empty_matrix<Value>(dofs.dof_count(), contacts.size());
+    for (const Contact& contact : contacts) {
+        Column<Value> column;
+        const auto add = [&](int coordinate, Value value) {
+            const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
+            if (dof >= 0) {
+                column.add(dof, value);
+            }
+        };
+        switch (contact.kind) {
+        case ContactKind::disk_disk:
+            for (int a = 0; a < Dim; ++a) {
+                const int ki = Dim * contact.i + a;
+                const int kj = Dim * contact.j + a;
+                const auto i = static_cast<std::size_t>(ki);
+                const auto j = static_cast<std::size_t>(kj);
+                if (packing.q[i] != packing.q[j]) { // the pattern of contact_matrix; a difference of p would stay as 0
+                    add(ki, subtract(residue[j], residue[i]));
+                    add(kj, subtract(residue[i], residue[j]));
+                }
+            }
+            break;
+        case ContactKind::lower_wall: add(Dim * contact.i + contact.j, minus_one); break;
+        case ContactKind::upper_wall:
+            add(Dim * contact.i + contact.j, one);
+            add(Dim * packing.disk_count() + contact.j, minus_one);
+            break;
+        case ContactKind::held: add(contact.i, minus_one); break;
+        }
+        append(matrix, column);
+    }
+    return matrix;
+}
+
 } // namespace
 
 template <int Dim>
@@ -66,44 +111,7 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
 template <int Dim>
 sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
                                                    const std::vector<Contact>& contacts) {
-    std::vector<std::uint64_t> residue(packing.q.size());
-    for (std::size_t k = 0; k < residue.size(); ++k) {
-        residue[k] = exact::residue(packing.q[k]);
-    }
-    constexpr std::uint64_t one = 1;
-    constexpr std::uint64_t minus_one = exact::mersenne61 - 1;
-    auto matrix = empty_matrix<std::uint64_t>(dofs.dof_count(), contacts.size());
-    for (const Contact& contact : contacts) {
-        Column<std::uint64_t> column;
-        const auto add = [&](int coordinate, std::uint64_t value) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
-            if (dof >= 0) {
-                column.add(dof, value);
-            }
-        };
-        switch (contact.kind) {
-        case ContactKind::disk_disk:
-            for (int a = 0; a < Dim; ++a) {
-                const int ki = Dim * contact.i + a;
-                const int kj = Dim * contact.j + a;
-                const auto i = static_cast<std::size_t>(ki);
-                const auto j = static_cast<std::size_t>(kj);
-                if (packing.q[i] != packing.q[j]) { // the pattern of contact_matrix; a difference of p would stay as 0
-                    add(ki, exact::subtract(residue[j], residue[i]));
-                    add(kj, exact::subtract(residue[i], residue[j]));
-                }
-            }
-            break;
-        case ContactKind::lower_wall: add(Dim * contact.i + contact.j, minus_one); break;
-        case ContactKind::upper_wall:
-            add(Dim * contact.i + contact.j, one);
-            add(Dim * packing.disk_count() + contact.j, minus_one);
-            break;
-        case ContactKind::held: add(contact.i, minus_one); break;
-        }
-        append(matrix, column);
-    }
-    return matrix;
+    return reduced_contact_matrix(packing, dofs, contacts, exact::mersenne61, exact::residue);
 }
 
 template <int Dim>
@@ -114,19 +122,24 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
     const int dof_count = structure.dofs_->dof_count();
     const int contact_count = static_cast<int>(contacts.size());
     if (dof_count != contact_count) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
-                                   dof_count, contact_count)};
+        return Failure{
+            FailureKind::not_isostatic,
+            fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
+                        dof_count, contact_count)};
     }
     structure.matrix_ = contact_matrix(packing, *structure.dofs_, contacts);
-    const auto residues = exact_contact_matrix(packing, *structure.dofs_, contacts);
-    auto ordering = std::make_shared<const sparse::Ordering>(residues);
+    auto ordering = std::make_shared<const sparse::Ordering>(structure.matrix_);
     if (!ordering->structurally_regular()) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
                                    dof_count, ordering->structural_rank())};
     }
-    const int rank = exact::rank(residues, *ordering);
+    // Full rank over any prime field is a proof; the small field is tried first because it costs half.
+    int rank = exact::rank(
+        reduced_contact_matrix(packing, *structure.dofs_, contacts, exact::mersenne31, exact::residue31), *ordering);
+    if (rank != dof_count) {
+        rank = exact::rank(exact_contact_matrix(packing, *structure.dofs_, contacts), *ordering);
+    }
     if (rank != dof_count) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the rank of the contact matrix mod 2^61-1 is {}, N_f = N = {}: not proved regular",

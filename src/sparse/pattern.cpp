@@ -1,5 +1,6 @@
 #include <isostat/sparse/pattern.hpp>
 
+#include <btf.h>
 #include <klu.h>
 
 #include <cassert>
@@ -11,6 +12,9 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     if (n == 0) {
         block_start_ = {0}; // KLU refuses an empty matrix
         return;
+    }
+    if (row.empty()) {
+        return; // KLU refuses null arrays
     }
     klu_common common;
     klu_defaults(&common);
@@ -37,15 +41,34 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     }
 }
 
+std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<const int> row) {
+    std::vector<int> matched(static_cast<std::size_t>(n));
+    std::vector<int> work(5 * static_cast<std::size_t>(n));
+    double operations = 0;
+    // BTF's interface is not const-correct; the pattern is only read. No limit on the work.
+    const int rank = btf_maxtrans(n, n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                  const_cast<int*>(row.data()),         // NOLINT(cppcoreguidelines-pro-type-const-cast)
+                                  0, &operations, matched.data(), work.data());
+    if (rank < n) {
+        matched.clear();
+    }
+    return matched;
+}
+
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                const Ordering& ordering, std::span<const int> loaded_rows) {
-    assert(ordering.structurally_regular());
     const std::size_t n = ordering.row_order().size();
     std::vector<int> matched(n);
     for (std::size_t k = 0; k < n; ++k) {
         matched[static_cast<std::size_t>(ordering.row_order()[k])] = ordering.column_order()[k];
     }
-    std::vector<unsigned char> nonzero(n, 0);
+    return structural_nonzeros(start, row, matched, loaded_rows);
+}
+
+std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
+                                               std::span<const int> matched, std::span<const int> loaded_rows) {
+    assert(matched.size() + 1 == start.size());
+    std::vector<unsigned char> nonzero(matched.size(), 0);
     std::vector<int> queue;
     const auto reach = [&](int r) {
         const int c = matched[static_cast<std::size_t>(r)];

@@ -96,8 +96,9 @@ Attempt<Opening> pick(const Statics<Dim>& statics, std::vector<Contender>& negat
             c.key = quotient(c.force, mechanism_norm(statics, c.contact));
         }
     }
-    const auto best = std::min_element(negative.begin(), negative.end(),
-                                       [](const Contender& a, const Contender& b) { return a.key.value < b.key.value; });
+    const auto best = std::min_element(negative.begin(), negative.end(), [](const Contender& a, const Contender& b) {
+        return a.key.value < b.key.value;
+    });
     for (const Contender& c : negative) {
         if (c.contact == best->contact) {
             continue;
@@ -106,22 +107,23 @@ Attempt<Opening> pick(const Statics<Dim>& statics, std::vector<Contender>& negat
         margin = std::min(margin, difference.margin());
         if (!difference.positive()) {
             attempt.kind = FailureKind::tie;
-            attempt.open_question =
-                fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}) and {} (f = {:.17g}): the keys differ by "
-                            "{:.3g}, proved to {:.3g}",
-                            name(statics, best->contact), best->force.value, name(statics, c.contact), c.force.value,
-                            difference.value, difference.radius);
+            attempt.open_question = fmt::format(
+                "the opening rule cannot order the contacts {} (f = {:.17g}) and {} (f = {:.17g}): the keys differ by "
+                "{:.3g}, proved to {:.3g}",
+                name(statics, best->contact), best->force.value, name(statics, c.contact), c.force.value,
+                difference.value, difference.radius);
             return attempt;
         }
     }
-    attempt.decided = Opening{best->contact, false, best->force, +1, std::min(margin, best->force.margin()), statics.rung()};
+    attempt.decided =
+        Opening{best->contact, false, best->force, +1, std::min(margin, best->force.margin()), statics.rung()};
     return attempt;
 }
 
 /// One stage of the lexicographic decision: all contacts with `finite` (or without) a finite force.
 template <int Dim, class Value>
-Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value value, OpeningRule rule, ContactId fresh_hold,
-                               std::uint64_t random_bits) {
+Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value value, OpeningRule rule,
+                               ContactId fresh_hold, std::uint64_t random_bits) {
     Attempt<OpeningDecision> attempt;
     std::vector<Contender> negative;
     double margin = infinity;
@@ -143,16 +145,17 @@ Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value v
             doubtful = Contender{l, f, f};
         }
     }
-    // A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the smallest.
+    // A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the
+    // smallest.
     const bool whole_list = rule != OpeningRule::most_negative;
-    const auto smallest = std::min_element(negative.begin(), negative.end(), [](const Contender& a, const Contender& b) {
-        return a.force.value < b.force.value;
-    });
-    if (doubtful && (negative.empty() || whole_list ||
-                     !(Enclosure(doubtful->force - smallest->force)).positive())) {
-        attempt.open_question = fmt::format("the sign of the {}force in contact {} is not decided: {:.3g}, proved to {:.3g}",
-                                            finite ? "" : "infinitesimal ", name(statics, doubtful->contact),
-                                            doubtful->force.value, doubtful->force.radius);
+    const auto smallest =
+        std::min_element(negative.begin(), negative.end(),
+                         [](const Contender& a, const Contender& b) { return a.force.value < b.force.value; });
+    if (doubtful && (negative.empty() || whole_list || !(Enclosure(doubtful->force - smallest->force)).positive())) {
+        attempt.open_question =
+            fmt::format("the sign of the {}force in contact {} is not decided: {:.3g}, proved to {:.3g}",
+                        finite ? "" : "infinitesimal ", name(statics, doubtful->contact), doubtful->force.value,
+                        doubtful->force.radius);
         return attempt;
     }
     if (negative.empty()) {
@@ -174,8 +177,8 @@ Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value v
 }
 
 template <int Dim>
-Attempt<OpeningDecision> attempt_opening(const Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                         std::uint64_t random_bits) {
+Attempt<OpeningDecision> attempt_opening(const Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                         ContactId fresh_hold, std::uint64_t random_bits) {
     auto finite = stage(
         statics, true, [&](ContactId l) { return statics.force(l, sigma); }, rule, fresh_hold, random_bits);
     if (!finite.decided || finite.decided->opening) {
@@ -189,8 +192,8 @@ Attempt<OpeningDecision> attempt_opening(const Statics<Dim>& statics, double sig
     return infinitesimal;
 }
 
-/// Contacts whose finite forces vanish together with that of `opens` for every choice of the coefficients: with the column of `opens`
-/// replaced by the unit column of the loaded wall, they are structural zeros.
+/// Contacts whose finite forces vanish together with that of `opens` for every choice of the coefficients: with the
+/// column of `opens` replaced by the unit column of the loaded wall, they are structural zeros.
 template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics, ContactId opens) {
     const sparse::Matrix<double>& h = statics.structure().matrix();
     std::vector<int> start{0};
@@ -204,11 +207,11 @@ template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics,
         start.push_back(static_cast<int>(row.size()));
     }
     std::vector<ContactId> members{opens};
-    const sparse::Ordering ordering(h.rows, start, row);
-    if (!ordering.structurally_regular()) {
+    const std::vector<int> matched = sparse::perfect_matching(h.rows, start, row);
+    if (matched.empty()) {
         return members; // cannot happen when the slope of `opens` is not zero; then no tie is claimed
     }
-    const auto nonzero = sparse::structural_nonzeros(start, row, ordering, statics.loaded_rows());
+    const auto nonzero = sparse::structural_nonzeros(start, row, matched, statics.loaded_rows());
     for (std::size_t j = 0; j < nonzero.size(); ++j) {
         const ContactId l(j);
         if (l != opens && nonzero[j] == 0 && !statics.is_structural_zero(l)) {
@@ -242,8 +245,9 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
                 Enclosure rate = statics.slope(l);
                 rate.value *= direction;
                 if (!rate.positive()) {
-                    attempt.open_question = fmt::format("the sign of the slope of the force in contact {} is not decided: {:.3g}, proved to {:.3g}",
-                                                        name(statics, l), rate.value, rate.radius);
+                    attempt.open_question = fmt::format(
+                        "the sign of the slope of the force in contact {} is not decided: {:.3g}, proved to {:.3g}",
+                        name(statics, l), rate.value, rate.radius);
                     return attempt;
                 }
             }
@@ -253,8 +257,9 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
     }
     const Enclosure slope = statics.slope(first);
     if (!slope.decided()) {
-        attempt.open_question = fmt::format("the slope of the force in contact {} is not decided: {:.3g}, proved to {:.3g}",
-                                            name(statics, first), slope.value, slope.radius);
+        attempt.open_question =
+            fmt::format("the slope of the force in contact {} is not decided: {:.3g}, proved to {:.3g}",
+                        name(statics, first), slope.value, slope.radius);
         return attempt;
     }
     LoadLimit limit;
@@ -262,7 +267,8 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
     limit.rung = statics.rung();
     {
         const Enclosure at_limit = statics.force(first, limit.stress);
-        limit.stress_error = (std::abs(at_limit.value) + at_limit.radius) / (std::abs(slope.value) - slope.radius) * (1 + 8 * u);
+        limit.stress_error =
+            (std::abs(at_limit.value) + at_limit.radius) / (std::abs(slope.value) - slope.radius) * (1 + 8 * u);
     }
     limit.margin = slope.margin();
     limit.tie_class = tie_class(statics, first);
@@ -277,12 +283,14 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
             continue;
         }
         Enclosure f = statics.force(l, limit.stress);
-        f.radius += std::abs(statics.slope(l).value) * limit.stress_error * (1 + 8 * u) + statics.slope(l).radius * limit.stress_error;
+        f.radius += std::abs(statics.slope(l).value) * limit.stress_error * (1 + 8 * u) +
+                    statics.slope(l).radius * limit.stress_error;
         limit.margin = std::min(limit.margin, f.margin());
         if (!f.positive()) {
             attempt.kind = FailureKind::tie;
             attempt.open_question =
-                fmt::format("the forces in the contacts {} and {} vanish at loads that are not ordered: at sigma = {:.17g} the second is "
+                fmt::format("the forces in the contacts {} and {} vanish at loads that are not ordered: at sigma = "
+                            "{:.17g} the second is "
                             "{:.3g}, proved to {:.3g}",
                             name(statics, first), name(statics, l), limit.stress, f.value, f.radius);
             return attempt;
@@ -298,7 +306,8 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
                 continue;
             }
             Enclosure magnitude{std::abs(b.value), b.radius};
-            const Enclosure key = limit.tie_class.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), magnitude);
+            const Enclosure key =
+                limit.tie_class.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), magnitude);
             if (pass == 0) {
                 if (!chosen.valid() || key.value < best.value) {
                     best = key;
@@ -309,10 +318,11 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
                 limit.margin = std::min(limit.margin, difference.margin());
                 if (!difference.positive()) {
                     attempt.kind = FailureKind::tie;
-                    attempt.open_question = fmt::format("the infinitesimal loads do not order the contacts {} and {} of a structural tie "
-                                                        "class of {}: the keys differ by {:.3g}, proved to {:.3g}",
-                                                        name(statics, chosen), name(statics, l), limit.tie_class.size(),
-                                                        difference.value, difference.radius);
+                    attempt.open_question =
+                        fmt::format("the infinitesimal loads do not order the contacts {} and {} of a structural tie "
+                                    "class of {}: the keys differ by {:.3g}, proved to {:.3g}",
+                                    name(statics, chosen), name(statics, l), limit.tie_class.size(), difference.value,
+                                    difference.radius);
                     return attempt;
                 }
             }
@@ -337,8 +347,8 @@ template <int Dim, class Try> auto climb_until_decided(Statics<Dim>& statics, Tr
 template <int Dim>
 Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
                                        std::uint64_t random_bits) {
-    auto attempt = climb_until_decided(
-        statics, [&] { return attempt_opening(statics, sigma, rule, fresh_hold, random_bits); });
+    auto attempt =
+        climb_until_decided(statics, [&] { return attempt_opening(statics, sigma, rule, fresh_hold, random_bits); });
     if (!attempt.decided) {
         return Failure{attempt.kind, attempt.open_question};
     }

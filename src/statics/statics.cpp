@@ -86,14 +86,16 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
     const dd_real sum = get(a) + get(b) * distance;
     const double value = sum.x[0];
     const double size = std::abs(a.value[l]) + std::abs(distance.x[0] * b.value[l]);
-    return {value, (a.bound + std::abs(distance.x[0]) * b.bound) * (1 + 4 * u) + 0x1p-96 * size + 2 * u * std::abs(value)};
+    return {value,
+            (a.bound + std::abs(distance.x[0]) * b.bound) * (1 + 4 * u) + 0x1p-96 * size + 2 * u * std::abs(value)};
 }
 
 template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
     if (sloped_.empty()) {
         const sparse::Matrix<double>& h = structure_->matrix();
-        sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(h.cols), 0)
-                                       : sparse::structural_nonzeros(h.start, h.row, structure_->ordering(), {&loaded_wall_row_, 1});
+        sloped_ = loaded_wall_row_ < 0
+                      ? std::vector<unsigned char>(static_cast<std::size_t>(h.cols), 0)
+                      : sparse::structural_nonzeros(h.start, h.row, structure_->ordering(), {&loaded_wall_row_, 1});
     }
     return sloped_[contact.index()] == 0;
 }
@@ -124,7 +126,8 @@ template <int Dim> bool Statics<Dim>::climb() {
     extended_ = extended_contact_matrix(*packing_, *structure_);
     for (std::size_t k = 0; k < 3; ++k) {
         if (solution_[k] && !is_zero(right_hand_side_[k])) {
-            refine_double_double(*solution_[k], *extended_, *structure_, *factorisation_, *inverse_, right_hand_side_[k]);
+            refine_double_double(*solution_[k], *extended_, *structure_, *factorisation_, *inverse_,
+                                 right_hand_side_[k]);
         }
     }
     rung_ = Rung::double_double;

@@ -1,9 +1,8 @@
-#include <isostat/trajectory/trajectory.hpp>
-
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/motion/arc.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
 
@@ -24,9 +23,11 @@ template <int Dim> Counting count(const State<Dim>& state) {
     return counting.dof_count == counting.contact_count ? counting : count_contacts(state.packing, state.contacts);
 }
 
-/// d2W/ds2 = -sum f_l |u_t|^2 / d_l along the mechanism that moves the held coordinate in column `slot` at unit rate: with the kept
-/// gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l.
-template <int Dim> Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<double>& forces, std::size_t slot, double sigma) {
+/// d2W/ds2 = -sum f_l |u_t|^2 / d_l along the mechanism that moves the held coordinate in column `slot` at unit rate:
+/// with the kept gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l.
+template <int Dim>
+Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<double>& forces, std::size_t slot,
+                                 double sigma) {
     const auto& contacts = vertex.structure.contacts();
     std::vector<double> on_dofs(contacts.size(), 0.0);
     on_dofs[slot] = 1;
@@ -60,7 +61,8 @@ template <int Dim> Enclosure curvature_of_potential(const Vertex<Dim>& vertex, c
             continue;
         }
         const double bend = gap_curvature(vertex.packing, contacts[l], v.data());
-        const double d = vertex.packing.radius[static_cast<std::size_t>(contacts[l].i)] + vertex.packing.radius[static_cast<std::size_t>(contacts[l].j)];
+        const double d = vertex.packing.radius[static_cast<std::size_t>(contacts[l].i)] +
+                         vertex.packing.radius[static_cast<std::size_t>(contacts[l].j)];
         // |u_t|^2 changes by at most (2 |u_t| + e) e with e <= 2 velocity_error.
         const double e = 2 * velocity_error;
         const double bend_error = (2 * std::sqrt(bend * d) + e) * e / d + 16 * u * bend;
@@ -90,9 +92,11 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     inspection.contacts = state.contacts;
     if (counting.dof_count != counting.contact_count) {
         if (counting.hyperstaticity > 0) {
-            return Failure{FailureKind::not_isostatic,
-                           fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}: forces are not determined by the geometry", counting.dof_count,
-                                       counting.contact_count, counting.rank, counting.hyperstaticity, counting.mechanisms)};
+            return Failure{
+                FailureKind::not_isostatic,
+                fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}: forces are not determined by the geometry",
+                            counting.dof_count, counting.contact_count, counting.rank, counting.hyperstaticity,
+                            counting.mechanisms)};
         }
         const DofMap<Dim> dofs(state.packing);
         for (const int dof : counting.free_dofs) {
@@ -120,27 +124,38 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
         inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
     }
     EquilibriumRecord<Dim>& record = inspection.record;
+    const bool overlaps = gaps.ok() && gaps.value().negative;
+    if (!isostatic || overlaps) {
+        record.verdict = Verdict::refuted;
+    }
     if (isostatic) {
         auto decision = decide_opening(vertex.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
         const bool balanced = decision.ok() && !decision.value().opening;
         if (balanced) {
             auto described = describe(vertex, state.load);
             if (described.ok()) {
+                const Verdict before = record.verdict;
                 record = described.value();
                 record.decided_by = std::max(record.decided_by, decision.value().rung);
                 record.margin = std::min(record.margin, decision.value().margin);
                 inspection.equilibrium = inspection.remark.empty();
-                record.verdict = inspection.equilibrium ? Verdict::proved : Verdict::undecided;
-                inspection.stable = record.verdict; // isostatic, all forces positive: every motion opens a contact against a force
+                record.verdict = inspection.equilibrium ? Verdict::proved : before;
+                inspection.stable = inspection.equilibrium
+                                        ? Verdict::proved
+                                        : Verdict::undecided; // isostatic, all forces positive: every motion opens a
+                                                              // contact against a force
             } else if (inspection.remark.empty()) {
                 inspection.remark = described.failure().message;
             }
         } else if (inspection.remark.empty()) {
-            inspection.remark = decision.ok() ? fmt::format("not an equilibrium: {}force {:.6g} in contact {}",
-                                                            decision.value().opening->infinitesimal ? "infinitesimal " : "",
-                                                            decision.value().opening->force.value,
-                                                            to_string<Dim>(inspection.contacts[decision.value().opening->contact.index()]))
-                                              : decision.failure().message;
+            record.verdict = decision.ok() ? Verdict::refuted : Verdict::undecided;
+            inspection.remark =
+                decision.ok()
+                    ? fmt::format("not an equilibrium: {}force {:.6g} in contact {}",
+                                  decision.value().opening->infinitesimal ? "infinitesimal " : "",
+                                  decision.value().opening->force.value,
+                                  to_string<Dim>(inspection.contacts[decision.value().opening->contact.index()]))
+                    : decision.failure().message;
         }
     }
     inspection.forces = finite_forces(vertex, state.load);
@@ -158,23 +173,26 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
                                                          vertex.statics.infinitesimal(ContactId(l)).positive()));
             } else {
                 ++record.held;
-                // Known only as well as the stored configuration: moving every coordinate by `radius` changes the matrix by about radius / R.
-                const double uncertain = 4 * vertex.enclosure.radius / state.packing.min_radius() * force_norm(vertex, sigma) / vertex.inverse.sigma_min;
+                // Known only as well as the stored configuration: moving every coordinate by `radius` changes the
+                // matrix by about radius / R.
+                const double uncertain = 4 * vertex.enclosure.radius / state.packing.min_radius() *
+                                         force_norm(vertex, sigma) / vertex.inverse.sigma_min;
                 at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
                 if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
-                    inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}", f.value,
-                                                    to_string<Dim>(inspection.contacts[l]));
+                    inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",
+                                                    f.value, to_string<Dim>(inspection.contacts[l]));
                 }
             }
         }
         if (positive && at_rest && counting.mechanisms == 1 && inspection.remark.empty()) {
-            inspection.second_order = curvature_of_potential(vertex, inspection.forces, inspection.contacts.size() - 1, sigma);
+            inspection.second_order =
+                curvature_of_potential(vertex, inspection.forces, inspection.contacts.size() - 1, sigma);
             if (inspection.second_order.negative()) {
                 inspection.stable = Verdict::refuted;
             }
-            inspection.remark = fmt::format("equilibrium with one mechanism (k = 1){}", inspection.second_order.negative()
-                                                                                              ? ", not stable: W has a maximum along it"
-                                                                                              : "");
+            inspection.remark =
+                fmt::format("equilibrium with one mechanism (k = 1){}",
+                            inspection.second_order.negative() ? ", not stable: W has a maximum along it" : "");
         }
     }
     record.number = state.equilibrium;

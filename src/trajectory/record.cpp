@@ -11,7 +11,9 @@ namespace isostat {
 
 namespace {
 
-template <int Dim> double loaded_stress(const Load<Dim>& load) { return load.stress[static_cast<std::size_t>(load.loaded_axis)]; }
+template <int Dim> double loaded_stress(const Load<Dim>& load) {
+    return load.stress[static_cast<std::size_t>(load.loaded_axis)];
+}
 
 /// |f . (G v) - F . v| / sum |F_i v_i| for a fixed pseudo-random v: both sides of the theorem of virtual power.
 template <int Dim> double virtual_power_error(const Vertex<Dim>& vertex, double sigma) {
@@ -101,7 +103,8 @@ template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, 
         const auto limit = find_limit(vertex.statics, sigma, direction);
         if (!limit.ok()) {
             return Failure{limit.failure().kind,
-                           fmt::format("{} end of the supported interval: {}", direction > 0 ? "upper" : "lower", limit.failure().message)};
+                           fmt::format("{} end of the supported interval: {}", direction > 0 ? "upper" : "lower",
+                                       limit.failure().message)};
         }
         const LoadLimit& end = limit.value();
         const Contact none{ContactKind::disk_disk, -1, -1};

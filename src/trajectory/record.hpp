@@ -2,14 +2,15 @@
 /// \file
 /// Makes the record of an equilibrium: private to the room.
 
-#include <isostat/trajectory/records.hpp>
-
 #include "trajectory/vertex.hpp"
+
+#include <isostat/trajectory/records.hpp>
 
 namespace isostat {
 
-/// Fills everything that follows from the vertex and its load: counts, supported interval, bounds, residuals. The numbers of the run
-/// (number, segment, arcs, seconds) are left to the caller. Failure: a limit of the supported interval is not decided, or a check fails.
+/// Fills everything that follows from the vertex and its load: counts, supported interval, bounds, residuals. The
+/// numbers of the run (number, segment, arcs, seconds) are left to the caller. Failure: a limit of the supported
+/// interval is not decided, or a check fails.
 template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
 
 /// Disks without a force-carrying contact.

@@ -1,9 +1,8 @@
-#include <isostat/trajectory/trajectory.hpp>
-
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/motion/arc.hpp>
+#include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
 
@@ -26,7 +25,9 @@ std::uint64_t bits_for(std::uint64_t seed, long step) {
     return z ^ (z >> 31);
 }
 
-template <int Dim> double sigma_of(const Load<Dim>& load) { return load.stress[static_cast<std::size_t>(load.loaded_axis)]; }
+template <int Dim> double sigma_of(const Load<Dim>& load) {
+    return load.stress[static_cast<std::size_t>(load.loaded_axis)];
+}
 
 template <int Dim> class Run {
   public:
@@ -38,7 +39,9 @@ template <int Dim> class Run {
 
   private:
     [[nodiscard]] double sigma() const { return sigma_of(state_.load); }
-    void set_sigma(Load<Dim>& load, double value) const { load.stress[static_cast<std::size_t>(load.loaded_axis)] = value; }
+    void set_sigma(Load<Dim>& load, double value) const {
+        load.stress[static_cast<std::size_t>(load.loaded_axis)] = value;
+    }
     [[nodiscard]] double elapsed() const {
         return seconds_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     }
@@ -51,7 +54,9 @@ template <int Dim> class Run {
 
     void count(double margin, Rung rung, ArcRecord<Dim>* arc = nullptr) {
         Tally& tally = counters_.tally;
-        (rung == Rung::double_double ? tally.double_double : rung == Rung::combinatorial ? tally.combinatorial : tally.double_bound)++;
+        (rung == Rung::double_double   ? tally.double_double
+         : rung == Rung::combinatorial ? tally.combinatorial
+                                       : tally.double_bound)++;
         if (std::isfinite(margin) && (tally.smallest_margin == 0 || margin < tally.smallest_margin)) {
             tally.smallest_margin = margin;
         }
@@ -65,10 +70,10 @@ template <int Dim> class Run {
 
     std::optional<Failure> start();
     std::optional<Failure> rearrange(Opening opening, const std::string& kind, double stress);
-    Result<std::unique_ptr<Vertex<Dim>>> follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit, const Load<Dim>& load,
-                                                ArcRecord<Dim>& record);
-    std::optional<Failure> check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening, const Load<Dim>& load,
-                                     ArcRecord<Dim>& record);
+    Result<std::unique_ptr<Vertex<Dim>>> follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
+                                                const Load<Dim>& load, ArcRecord<Dim>& record);
+    std::optional<Failure> check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
+                                     const Load<Dim>& load, ArcRecord<Dim>& record);
     std::optional<Failure> report(int arcs);
 
     State<Dim>& state_;
@@ -82,12 +87,14 @@ template <int Dim> class Run {
     CandidateList<Dim> candidates_;
     InverseBoundCache bound_cache_;
     EquilibriumRecord<Dim> record_;
-    double margin_ = infinity;        ///< of the decisions since the last equilibrium
+    double margin_ = infinity; ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
-Failure located(const Failure& failure, const std::string& where) { return {failure.kind, where + ": " + failure.message}; }
+Failure located(const Failure& failure, const std::string& where) {
+    return {failure.kind, where + ": " + failure.message};
+}
 
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
@@ -97,8 +104,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
     const PowerLoad<Dim> power{&load, opening.infinitesimal, at_limit};
     // A second pass only when the proved gaps say that another candidate closed before.
     for (int pass = 0; pass < 8; ++pass) {
-        auto arc = follow_arc(from.packing, from.structure, from.factorisation, opening.contact, opening.direction, power, candidates_,
-                              arc_options);
+        auto arc = follow_arc(from.packing, from.structure, from.factorisation, opening.contact, opening.direction,
+                              power, candidates_, arc_options);
         if (!arc.ok()) {
             return arc.failure();
         }
@@ -112,13 +119,13 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         contacts[opening.contact.index()] = path.closed;
         auto made = Vertex<Dim>::make(path.end, std::move(contacts), load, bound_cache_);
         if (!made.ok()) {
-            return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}", to_string<Dim>(record.opened),
-                                                       to_string<Dim>(path.closed)));
+            return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
+                                                       to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
         auto gaps = made.value()->check_gaps(candidates_);
         if (!gaps.ok()) {
-            return located(gaps.failure(), fmt::format("at the end of the arc that opens {} and closes {}", to_string<Dim>(record.opened),
-                                                       to_string<Dim>(path.closed)));
+            return located(gaps.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
+                                                       to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
         if (!gaps.value().negative) {
             count(gaps.value().margin, gaps.value().rung, &record);
@@ -146,8 +153,9 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     // The stored ends are within `radius` of the true ones: that much of the work is not known.
     const double unknown = force_norm * (from.enclosure.radius + to.enclosure.radius) + 0x1p-50 * std::abs(work);
     if (load.kind == LoadKind::nominal && work < -unknown) {
-        return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
-                                                           -work, unknown, to_string<Dim>(record.opened), to_string<Dim>(record.closed))};
+        return Failure{FailureKind::undecided,
+                       fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
+                                   -work, unknown, to_string<Dim>(record.opened), to_string<Dim>(record.closed))};
     }
     if (record.power_turn) {
         return std::nullopt;
@@ -163,10 +171,11 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     }
     if (opening.infinitesimal || !to.statics.is_structural_zero(opening.contact)) {
         if (!f.positive()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("the power of the load along the arc that opens {} and closes {} is not proved positive at its end: "
-                                       "force {:.3g} in the new contact, proved to {:.3g}",
-                                       to_string<Dim>(record.opened), to_string<Dim>(record.closed), f.value, f.radius)};
+            return Failure{FailureKind::undecided, fmt::format("the power of the load along the arc that opens {} and "
+                                                               "closes {} is not proved positive at its end: "
+                                                               "force {:.3g} in the new contact, proved to {:.3g}",
+                                                               to_string<Dim>(record.opened),
+                                                               to_string<Dim>(record.closed), f.value, f.radius)};
         }
         count(f.margin(), to.statics.rung(), &record);
     }
@@ -183,11 +192,14 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
     int arcs = 0;
     while (true) {
         if (options_.stop != nullptr && options_.stop->load()) {
-            return Failure{FailureKind::interrupted, fmt::format("stopped after {} arcs of a rearrangement at sigma = {:.17g}", arcs, stress)};
+            return Failure{FailureKind::interrupted,
+                           fmt::format("stopped after {} arcs of a rearrangement at sigma = {:.17g}", arcs, stress)};
         }
         if (arcs >= options_.max_arcs) {
-            return Failure{FailureKind::cap_reached, fmt::format("no equilibrium after {} arcs at sigma = {:.17g}: the sample fails here (cap "
-                                                                 "max_arcs)", arcs, stress)};
+            return Failure{FailureKind::cap_reached,
+                           fmt::format("no equilibrium after {} arcs at sigma = {:.17g}: the sample fails here (cap "
+                                       "max_arcs)",
+                                       arcs, stress)};
         }
         ++arcs;
         ArcRecord<Dim> record;
@@ -215,7 +227,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         const double reference = load.reference_length[axis];
         record.strain = reference > 0 ? (reference - next->packing.length(load.loaded_axis)) / reference : 0;
         const ContactId fresh_hold = record.power_turn ? opening.contact : ContactId();
-        auto decision = decide_opening(next->statics, stress, options_.rule, fresh_hold, bits_for(options_.rule_seed, counters_.steps));
+        auto decision = decide_opening(next->statics, stress, options_.rule, fresh_hold,
+                                       bits_for(options_.rule_seed, counters_.steps));
         observer_.on_arc(record);
         if (!decision.ok()) {
             return located(decision.failure(), where);
@@ -223,8 +236,10 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         here = std::move(next);
         from = here.get();
         if (std::abs(record.strain) > options_.max_strain) {
-            return Failure{FailureKind::cap_reached, fmt::format("|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails here (cap max_strain = "
-                                                                 "{:.6g})", std::abs(record.strain), stress, options_.max_strain)};
+            return Failure{FailureKind::cap_reached,
+                           fmt::format("|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails here (cap max_strain = "
+                                       "{:.6g})",
+                                       std::abs(record.strain), stress, options_.max_strain)};
         }
         if (!decision.value().opening) {
             count(decision.value().margin, decision.value().rung);
@@ -252,8 +267,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     const double allowance = 4 * vertex_->enclosure.radius;
     const Admissibility admissible = certify_admissible(vertex_->packing, allowance);
     if (admissible.verdict != Verdict::proved) {
-        return Failure{FailureKind::overlap, fmt::format("equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),
-                                                         to_string<Dim>(admissible.worst), admissible.worst_gap)};
+        return Failure{FailureKind::overlap,
+                       fmt::format("equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),
+                                   to_string<Dim>(admissible.worst), admissible.worst_gap)};
     }
     record.min_gap = record_.min_gap;
     record.min_gap_contact = record_.min_gap_contact;
@@ -265,12 +281,13 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     record.arcs = arcs;
     record.verdict = Verdict::proved;
     record.seconds = elapsed();
-    const bool box = vertex_->packing.walls == Walls<Dim>::box() && state_.load.disk_force.empty() && vertex_->packing.fixed.empty();
-    if (box && record.held == 0 &&
-        record.backbone != Dim * (vertex_->packing.disk_count() - record.rattlers) + Dim) {
-        return Failure{FailureKind::undecided, fmt::format("backbone of {} contacts with {} rattlers: expected 2 (n - rattlers) + 2 = {}",
-                                                           record.backbone, record.rattlers,
-                                                           Dim * (vertex_->packing.disk_count() - record.rattlers) + Dim)};
+    const bool box =
+        vertex_->packing.walls == Walls<Dim>::box() && state_.load.disk_force.empty() && vertex_->packing.fixed.empty();
+    if (box && record.held == 0 && record.backbone != Dim * (vertex_->packing.disk_count() - record.rattlers) + Dim) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("backbone of {} contacts with {} rattlers: expected 2 (n - rattlers) + 2 = {}",
+                                   record.backbone, record.rattlers,
+                                   Dim * (vertex_->packing.disk_count() - record.rattlers) + Dim)};
     }
     margin_ = infinity;
     rung_ = Rung::combinatorial;
@@ -306,7 +323,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         return std::nullopt;
     }
     count(gaps.value().margin, gaps.value().rung);
-    auto decision = decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), bits_for(options_.rule_seed, 0));
+    auto decision =
+        decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), bits_for(options_.rule_seed, 0));
     if (!decision.ok()) {
         return located(decision.failure(), "start");
     }
@@ -331,7 +349,8 @@ template <int Dim> SegmentOutcome Run<Dim>::run(const Segment& segment) {
             return outcome;
         }
         if (options_.stop != nullptr && options_.stop->load()) {
-            outcome.failure = Failure{FailureKind::interrupted, fmt::format("stopped at equilibrium {}", counters_.equilibria)};
+            outcome.failure =
+                Failure{FailureKind::interrupted, fmt::format("stopped at equilibrium {}", counters_.equilibria)};
             return outcome;
         }
         auto found = find_limit(vertex_->statics, sigma(), segment.direction);
@@ -343,9 +362,10 @@ template <int Dim> SegmentOutcome Run<Dim>::run(const Segment& segment) {
         if (segment.to_stress) {
             const double ahead = limit.unbounded ? infinity : segment.direction * (limit.stress - *segment.to_stress);
             if (!limit.unbounded && std::abs(ahead) <= limit.stress_error) {
-                outcome.failure = Failure{FailureKind::undecided,
-                                          fmt::format("the stress {:.17g} to reach cannot be told from the limit {:.17g} of equilibrium {}",
-                                                      *segment.to_stress, limit.stress, counters_.equilibria)};
+                outcome.failure = Failure{
+                    FailureKind::undecided,
+                    fmt::format("the stress {:.17g} to reach cannot be told from the limit {:.17g} of equilibrium {}",
+                                *segment.to_stress, limit.stress, counters_.equilibria)};
                 return outcome;
             }
             if (ahead > 0) {
@@ -360,8 +380,10 @@ template <int Dim> SegmentOutcome Run<Dim>::run(const Segment& segment) {
             }
         }
         if (limit.unbounded) {
-            outcome.failure = Failure{FailureKind::no_limit, fmt::format("equilibrium {} supports every load in this direction: no contact opens",
-                                                                         counters_.equilibria)};
+            outcome.failure =
+                Failure{FailureKind::no_limit,
+                        fmt::format("equilibrium {} supports every load in this direction: no contact opens",
+                                    counters_.equilibria)};
             return outcome;
         }
         Opening opening;
@@ -389,6 +411,7 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
     return Run<Dim>(state, segment_number, options, counters, observer).run(segment);
 }
 
-template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&, RunObserver<2>&);
+template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
+                                       RunObserver<2>&);
 
 } // namespace isostat

@@ -25,17 +25,21 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
     }
     std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, cache));
     if (vertex->inverse.verdict != Verdict::proved) {
-        return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved in double precision: no sign "
-                                               "of a force can be decided"};
-    }
-    if (vertex->enclosure.verdict != Verdict::proved) {
-        vertex->enclosure = enclose_vertex_double_double(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
-    }
-    if (vertex->enclosure.verdict != Verdict::proved) {
         return Failure{FailureKind::undecided,
-                       fmt::format("no true configuration with exactly these contacts was proved to exist near the stored one: largest "
-                                   "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
-                                   vertex->enclosure.max_gap, vertex->inverse.sigma_min)};
+                       "no bound of the inverse of the contact matrix was proved in double precision: no sign "
+                       "of a force can be decided"};
+    }
+    if (vertex->enclosure.verdict != Verdict::proved) {
+        vertex->enclosure =
+            enclose_vertex_double_double(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
+    }
+    if (vertex->enclosure.verdict != Verdict::proved) {
+        return Failure{
+            FailureKind::undecided,
+            fmt::format(
+                "no true configuration with exactly these contacts was proved to exist near the stored one: largest "
+                "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
+                vertex->enclosure.max_gap, vertex->inverse.sigma_min)};
     }
     return vertex;
 }
@@ -78,10 +82,12 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(co
         std::string names;
         for (const Contact& contact : doubtful) {
             const Enclosure h = gap_at_vertex(packing, enclosure, contact);
-            names += fmt::format("{}{} (gap {:.3g}, proved to {:.3g})", names.empty() ? "" : ", ", to_string<Dim>(contact), h.value,
-                                 h.radius);
+            names += fmt::format("{}{} (gap {:.3g}, proved to {:.3g})", names.empty() ? "" : ", ",
+                                 to_string<Dim>(contact), h.value, h.radius);
         }
-        return Failure{FailureKind::tie, "gaps that are zero as far as double-double arithmetic can tell, beside the contacts kept: " + names};
+        return Failure{FailureKind::tie,
+                       "gaps that are zero as far as double-double arithmetic can tell, beside the contacts kept: " +
+                           names};
     }
     return gaps;
 }

@@ -2,24 +2,26 @@
 /// \file
 /// A vertex with everything that is known of it: private to the room.
 
-#include <memory>
-#include <optional>
-
 #include <isostat/contact/candidates.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/statics/decisions.hpp>
 #include <isostat/verified/configuration.hpp>
 
+#include <memory>
+#include <optional>
+
 namespace isostat {
 
-/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each other.
+/// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
+/// other.
 template <int Dim> class Vertex {
   public:
     /// Proves the rank, factorises, bounds the inverse, solves the statics and encloses the true vertex.
-    /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
-    static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                                                InverseBoundCache& cache);
+    /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was
+    /// proved.
+    static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                const Load<Dim>& load, InverseBoundCache& cache);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -38,7 +40,8 @@ template <int Dim> class Vertex {
         Rung rung = Rung::double_bound;
         std::optional<Contact> negative; ///< proved to overlap: it closed before
     };
-    /// Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the precision reached.
+    /// Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the precision
+    /// reached.
     Result<Gaps> check_gaps(const CandidateList<Dim>& candidates);
 
   private:

@@ -17,7 +17,8 @@ constexpr double dd_unit = 0x1p-98; // granted to one operation of libqd (its ow
 template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
     switch (contact.kind) {
     case ContactKind::disk_disk:
-        return packing.radius[static_cast<std::size_t>(contact.i)] + packing.radius[static_cast<std::size_t>(contact.j)];
+        return packing.radius[static_cast<std::size_t>(contact.i)] +
+               packing.radius[static_cast<std::size_t>(contact.j)];
     case ContactKind::lower_wall:
     case ContactKind::upper_wall: return packing.radius[static_cast<std::size_t>(contact.i)];
     case ContactKind::held: return 0;
@@ -25,8 +26,8 @@ template <int Dim> double target(const Packing<Dim>& packing, const Contact& con
     return 0;
 }
 
-/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number of disk
-/// contacts of one disk (V4). 0 when there are only walls.
+/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
+/// of disk contacts of one disk (V4). 0 when there are only walls.
 template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     std::vector<int> count(packing.radius.size(), 0);
     double smallest = std::numeric_limits<double>::infinity();
@@ -48,7 +49,8 @@ double kantorovich_radius(double residual, double inverse_norm, double lipschitz
     return product <= 0.25 ? 2 * eta : std::numeric_limits<double>::quiet_NaN(); // (1 - sqrt(1-2h)) / h <= 2
 }
 
-template <int Dim> dd_real gap_dd(const Packing<Dim>& packing, const std::vector<double>& correction, const Contact& contact) {
+template <int Dim>
+dd_real gap_dd(const Packing<Dim>& packing, const std::vector<double>& correction, const Contact& contact) {
     const auto at = [&](int coordinate) {
         const auto k = static_cast<std::size_t>(coordinate);
         return dd_real(packing.q[k]) + correction[k];
@@ -103,8 +105,8 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
         return vertex;
     }
     const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
-    const double radius = kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), inverse_norm,
-                                             lipschitz(packing, structure.contacts()));
+    const double radius =
+        kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), inverse_norm, lipschitz(packing, structure.contacts()));
     if (radius >= 0) {
         vertex.verdict = Verdict::proved;
         vertex.radius = radius;
@@ -142,8 +144,9 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
         // |DF^-1| at the corrected point: |DF^-1(q)| / (1 - |DF^-1(q)| K |correction|).
         const double at_q = 1 / inverse.sigma_min * (1 + 1e-9);
         const double lost = at_q * k * shift;
-        const double radius = lost < 0.5 ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
-                                         : std::numeric_limits<double>::quiet_NaN();
+        const double radius = lost < 0.5
+                                  ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
+                                  : std::numeric_limits<double>::quiet_NaN();
         if (radius >= 0 && radius < vertex.radius) {
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
@@ -174,7 +177,8 @@ Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vert
     const dd_real h = gap_dd(packing, vertex.correction, contact);
     const double value = h.x[0];
     const double d = target(packing, contact);
-    return {value, (root2 * vertex.radius + 16 * dd_unit * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
+    return {value,
+            (root2 * vertex.radius + 16 * dd_unit * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
 }
 
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);

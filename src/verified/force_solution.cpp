@@ -13,10 +13,11 @@ constexpr double u = 0x1p-53;
 /// Relative error that is granted to one double-double operation of libqd (its own bounds are 2^-104 to 2^-102).
 constexpr double dd_unit = 0x1p-98;
 
-/// Residual F - H x in double, with a bound of its distance from the exact residual (exact H: entries of fl(H) carry 5u).
-/// Returns an upper bound of the 2-norm of the exact residual.
-double residual_in_double(const sparse::Matrix<double>& h, const std::vector<double>& x, const std::vector<double>& force,
-                          std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms) {
+/// Residual F - H x in double, with a bound of its distance from the exact residual (exact H: entries of fl(H) carry
+/// 5u). Returns an upper bound of the 2-norm of the exact residual.
+double residual_in_double(const sparse::Matrix<double>& h, const std::vector<double>& x,
+                          const std::vector<double>& force, std::vector<double>& r, std::vector<double>& size,
+                          std::vector<int>& terms) {
     r = force;
     const auto n = static_cast<std::size_t>(h.rows);
     for (std::size_t i = 0; i < n; ++i) {
@@ -107,9 +108,9 @@ ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const Isosta
 }
 
 template <int Dim>
-void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix, const IsostaticStructure<Dim>& structure,
-                          const Factorisation& factorisation, const InverseBound& inverse,
-                          const std::vector<double>& force) {
+void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
+                          const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+                          const InverseBound& inverse, const std::vector<double>& force) {
     if (inverse.verdict != Verdict::proved) {
         return;
     }

@@ -12,7 +12,9 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-double gamma(double terms) { return terms * u / (1 - terms * u); }
+double gamma(double terms) {
+    return terms * u / (1 - terms * u);
+}
 
 double norm(const std::vector<double>& x) {
     double sum = 0;
@@ -72,8 +74,8 @@ class Cholesky {
         return ok != 0 && common_.status == CHOLMOD_OK && factor_->minor == factor_->n && factor_->is_ll != 0;
     }
 
-    /// Bound of the backward error of a successful `factorise(shift)` in the 2-norm (statement V1): the entry (i, j) is computed with at
-    /// most m_ij terms, m_ij <= sqrt(m_i m_j), m_i = entries of row i of L and of H plus 4.
+    /// Bound of the backward error of a successful `factorise(shift)` in the 2-norm (statement V1): the entry (i, j) is
+    /// computed with at most m_ij terms, m_ij <= sqrt(m_i m_j), m_i = entries of row i of L and of H plus 4.
     [[nodiscard]] double error_bound(double shift) const {
         const auto n = static_cast<std::size_t>(h_.rows);
         std::vector<double> terms(n, 4.0);

@@ -1,5 +1,6 @@
-// Cost of a trajectory in units of its linear algebra: milliseconds per arc (rank proved, inverse bounded, decisions proved at every vertex)
-// divided by one KLU analysis + factorisation of the same contact matrices, and the parts of that cost. Usage:
+// Cost of a trajectory in units of its linear algebra: milliseconds per arc (rank proved, inverse bounded, decisions
+// proved at every vertex) divided by one KLU analysis + factorisation of the same contact matrices, and the parts of
+// that cost. Usage:
 //   bench_arc_cost [n ...]        default: 400 1936 4900
 #include <isostat/contact/candidates.hpp>
 #include <isostat/exact/rank.hpp>
@@ -79,11 +80,15 @@ void parts(const State<2>& state) {
     InverseBound inverse = bound_inverse(structure, factorisation, cache);
     const double umfpack = umfpack_milliseconds(structure.matrix());
     const double rank = milliseconds([&] { (void)exact::rank(residues, ordering); });
-    fmt::print("    exact rank {:.2f} ms = {:.2f} of one UMFPACK analysis + factorisation ({:.2f} ms)\n", rank, rank / umfpack, umfpack);
-    fmt::print("    symbolic analysis {:.2f}, numeric factorisation {:.2f}, bound of the inverse {:.2f}, statics {:.2f}, candidates {:.2f} ms\n",
-               milliseconds([&] { const sparse::Ordering again(residues); }), milliseconds([&] { const Factorisation again(structure); }),
-               milliseconds([&] { inverse = bound_inverse(structure, factorisation, cache); }),
-               milliseconds([&] { const Statics<2> again(state.packing, state.load, structure, factorisation, inverse); }),
+    fmt::print("    exact rank {:.2f} ms = {:.2f} of one UMFPACK analysis + factorisation ({:.2f} ms)\n", rank,
+               rank / umfpack, umfpack);
+    fmt::print("    symbolic analysis {:.2f}, numeric factorisation {:.2f}, bound of the inverse {:.2f}, statics "
+               "{:.2f}, candidates {:.2f} ms\n",
+               milliseconds([&] { const sparse::Ordering again(residues); }),
+               milliseconds([&] { const Factorisation again(structure); }),
+               milliseconds([&] { inverse = bound_inverse(structure, factorisation, cache); }), milliseconds([&] {
+                   const Statics<2> again(state.packing, state.load, structure, factorisation, inverse);
+               }),
                milliseconds([&] { (void)find_candidates(state.packing, 0.8); }));
 }
 
@@ -120,11 +125,12 @@ int main(int argc, char** argv) {
         for (const State<2>& s : sampler.states) {
             reference.push_back(klu_milliseconds(contact_matrix(s.packing, DofMap<2>(s.packing), s.contacts)));
         }
-        std::nth_element(reference.begin(), reference.begin() + static_cast<long>(reference.size() / 2), reference.end());
+        std::nth_element(reference.begin(), reference.begin() + static_cast<long>(reference.size() / 2),
+                         reference.end());
         const double klu = reference[reference.size() / 2];
         const double per_arc = total / static_cast<double>(counters.steps);
-        fmt::print("{:>6} {:>8} {:>6} {:>10.2f} {:>12.2f} {:>8.2f}{}\n", n, counters.steps, counters.equilibria, per_arc, klu, per_arc / klu,
-                   outcome.failure ? "  " + outcome.failure->message : "");
+        fmt::print("{:>6} {:>8} {:>6} {:>10.2f} {:>12.2f} {:>8.2f}{}\n", n, counters.steps, counters.equilibria,
+                   per_arc, klu, per_arc / klu, outcome.failure ? "  " + outcome.failure->message : "");
         parts(sampler.states.back());
     }
     return 0;

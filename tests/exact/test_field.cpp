@@ -20,11 +20,11 @@ std::uint64_t to_word(const mpz_class& x) {
 }
 
 /// The residue of a rational with a power of two as denominator, by GMP.
-std::uint64_t reduce(const mpq_class& x) {
+std::uint64_t reduce(const mpq_class& x, const mpz_class& p = prime) {
     mpz_class inverse;
-    mpz_invert(inverse.get_mpz_t(), x.get_den().get_mpz_t(), prime.get_mpz_t());
-    mpz_class r = x.get_num() * inverse % prime;
-    return to_word(r < 0 ? mpz_class(r + prime) : r);
+    mpz_invert(inverse.get_mpz_t(), x.get_den().get_mpz_t(), p.get_mpz_t());
+    mpz_class r = x.get_num() * inverse % p;
+    return to_word(r < 0 ? mpz_class(r + p) : r);
 }
 
 mpz_class big(std::uint64_t x) {
@@ -44,6 +44,8 @@ BOOST_AUTO_TEST_CASE(residues_of_doubles_are_exact_at_every_magnitude) {
                                   0x1p61,
                                   0x1p-61,
                                   0x1p60,
+                                  0x1p31 - 1, // 0 in the small field
+                                  -(0x1p31 - 1),
                                   1e-300,
                                   1e150,
                                   0.1,
@@ -60,6 +62,7 @@ BOOST_AUTO_TEST_CASE(residues_of_doubles_are_exact_at_every_magnitude) {
         BOOST_TEST(r < mersenne61);
         BOOST_TEST(r == reduce(mpq_class(x)));
         BOOST_TEST((r == 0) == (x == 0)); // 53 bits are fewer than p has
+        BOOST_TEST(exact::residue31(x) == reduce(mpq_class(x), exact::mersenne31));
     }
 }
 

@@ -40,6 +40,12 @@ template <class Number> sparse::Matrix<double> fill(const Dense<char>& pattern, 
     return compress(dense, cols, [&](std::size_t i, std::size_t j) { return pattern[i][j] != 0; });
 }
 
+sparse::Matrix<std::uint32_t> reduce31(const sparse::Matrix<double>& matrix) {
+    sparse::Matrix<std::uint32_t> reduced{matrix.rows, matrix.cols, matrix.start, matrix.row, {}};
+    std::transform(matrix.value.begin(), matrix.value.end(), std::back_inserter(reduced.value), exact::residue31);
+    return reduced;
+}
+
 /// What the header promises of both variants, against the rank over Q.
 void check_square(const sparse::Matrix<double>& matrix) {
     const int n = matrix.rows;
@@ -54,8 +60,12 @@ void check_square(const sparse::Matrix<double>& matrix) {
     const int found = exact::rank(reduced, ordering);
     BOOST_TEST(found <= true_rank); // never above
     BOOST_TEST((found == n) == (true_rank == n));
-    if (ordering.block_start().size() == 2) { // irreducible: nothing is left out
+    const int found31 = exact::rank(reduce31(matrix), ordering);
+    BOOST_TEST(found31 <= true_rank);
+    BOOST_TEST((found31 == n) == (true_rank == n)); // by chance wrong once in 2^31 / n
+    if (ordering.block_start().size() == 2) {       // irreducible: nothing is left out
         BOOST_TEST(found == true_rank);
+        BOOST_TEST(found31 == true_rank);
     }
 }
 
@@ -71,7 +81,7 @@ sparse::Matrix<std::uint64_t> residues(const Dense<char>& pattern, int cols, Ran
 }
 
 void check_mod_p(const sparse::Matrix<std::uint64_t>& matrix) {
-    const int expected = dense_rank_mod_p(matrix);
+    const int expected = dense_rank(matrix);
     BOOST_TEST(exact::rank(matrix) == expected);
     BOOST_TEST(exact::independent_columns(matrix).size() == static_cast<std::size_t>(expected));
     const sparse::Ordering ordering(matrix);
@@ -81,6 +91,20 @@ void check_mod_p(const sparse::Matrix<std::uint64_t>& matrix) {
         BOOST_TEST((found == matrix.rows) == (expected == matrix.rows));
         if (ordering.block_start().size() == 2) {
             BOOST_TEST(found == expected);
+        }
+        // The same pattern over the small field, with the same zeros: full or deficient together but for an accident.
+        sparse::Matrix<std::uint32_t> small{matrix.rows, matrix.cols, matrix.start, matrix.row, {}};
+        for (const std::uint64_t x : matrix.value) {
+            small.value.push_back(static_cast<std::uint32_t>(x % exact::mersenne31));
+        }
+        sparse::Matrix<std::uint64_t> wide{matrix.rows, matrix.cols, matrix.start, matrix.row, {}};
+        wide.value.assign(small.value.begin(), small.value.end());
+        const int found31 = exact::rank(small, ordering);
+        const int expected31 = dense_rank(wide, exact::mersenne31);
+        BOOST_TEST(found31 <= expected31);
+        BOOST_TEST((found31 == matrix.rows) == (expected31 == matrix.rows));
+        if (ordering.block_start().size() == 2) {
+            BOOST_TEST(found31 == expected31);
         }
     }
 }
@@ -210,7 +234,7 @@ BOOST_AUTO_TEST_CASE(block_triangular_matrices_need_only_their_blocks) {
         holed[(7 * i) % 40][(11 * i + 3) % 40] = 0;
         const auto singular = compress(holed, 40, [&](std::size_t r, std::size_t c) { return dense[r][c] != 0; });
         BOOST_TEST(exact::rank(singular, sparse::Ordering(singular)) == 39);
-        BOOST_TEST(dense_rank_mod_p(singular) == 39);
+        BOOST_TEST(dense_rank(singular) == 39);
     }
 }
 
@@ -221,6 +245,10 @@ BOOST_AUTO_TEST_CASE(rank_mod_p_is_only_a_lower_bound) {
     BOOST_TEST(rational_rank(matrix) == 2);
     BOOST_TEST(exact::rank(reduce(matrix)) == 1);
     BOOST_TEST(exact::rank(reduce(matrix), sparse::Ordering(reduce(matrix))) == 1);
+    const Dense<double> small = {{1, 0x1p31}, {1, 1}};
+    const auto matrix31 = compress(small, 2, [](std::size_t, std::size_t) { return true; });
+    BOOST_TEST(exact::rank(reduce31(matrix31), sparse::Ordering(matrix31)) == 1);
+    BOOST_TEST(exact::rank(reduce(matrix31), sparse::Ordering(matrix31)) == 2);
     // A reducible matrix with a singular block: the count by blocks (0) is below the rank mod p (1).
     const Dense<std::uint64_t> reducible = {{0, 5}, {0, 0}};
     const auto upper = compress(reducible, 2, [](std::size_t i, std::size_t j) { return i <= j; });
@@ -252,7 +280,7 @@ BOOST_AUTO_TEST_CASE(independent_columns_are_the_first_ones) {
         int rank_before = 0;
         for (int c = 1; c <= cols; ++c) {
             std::vector<std::uint64_t> unused(static_cast<std::size_t>(rows), 0);
-            const int rank_now = dense_eliminate_mod_p(dense, unused, c);
+            const int rank_now = dense_eliminate(dense, unused, c);
             if (rank_now > rank_before) {
                 expected.push_back(c - 1);
             }
@@ -270,6 +298,7 @@ BOOST_AUTO_TEST_CASE(empty_matrices_have_rank_zero) {
     const sparse::Ordering ordering(nothing);
     BOOST_TEST(ordering.structurally_regular());
     BOOST_TEST(exact::rank(nothing, ordering) == 0);
+    BOOST_TEST(exact::rank(sparse::Matrix<std::uint32_t>{0, 0, {0}, {}, {}}, ordering) == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -73,25 +73,26 @@ inline int rational_rank(const sparse::Matrix<double>& matrix) {
 
 __extension__ using Wide = unsigned __int128;
 
-inline std::uint64_t times_mod_p(std::uint64_t a, std::uint64_t b) {
-    return static_cast<std::uint64_t>(static_cast<Wide>(a) * b % exact::mersenne61);
+inline std::uint64_t multiply_mod(std::uint64_t a, std::uint64_t b, std::uint64_t p) {
+    return static_cast<std::uint64_t>(static_cast<Wide>(a) * b % p);
 }
 
 /// a^(p-2): the inverse by Fermat's theorem.
-inline std::uint64_t inverse_mod_p(std::uint64_t a) {
+inline std::uint64_t inverse_mod(std::uint64_t a, std::uint64_t p) {
     std::uint64_t result = 1;
-    for (std::uint64_t e = exact::mersenne61 - 2; e != 0; e >>= 1) {
+    for (std::uint64_t e = p - 2; e != 0; e >>= 1) {
         if ((e & 1) != 0) {
-            result = times_mod_p(result, a);
+            result = multiply_mod(result, a, p);
         }
-        a = times_mod_p(a, a);
+        a = multiply_mod(a, a, p);
     }
     return result;
 }
 
 /// Reduces [A | b] mod p by dense elimination; returns the rank of A. When A is regular, b is the solution afterwards,
 /// in the order of the columns.
-inline int dense_eliminate_mod_p(Dense<std::uint64_t> a, std::vector<std::uint64_t>& b, int cols) {
+inline int dense_eliminate(Dense<std::uint64_t> a, std::vector<std::uint64_t>& b, int cols,
+                           std::uint64_t p = exact::mersenne61) {
     std::size_t rank = 0;
     for (std::size_t j = 0; j < static_cast<std::size_t>(cols) && rank < a.size(); ++j) {
         std::size_t pivot = rank;
@@ -103,20 +104,20 @@ inline int dense_eliminate_mod_p(Dense<std::uint64_t> a, std::vector<std::uint64
         }
         std::swap(a[rank], a[pivot]);
         std::swap(b[rank], b[pivot]);
-        const std::uint64_t scale = inverse_mod_p(a[rank][j]);
+        const std::uint64_t scale = inverse_mod(a[rank][j], p);
         for (std::uint64_t& x : a[rank]) {
-            x = times_mod_p(x, scale);
+            x = multiply_mod(x, scale, p);
         }
-        b[rank] = times_mod_p(b[rank], scale);
+        b[rank] = multiply_mod(b[rank], scale, p);
         for (std::size_t i = 0; i < a.size(); ++i) {
             if (i == rank || a[i][j] == 0) {
                 continue;
             }
-            const std::uint64_t factor = exact::mersenne61 - a[i][j];
+            const std::uint64_t factor = p - a[i][j];
             for (std::size_t k = j; k < a[i].size(); ++k) {
-                a[i][k] = (a[i][k] + times_mod_p(factor, a[rank][k])) % exact::mersenne61;
+                a[i][k] = (a[i][k] + multiply_mod(factor, a[rank][k], p)) % p;
             }
-            b[i] = (b[i] + times_mod_p(factor, b[rank])) % exact::mersenne61;
+            b[i] = (b[i] + multiply_mod(factor, b[rank], p)) % p;
         }
         ++rank;
     }
@@ -135,9 +136,9 @@ template <class Value> Dense<Value> expand(const sparse::Matrix<Value>& matrix) 
     return dense;
 }
 
-inline int dense_rank_mod_p(const sparse::Matrix<std::uint64_t>& matrix) {
+inline int dense_rank(const sparse::Matrix<std::uint64_t>& matrix, std::uint64_t p = exact::mersenne61) {
     std::vector<std::uint64_t> unused(static_cast<std::size_t>(matrix.rows), 0);
-    return dense_eliminate_mod_p(expand(matrix), unused, matrix.cols);
+    return dense_eliminate(expand(matrix), unused, matrix.cols, p);
 }
 
 /// Size of a maximum matching of the pattern, by augmenting paths.

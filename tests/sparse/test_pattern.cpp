@@ -80,6 +80,15 @@ BOOST_AUTO_TEST_CASE(structural_rank_is_the_size_of_a_maximum_matching) {
         BOOST_TEST(ordering.structural_rank() == expected);
         BOOST_TEST(ordering.structurally_regular() == (expected == n));
         BOOST_TEST(ordering.row_order().empty() == (expected < n));
+        const std::vector<int> matched = sparse::perfect_matching(n, matrix.start, matrix.row);
+        BOOST_TEST(matched.empty() == (expected < n));
+        if (expected == n) {
+            BOOST_TEST(is_permutation_of_all(matched, n));
+            const auto dense = expand(matrix);
+            for (std::size_t r = 0; r < matched.size(); ++r) {
+                BOOST_TEST(dense[r][static_cast<std::size_t>(matched[r])] != 0U);
+            }
+        }
         deficient += expected < n ? 1 : 0;
     }
     BOOST_TEST(deficient > 300);
@@ -101,7 +110,11 @@ BOOST_AUTO_TEST_CASE(structural_nonzeros_are_those_of_random_values) {
             }
         }
         const auto nonzero = sparse::structural_nonzeros(matrix.start, matrix.row, ordering, loaded);
-        if (dense_eliminate_mod_p(expand(matrix), load, n) < n) {
+        // The matching alone gives the same answer, whichever it is.
+        BOOST_TEST(
+            (nonzero == sparse::structural_nonzeros(matrix.start, matrix.row,
+                                                    sparse::perfect_matching(n, matrix.start, matrix.row), loaded)));
+        if (dense_eliminate(expand(matrix), load, n) < n) {
             continue; // structurally regular, yet singular: has probability n / p
         }
         for (std::size_t c = 0; c < load.size(); ++c) {
@@ -122,7 +135,7 @@ BOOST_AUTO_TEST_CASE(a_structural_zero_holds_for_special_values_and_a_nonzero_ne
     BOOST_TEST(nonzero[1] == 1); // generic; for these values and b = (1, 1, 0) it vanishes
     BOOST_TEST(nonzero[2] == 0);
     std::vector<std::uint64_t> b = {1, 1, 0};
-    dense_eliminate_mod_p(dense, b, 3);
+    dense_eliminate(dense, b, 3);
     BOOST_TEST(b[1] == 0U);
     BOOST_TEST(b[2] == 0U);
 }

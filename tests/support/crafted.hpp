@@ -1,6 +1,6 @@
 #pragma once
-// Small packings with closed-form answers, built by hand. Box with fixed lower walls and movable upper walls, dead wall forces F1 (right
-// wall) and F2 (top wall): reference lengths 1, so that stress and force have the same number.
+// Small packings with closed-form answers, built by hand. Box with fixed lower walls and movable upper walls, dead wall
+// forces F1 (right wall) and F2 (top wall): reference lengths 1, so that stress and force have the same number.
 
 #include <isostat/contact/state.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -15,18 +15,29 @@ using isostat::Contact;
 using isostat::ContactKind;
 using isostat::State;
 
-inline Contact pair(int i, int j) { return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)}; }
-inline Contact left(int i) { return {ContactKind::lower_wall, i, 0}; }
-inline Contact bottom(int i) { return {ContactKind::lower_wall, i, 1}; }
-inline Contact right(int i) { return {ContactKind::upper_wall, i, 0}; }
-inline Contact top(int i) { return {ContactKind::upper_wall, i, 1}; }
+inline Contact pair(int i, int j) {
+    return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+}
+inline Contact left(int i) {
+    return {ContactKind::lower_wall, i, 0};
+}
+inline Contact bottom(int i) {
+    return {ContactKind::lower_wall, i, 1};
+}
+inline Contact right(int i) {
+    return {ContactKind::upper_wall, i, 0};
+}
+inline Contact top(int i) {
+    return {ContactKind::upper_wall, i, 1};
+}
 
 struct DiskAt {
     double radius, x, y;
 };
 
 /// A state in the box [0, lx] x [0, ly] under wall forces f1, f2.
-inline State<2> in_box(const std::vector<DiskAt>& disks, double lx, double ly, double f1, double f2, std::vector<Contact> contacts) {
+inline State<2> in_box(const std::vector<DiskAt>& disks, double lx, double ly, double f1, double f2,
+                       std::vector<Contact> contacts) {
     State<2> state;
     for (const DiskAt& d : disks) {
         state.packing.radius.push_back(d.radius);
@@ -55,7 +66,8 @@ inline State<2> two_disks(double r0, double r1, double f1, double f2) {
                   {left(0), bottom(0), pair(0, 1), right(1), top(1), bottom(1)});
 }
 
-/// Case 3: base disks of radii ra, rb touching each other, the side walls and the bottom; a disk of radius rt on both, under the top wall.
+/// Case 3: base disks of radii ra, rb touching each other, the side walls and the bottom; a disk of radius rt on both,
+/// under the top wall.
 inline State<2> three_disks(double ra, double rb, double rt, double f1, double f2) {
     const double xa = ra;
     const double xb = ra + 2 * std::sqrt(ra * rb);
@@ -94,7 +106,8 @@ inline State<2> square_lattice(int m) {
     return in_box(disks, 2.0 * m, 2.0 * m, 1, 1, contacts);
 }
 
-/// Case 5: rows x columns triangular patch of unit disks in its box, odd rows shifted by one radius, with every contact (to rounding).
+/// Case 5: rows x columns triangular patch of unit disks in its box, odd rows shifted by one radius, with every contact
+/// (to rounding).
 inline State<2> triangular_patch(int rows, int columns) {
     std::vector<DiskAt> disks;
     for (int row = 0; row < rows; ++row) {
@@ -128,7 +141,8 @@ struct Recorder : isostat::RunObserver<2> {
     std::vector<isostat::EquilibriumRecord<2>> equilibria;
     std::vector<State<2>> states;
     void on_arc(const isostat::ArcRecord<2>& arc) override { arcs.push_back(arc); }
-    void on_equilibrium(const isostat::EquilibriumRecord<2>& record, const State<2>& state, const std::vector<double>&) override {
+    void on_equilibrium(const isostat::EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>&) override {
         equilibria.push_back(record);
         states.push_back(state);
     }

@@ -77,8 +77,10 @@ BOOST_AUTO_TEST_CASE(two_disks_run_through_the_complete_hysteresis_loop) {
     // The mirrored forces.
     const auto inspection = inspect_vertex(down.state);
     BOOST_REQUIRE(inspection.ok());
-    BOOST_TEST(force_of(inspection.value(), down.state, bottom(0)) == turned.stress, boost::test_tools::tolerance(1e-12));
-    BOOST_TEST(force_of(inspection.value(), down.state, left(0)) == turned.stress / (2 * root2), boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(force_of(inspection.value(), down.state, bottom(0)) == turned.stress,
+               boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(force_of(inspection.value(), down.state, left(0)) == turned.stress / (2 * root2),
+               boost::test_tools::tolerance(1e-12));
 
     Played up = play(down.state, +1, 1);
     BOOST_REQUIRE_MESSAGE(up.outcome.completed, up.why());
@@ -94,7 +96,8 @@ BOOST_AUTO_TEST_CASE(the_five_contact_state_of_two_disks_is_an_equilibrium_that_
     for (const double angle : {0.6, 0.9}) {
         const double x = 1 + 3 * std::cos(angle);
         const double y = 1 + 3 * std::sin(angle);
-        const State<2> state = in_box({{1, 1, 1}, {2, x, y}}, x + 2, y + 2, 1, std::tan(angle), {left(0), bottom(0), pair(0, 1), right(1), top(1)});
+        const State<2> state = in_box({{1, 1, 1}, {2, x, y}}, x + 2, y + 2, 1, std::tan(angle),
+                                      {left(0), bottom(0), pair(0, 1), right(1), top(1)});
         const auto inspection = inspect_vertex(state);
         BOOST_REQUIRE(inspection.ok());
         BOOST_TEST(inspection.value().counting.mechanisms == 1);
@@ -128,9 +131,12 @@ BOOST_AUTO_TEST_CASE(three_disks_have_the_forces_of_the_closed_form) {
     const double cosine = std::sqrt(1 - sine * sine);
     BOOST_TEST(force_of(inspection.value(), state, bottom(0)) == 0.5, boost::test_tools::tolerance(1e-13));
     BOOST_TEST(force_of(inspection.value(), state, bottom(1)) == 0.5, boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(force_of(inspection.value(), state, pair(0, 2)) == 1 / (2 * cosine), boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(force_of(inspection.value(), state, pair(0, 1)) == 3 - 0.5 * sine / cosine, boost::test_tools::tolerance(1e-13));
-    BOOST_TEST(inspection.value().record.stress_high == 3 * 2 * std::sqrt(1.5 * 3.5), boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(force_of(inspection.value(), state, pair(0, 2)) == 1 / (2 * cosine),
+               boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(force_of(inspection.value(), state, pair(0, 1)) == 3 - 0.5 * sine / cosine,
+               boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(inspection.value().record.stress_high == 3 * 2 * std::sqrt(1.5 * 3.5),
+               boost::test_tools::tolerance(1e-13));
     BOOST_TEST((inspection.value().record.opens_high == pair(0, 1)));
 }
 

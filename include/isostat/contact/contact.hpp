@@ -2,12 +2,12 @@
 /// \file
 /// Contacts, gaps and their gradients.
 
+#include <isostat/packing/packing.hpp>
+
 #include <array>
 #include <compare>
 #include <cstdint>
 #include <string>
-
-#include <isostat/packing/packing.hpp>
 
 namespace isostat {
 
@@ -15,7 +15,8 @@ namespace isostat {
 enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };
 
 /// One contact, or one candidate.
-/// - disk_disk: disks i < j;  - lower_wall, upper_wall: disk i and the wall of axis j;  - held: coordinate index i, j = 0.
+/// - disk_disk: disks i < j;  - lower_wall, upper_wall: disk i and the wall of axis j;  - held: coordinate index i, j =
+/// 0.
 struct Contact {
     ContactKind kind = ContactKind::disk_disk;
     int i = 0;
@@ -36,13 +37,15 @@ template <int Dim> struct GapGradient {
 };
 
 /// Gap h: distance of the surfaces, >= 0 in an admissible packing. Held: 0.
-/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the grid.
+/// Error: at most 4 ulp of the distance of the centres beyond the exactly rounded operations, for coordinates on the
+/// grid.
 template <int Dim> double gap(const Packing<Dim>& packing, const Contact& contact);
 
 /// Gradient of the gap. Each component has relative error <= 4u (u = 2^-53) for coordinates on the grid.
 template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, const Contact& contact);
 
-/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative velocity|^2 / distance; 0 for walls.
+/// Second derivative of the gap along a velocity v (on coordinates): |tangential relative velocity|^2 / distance; 0 for
+/// walls.
 template <int Dim> double gap_curvature(const Packing<Dim>& packing, const Contact& contact, const double* v);
 
 extern template std::string to_string<2>(const Contact&);

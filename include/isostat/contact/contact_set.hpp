@@ -2,13 +2,14 @@
 /// \file
 /// Fast membership in a contact list.
 
-#include <vector>
-
 #include <isostat/contact/contact.hpp>
+
+#include <vector>
 
 namespace isostat {
 
-/// The contacts of a list bucketed by their first index: `contains` looks at the few contacts of one disk. Made in O(N).
+/// The contacts of a list bucketed by their first index: `contains` looks at the few contacts of one disk. Made in
+/// O(N).
 class ContactSet {
   public:
     ContactSet(const std::vector<Contact>& contacts, int disk_count);

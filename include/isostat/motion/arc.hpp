@@ -2,19 +2,19 @@
 /// \file
 /// One arc: open a contact, keep the others, follow the mechanism to the first event.
 
-#include <optional>
-
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/packing/load.hpp>
 
+#include <optional>
+
 namespace isostat {
 
 /// Choices of the path follower. The events do not depend on them; the cost does.
 struct ArcOptions {
-    double step_fraction = 0.1; ///< longest predictor step of the fastest coordinate, in units of the smallest radius
-    int max_steps = 100000;     ///< predictor steps before the motion is called unbounded
+    double step_fraction = 0.1;   ///< longest predictor step of the fastest coordinate, in units of the smallest radius
+    int max_steps = 100000;       ///< predictor steps before the motion is called unbounded
     double max_length_change = 1; ///< |L_a / L_a(start) - 1| beyond which the motion is called unbounded
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
 };
@@ -22,8 +22,8 @@ struct ArcOptions {
 /// The load whose power is watched along the arc: -dW/ds = F_ext . dq/ds must stay positive.
 template <int Dim> struct PowerLoad {
     const Load<Dim>* load = nullptr;
-    bool infinitesimal = false;   ///< only rattlers move: the power is that of the infinitesimal loads
-    bool starts_at_zero = false;  ///< first arc at a limit load: the power grows from 0
+    bool infinitesimal = false;  ///< only rattlers move: the power is that of the infinitesimal loads
+    bool starts_at_zero = false; ///< first arc at a limit load: the power grows from 0
 };
 
 /// How an arc ended.
@@ -33,31 +33,33 @@ enum class ArcEnd : unsigned char { contact, power_turn };
 template <int Dim> struct Arc {
     Packing<Dim> end;
     ArcEnd kind = ArcEnd::contact;
-    Contact closed;            ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
-    double power = 0;          ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
-    double displacement = 0;   ///< largest displacement of a coordinate
-    int steps = 0;             ///< predictor steps
-    int factorisations = 0;    ///< structures proved and factorised along the way (long arcs only)
+    Contact closed;          ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
+    double power = 0;        ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
+    double displacement = 0; ///< largest displacement of a coordinate
+    int steps = 0;           ///< predictor steps
+    int factorisations = 0;  ///< structures proved and factorised along the way (long arcs only)
 };
 
-/// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows (`direction` +1; for a held
-/// coordinate: in which it grows, or falls with -1) to the first event: a candidate's gap closes, or the power of the load vanishes.
+/// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows
+/// (`direction` +1; for a held coordinate: in which it grows, or falls with -1) to the first event: a candidate's gap
+/// closes, or the power of the load vanishes.
 ///
-/// Predictor: tangent and curvature in the fastest coordinate, re-chosen at each step. Corrector: chord iterations with the factors of the
-/// start (a structure proved again on the way when they become stale). The event is solved directly as the root of the square system (kept gaps, new gap) = 0.
-/// A gap that dips inside a step counts: where the cubic through the end values and slopes comes near 0 the step is divided.
-/// This is *not* a proof that no contact was missed inside a step; the end is checked by the caller with proved bounds.
+/// Predictor: tangent and curvature in the fastest coordinate, re-chosen at each step. Corrector: chord iterations with
+/// the factors of the start (a structure proved again on the way when they become stale). The event is solved directly
+/// as the root of the square system (kept gaps, new gap) = 0. A gap that dips inside a step counts: where the cubic
+/// through the end values and slopes comes near 0 the step is divided. This is *not* a proof that no contact was missed
+/// inside a step; the end is checked by the caller with proved bounds.
 ///
 /// `candidates` must be complete at `start`; it is rebuilt when the motion leaves its reach.
-/// Failures: `unbounded`, `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided` (a dip that touches).
-/// Cost: about 10 to 30 triangular solves for a short arc; no factorisation.
+/// Failures: `unbounded`, `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided` (a dip
+/// that touches). Cost: about 10 to 30 triangular solves for a short arc; no factorisation.
 template <int Dim>
-Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                            ContactId opened, int direction, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
-                            const ArcOptions& options);
+Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
+                            const Factorisation& factorisation, ContactId opened, int direction,
+                            const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options);
 
-extern template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId, int,
-                                             const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
+extern template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
+                                             ContactId, int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
 
 /// Fraction of the smallest radius within which candidates are listed (statement T6 allows 0.82).
 inline constexpr double candidate_fraction = 0.8;

@@ -2,27 +2,28 @@
 /// \file
 /// The load: F_ext = F_fixed + sigma_loaded * F_unit, plus infinitesimal loads eps*g.
 
+#include <isostat/packing/packing.hpp>
+
 #include <array>
 #include <vector>
-
-#include <isostat/packing/packing.hpp>
 
 namespace isostat {
 
 /// How a stress on a movable wall becomes a force.
 /// - `nominal` (default): force = stress x *reference* length of the other axis: dead forces, W is a potential;
-/// - `true_stress`: force = stress x current length: no potential, only the sign of the work of each arc can be asserted.
+/// - `true_stress`: force = stress x current length: no potential, only the sign of the work of each arc can be
+/// asserted.
 enum class LoadKind : unsigned char { nominal, true_stress };
 
 /// Load of a packing. Forces in the unit (stress unit x length unit); a compressive stress is positive and pushes the
 /// upper wall inwards. Coordinates are indexed as in `Packing::q`.
 template <int Dim> struct Load {
     LoadKind kind = LoadKind::nominal;
-    std::array<double, Dim> stress{};            ///< sigma_1, sigma_2 (axis 0, axis 1)
-    std::array<double, Dim> reference_length{};  ///< L_a at which nominal stress and strain are defined
-    int loaded_axis = 1;                         ///< the axis whose stress the programme changes (sigma_2)
-    std::vector<double> disk_force;              ///< empty, or Dim*n external forces on the disks
-    std::vector<double> infinitesimal;           ///< empty, or Dim*n infinitesimal loads g (the eps part)
+    std::array<double, Dim> stress{};           ///< sigma_1, sigma_2 (axis 0, axis 1)
+    std::array<double, Dim> reference_length{}; ///< L_a at which nominal stress and strain are defined
+    int loaded_axis = 1;                        ///< the axis whose stress the programme changes (sigma_2)
+    std::vector<double> disk_force;             ///< empty, or Dim*n external forces on the disks
+    std::vector<double> infinitesimal;          ///< empty, or Dim*n infinitesimal loads g (the eps part)
 
     /// Force on the upper wall of `axis` per unit stress on it: the product of the other axes' lengths.
     [[nodiscard]] double force_per_stress(const Packing<Dim>& packing, int axis) const;
@@ -39,7 +40,8 @@ template <int Dim> double potential(const Packing<Dim>& packing, const Load<Dim>
 
 /// Generic infinitesimal loads: g_i = R_i^2 (direction + amplitude * noise), noise uniform in [-1,1]^Dim from `seed`,
 /// direction fixed and off the walls' normals. Every disk gets one, so that rattlers rest on Dim contacts.
-template <int Dim> std::vector<double> generic_infinitesimal(const std::vector<double>& radius, unsigned long long seed);
+template <int Dim>
+std::vector<double> generic_infinitesimal(const std::vector<double>& radius, unsigned long long seed);
 
 extern template struct Load<2>;
 extern template double potential<2>(const Packing<2>&, const Load<2>&);

@@ -2,13 +2,13 @@
 /// \file
 /// The grains and where they are: disks (Dim = 2; spheres later) and flat walls normal to the axes.
 
+#include <isostat/core/ids.hpp>
+
 #include <array>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <isostat/core/ids.hpp>
 
 namespace isostat {
 
@@ -32,8 +32,8 @@ template <int Dim> struct Walls {
 /// upper wall of axis a (present in q even when that wall is absent, then meaningless and 0). A *coordinate index* is
 /// an index into q. Invariant (checked by `validate`): every radius positive and finite, every coordinate finite.
 template <int Dim> struct Packing {
-    std::vector<double> radius;      ///< n radii
-    std::vector<double> q;           ///< Dim*(n+1) coordinates
+    std::vector<double> radius; ///< n radii
+    std::vector<double> q;      ///< Dim*(n+1) coordinates
     Walls<Dim> walls = Walls<Dim>::box();
     std::vector<unsigned char> fixed; ///< empty, or n flags: 1 = this disk cannot move
 
@@ -42,8 +42,12 @@ template <int Dim> struct Packing {
         return q[static_cast<std::size_t>(Dim) * disk.index() + static_cast<std::size_t>(axis)];
     }
     /// Position L_a of the upper wall of an axis.
-    [[nodiscard]] double length(int axis) const { return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)]; }
-    [[nodiscard]] double& length(int axis) { return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)]; }
+    [[nodiscard]] double length(int axis) const {
+        return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)];
+    }
+    [[nodiscard]] double& length(int axis) {
+        return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)];
+    }
     [[nodiscard]] bool is_fixed(DiskId disk) const { return !fixed.empty() && fixed[disk.index()] != 0; }
     [[nodiscard]] double min_radius() const;
     [[nodiscard]] double max_radius() const;
@@ -75,9 +79,9 @@ template <int Dim> class DofMap {
 /// disk is larger than the box. `source` (a file name) starts the message.
 template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source);
 
-/// Rounds every coordinate to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of two
-/// that is not below the largest coordinate. Then every difference of two coordinates is exact in double.
-/// Moves a coordinate by at most half a grid step (2^-53 of the box). Idempotent; commutes with scaling by powers of two.
+/// Rounds every coordinate to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of
+/// two that is not below the largest coordinate. Then every difference of two coordinates is exact in double. Moves a
+/// coordinate by at most half a grid step (2^-53 of the box). Idempotent; commutes with scaling by powers of two.
 template <int Dim> void snap_to_grid(Packing<Dim>& packing);
 
 /// The grid step that `snap_to_grid` uses.

@@ -2,28 +2,29 @@
 /// \file
 /// The two static decisions of a trajectory: where the supported interval ends, and which contact opens.
 
+#include <isostat/core/result.hpp>
+#include <isostat/statics/statics.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include <isostat/core/result.hpp>
-#include <isostat/statics/statics.hpp>
 
 namespace isostat {
 
 /// Which contact with a negative force is opened during a rearrangement. The paper's rule is `most_negative`.
 /// - most_negative: smallest f;  - steepest: smallest f / |v|, v the mechanism that opens the contact at unit rate;
 /// - random: uniformly among f < 0;  - least_negative: largest f < 0.
-/// In all of them a held coordinate competes with -|multiplier|, and infinitesimal forces decide only when no finite force is negative.
+/// In all of them a held coordinate competes with -|multiplier|, and infinitesimal forces decide only when no finite
+/// force is negative.
 enum class OpeningRule : std::uint8_t { most_negative, steepest, random, least_negative };
 
 /// The contact to open, with the evidence.
 struct Opening {
     ContactId contact;
-    bool infinitesimal = false;  ///< decided by the eps part: only rattlers move
-    Enclosure force;             ///< the force (or multiplier, or infinitesimal force) that made the choice
-    int direction = +1;          ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
-    double margin = 0;           ///< smallest |difference| / bound over the comparisons made
+    bool infinitesimal = false; ///< decided by the eps part: only rattlers move
+    Enclosure force;            ///< the force (or multiplier, or infinitesimal force) that made the choice
+    int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
+    double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
 };
 
@@ -34,25 +35,29 @@ struct OpeningDecision {
     Rung rung = Rung::none;
 };
 
-/// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its multiplier is 0 by
-/// construction and does not compete. `random_bits` is used by the rule `random` only. May climb `statics` to double-double.
-/// Failure: `undecided` (a sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
+/// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its
+/// multiplier is 0 by construction and does not compete. `random_bits` is used by the rule `random` only. May climb
+/// `statics` to double-double. Failure: `undecided` (a sign), `tie` (two candidates that cannot be ordered), naming the
+/// contacts and the numbers.
 template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits);
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
+                                       std::uint64_t random_bits);
 
 /// End of the supported interval in one direction of sigma.
 struct LoadLimit {
-    bool unbounded = false;            ///< no force decreases: the structure supports every load in this direction
-    double stress = 0;                 ///< where the force of `opens` vanishes, to within `stress_error`
+    bool unbounded = false; ///< no force decreases: the structure supports every load in this direction
+    double stress = 0;      ///< where the force of `opens` vanishes, to within `stress_error`
     double stress_error = 0;
-    ContactId opens;                   ///< lexicographic choice within the tie class (smallest f1 / |slope|)
-    std::vector<ContactId> tie_class;  ///< contacts whose forces vanish together for structural reasons, `opens` included
+    ContactId opens; ///< lexicographic choice within the tie class (smallest f1 / |slope|)
+    std::vector<ContactId>
+        tie_class; ///< contacts whose forces vanish together for structural reasons, `opens` included
     double margin = 0;
     Rung rung = Rung::none;
 };
 
 /// \pre every finite force positive at `sigma`. `direction` +1 or -1. Held coordinates do not limit. May climb.
-/// Failure: `tie` when two forces vanish at loads that cannot be ordered, and that no structural argument ties together.
+/// Failure: `tie` when two forces vanish at loads that cannot be ordered, and that no structural argument ties
+/// together.
 template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction);
 
 extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t);

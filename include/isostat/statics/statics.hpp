@@ -2,25 +2,27 @@
 /// \file
 /// Contact forces of a vertex as functions of the load, with signs that are proved or undecided.
 
-#include <array>
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include <isostat/core/enclosure.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/verified/force_solution.hpp>
 
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
 namespace isostat {
 
-/// f_l(sigma) = f_l(sigma_0) + (sigma - sigma_0) * unit_l, plus eps * infinitesimal_l, sigma_0 the present loaded stress (paper: alpha_l sigma_1 +
-/// beta_l (sigma_2 - sigma_1), unit_l = beta_l), for the exact matrix of the stored configuration and eps > 0 infinitesimal.
-/// sigma is the loaded stress (sigma_2). Forces: stress x length; positive in compression.
+/// f_l(sigma) = f_l(sigma_0) + (sigma - sigma_0) * unit_l, plus eps * infinitesimal_l, sigma_0 the present loaded
+/// stress (paper: alpha_l sigma_1 + beta_l (sigma_2 - sigma_1), unit_l = beta_l), for the exact matrix of the stored
+/// configuration and eps > 0 infinitesimal. sigma is the loaded stress (sigma_2). Forces: stress x length; positive in
+/// compression.
 template <int Dim> class Statics {
   public:
-    /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for (most vertices of a
-    /// rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2 for each part asked for.
+    /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for
+    /// (most vertices of a rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2
+    /// for each part asked for.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
             const Factorisation& factorisation, const InverseBound& inverse);
 
@@ -30,7 +32,8 @@ template <int Dim> class Statics {
     [[nodiscard]] Enclosure slope(ContactId contact) const;
     /// Infinitesimal part: decides the sign where the finite part is a structural zero.
     [[nodiscard]] Enclosure infinitesimal(ContactId contact) const;
-    /// The finite part vanishes exactly for every load on the same degrees of freedom (statement T11): rattlers' contacts.
+    /// The finite part vanishes exactly for every load on the same degrees of freedom (statement T11): rattlers'
+    /// contacts.
     [[nodiscard]] bool is_structural_zero(ContactId contact) const { return backbone_[contact.index()] == 0; }
     /// The slope vanishes exactly: this force does not depend on sigma.
     [[nodiscard]] bool slope_is_zero(ContactId contact) const;
@@ -66,11 +69,11 @@ template <int Dim> class Statics {
     double sigma_;                                       ///< sigma_0
     std::array<std::vector<double>, 3> right_hand_side_; ///< at sigma_0, unit, infinitesimal
     mutable std::array<std::optional<ForceSolution>, 3> solution_;
-    mutable std::optional<ExtendedMatrix> extended_;     ///< made by the first climb
+    mutable std::optional<ExtendedMatrix> extended_; ///< made by the first climb
     std::vector<int> loaded_rows_;
     int loaded_wall_row_ = -1;
     std::vector<unsigned char> backbone_;
-    mutable std::vector<unsigned char> sloped_;          ///< empty until asked for
+    mutable std::vector<unsigned char> sloped_; ///< empty until asked for
     Rung rung_ = Rung::double_bound;
 };
 

@@ -2,69 +2,69 @@
 /// \file
 /// What a run reports: one record per arc and one per equilibrium, and the interface that receives them.
 
-#include <string>
-#include <vector>
-
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
+
+#include <string>
+#include <vector>
 
 namespace isostat {
 
 /// One arc: a contact opened, the mechanism followed, a contact (or a power turn) met.
 template <int Dim> struct ArcRecord {
-    long step = 0;             ///< number of the arc in the run, from 1
-    int equilibrium = 0;       ///< number of the equilibrium it started after
-    int arc = 0;               ///< number within the rearrangement, from 1
-    std::string kind;          ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
-    Contact opened;            ///< contact opened (or held coordinate released)
-    Contact closed;            ///< contact met, or the coordinate held at a power turn
-    bool power_turn = false;   ///< true: the arc ended where the power of the load vanished
-    double stress = 0;         ///< sigma_2
-    double strain = 0;         ///< eps_2 at the end of the arc
-    double force = 0;          ///< force f0 in the opened contact (0 for limit and rattler arcs)
-    double power = 0;          ///< -dW/ds at the end of the arc, per unit of the fastest coordinate
-    double work = 0;           ///< decrease of W along the arc
-    double displacement = 0;   ///< largest displacement of a coordinate
-    int steps = 0;             ///< predictor steps
-    double margin = 0;         ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided)
+    long step = 0;       ///< number of the arc in the run, from 1
+    int equilibrium = 0; ///< number of the equilibrium it started after
+    int arc = 0;         ///< number within the rearrangement, from 1
+    std::string kind;    ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
+    Contact opened;      ///< contact opened (or held coordinate released)
+    Contact closed;      ///< contact met, or the coordinate held at a power turn
+    bool power_turn = false;      ///< true: the arc ended where the power of the load vanished
+    double stress = 0;            ///< sigma_2
+    double strain = 0;            ///< eps_2 at the end of the arc
+    double force = 0;             ///< force f0 in the opened contact (0 for limit and rattler arcs)
+    double power = 0;             ///< -dW/ds at the end of the arc, per unit of the fastest coordinate
+    double work = 0;              ///< decrease of W along the arc
+    double displacement = 0;      ///< largest displacement of a coordinate
+    int steps = 0;                ///< predictor steps
+    double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided)
     Rung decided_by = Rung::none; ///< highest rung that was needed
 };
 
 /// One equilibrium, checked.
 template <int Dim> struct EquilibriumRecord {
-    int number = 0;            ///< 0 = the start
-    int segment = 0;           ///< segment of the programme
-    double stress = 0;         ///< sigma_2 at which it was reached
-    double stress_low = 0;     ///< supported interval of sigma_2: [stress_low, stress_high]
+    int number = 0;        ///< 0 = the start
+    int segment = 0;       ///< segment of the programme
+    double stress = 0;     ///< sigma_2 at which it was reached
+    double stress_low = 0; ///< supported interval of sigma_2: [stress_low, stress_high]
     double stress_high = 0;
-    Contact opens_low;         ///< contact whose force vanishes at stress_low (i = -1: none, the interval is unbounded)
+    Contact opens_low; ///< contact whose force vanishes at stress_low (i = -1: none, the interval is unbounded)
     Contact opens_high;
     double sigma1 = 0;
     std::vector<double> strain; ///< (L_a^0 - L_a) / L_a^0, one per axis: positive in compression
     std::vector<double> length; ///< L_a
-    double potential = 0;      ///< W
-    int arcs = 0;              ///< arcs of the rearrangement that led here
-    int dof_count = 0;         ///< N_f
-    int contact_count = 0;     ///< N
-    int rank = 0;              ///< proved rank of H
-    int hyperstaticity = 0;    ///< h = N - rank
-    int mechanisms = 0;        ///< k = N_f - rank
+    double potential = 0;       ///< W
+    int arcs = 0;               ///< arcs of the rearrangement that led here
+    int dof_count = 0;          ///< N_f
+    int contact_count = 0;      ///< N
+    int rank = 0;               ///< proved rank of H
+    int hyperstaticity = 0;     ///< h = N - rank
+    int mechanisms = 0;         ///< k = N_f - rank
     int rattlers = 0;
-    int backbone = 0;          ///< contacts whose force is not a structural zero
-    int held = 0;              ///< held coordinates (0 in an ordinary equilibrium)
-    double min_force = 0;      ///< smallest backbone force
+    int backbone = 0;     ///< contacts whose force is not a structural zero
+    int held = 0;         ///< held coordinates (0 in an ordinary equilibrium)
+    double min_force = 0; ///< smallest backbone force
     Contact min_force_contact;
-    double min_gap = 0;        ///< smallest gap of a pair that is not a contact
+    double min_gap = 0; ///< smallest gap of a pair that is not a contact
     Contact min_gap_contact;
-    double force_bound = 0;    ///< proved bound on the error of every force
+    double force_bound = 0;     ///< proved bound on the error of every force
     double sigma_min_bound = 0; ///< proved lower bound of the smallest singular value of H
-    double balance = 0;        ///< max |H f - F_ext| (double-double residual)
-    double virtual_power = 0;  ///< |f.(G v) - F.v| for a recorded random v, relative
-    double gap_residual = 0;   ///< max |gap| over the contacts
-    double margin = 0;         ///< smallest |quantity| / bound over the decisions since the previous equilibrium
+    double balance = 0;         ///< max |H f - F_ext| (double-double residual)
+    double virtual_power = 0;   ///< |f.(G v) - F.v| for a recorded random v, relative
+    double gap_residual = 0;    ///< max |gap| over the contacts
+    double margin = 0;          ///< smallest |quantity| / bound over the decisions since the previous equilibrium
     Rung decided_by = Rung::none;
     Verdict verdict = Verdict::undecided; ///< proved: every check of this record holds for the stored configuration
-    double seconds = 0;        ///< since the start of the run
+    double seconds = 0;                   ///< since the start of the run
 };
 
 /// Decisions counted by the rung that settled them.

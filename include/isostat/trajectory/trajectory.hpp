@@ -2,86 +2,89 @@
 /// \file
 /// The load programme: equilibria and rearrangements under a changing sigma_2 (paper, section 2.3).
 
-#include <atomic>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/statics/decisions.hpp>
 #include <isostat/trajectory/records.hpp>
 
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 namespace isostat {
 
 /// One segment of the programme: change sigma_2 in one direction until something is reached.
 struct Segment {
-    int direction = +1;                 ///< +1: up, -1: down
-    std::optional<int> equilibria;      ///< stop after this many new equilibria
-    std::optional<double> to_stress;    ///< stop when sigma_2 has reached this value (inside a supported interval)
-    std::optional<int> from;            ///< start from this equilibrium of the run instead of the last one
-    std::string name;                   ///< for records: "up", "down", "cycle 10"...
+    int direction = +1;              ///< +1: up, -1: down
+    std::optional<int> equilibria;   ///< stop after this many new equilibria
+    std::optional<double> to_stress; ///< stop when sigma_2 has reached this value (inside a supported interval)
+    std::optional<int> from;         ///< start from this equilibrium of the run instead of the last one
+    std::string name;                ///< for records: "up", "down", "cycle 10"...
 };
 
 /// Caps and choices of a run.
 struct RunOptions {
     OpeningRule rule = OpeningRule::most_negative;
-    std::uint64_t rule_seed = 1;        ///< of `random`
-    long max_arcs = 20000;              ///< per rearrangement; reaching it is a result: the sample fails
-    double max_strain = 0.5;            ///< |eps_2| since the reference state
-    double step_fraction = 0.1;         ///< longest predictor step, in units of the smallest radius
+    std::uint64_t rule_seed = 1;             ///< of `random`
+    long max_arcs = 20000;                   ///< per rearrangement; reaching it is a result: the sample fails
+    double max_strain = 0.5;                 ///< |eps_2| since the reference state
+    double step_fraction = 0.1;              ///< longest predictor step, in units of the smallest radius
     const std::atomic<bool>* stop = nullptr; ///< set by Ctrl-C: the run ends after the current arc
 };
 
 /// Counters that let an interrupted run go on with the same bits.
 struct RunCounters {
-    long steps = 0;                     ///< arcs so far
-    int equilibria = 0;                 ///< number of the last equilibrium
+    long steps = 0;     ///< arcs so far
+    int equilibria = 0; ///< number of the last equilibrium
     double seconds = 0;
     Tally tally;
 };
 
 /// How a segment ended.
 struct SegmentOutcome {
-    bool completed = false;             ///< the segment's goal was reached
-    std::optional<Failure> failure;     ///< otherwise: why not; the state is the last equilibrium
+    bool completed = false;         ///< the segment's goal was reached
+    std::optional<Failure> failure; ///< otherwise: why not; the state is the last equilibrium
 };
 
 /// Runs one segment from `state`, which must be a vertex with N_f contacts.
 /// \post `state` is the last equilibrium reached (also after a failure), with its stress set; `counters` advanced.
-/// The observer gets every arc and every equilibrium. If `counters.equilibria == 0 && counters.steps == 0` the start is first made an equilibrium
-/// (rearranged at its own load if some force is negative) and reported as number 0.
-/// Every sign that steers is decided with a proved bound; a sign that is not ends the segment with `undecided` or `tie`.
+/// The observer gets every arc and every equilibrium. If `counters.equilibria == 0 && counters.steps == 0` the start is
+/// first made an equilibrium (rearranged at its own load if some force is negative) and reported as number 0. Every
+/// sign that steers is decided with a proved bound; a sign that is not ends the segment with `undecided` or `tie`.
 template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer);
 
 /// What is known of a state without moving it: the record that a run would make of it, forces included.
 ///
-/// With fewer contacts than degrees of freedom (h = 0, k > 0) coordinates are held until the structure is isostatic; when every
-/// force is positive and the multipliers of the held coordinates cannot be told from 0, the state is an equilibrium *as far as the stored numbers say*
-/// (`record.held` = k, `equilibrium` stays false), and `stable` tells what W does along the mechanism (k = 1; statement T8).
+/// With fewer contacts than degrees of freedom (h = 0, k > 0) coordinates are held until the structure is isostatic;
+/// when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is an
+/// equilibrium *as far as the stored numbers say*
+/// (`record.held` = k, `equilibrium` stays false), and `stable` tells what W does along the mechanism (k = 1; statement
+/// T8).
 template <int Dim> struct Inspection {
-    Counting counting;                       ///< N_f, N, rank, h, k
-    EquilibriumRecord<Dim> record;
-    std::vector<Contact> contacts;           ///< those of the state, then the held coordinates
-    std::vector<double> forces;              ///< f0, one per entry of `contacts`
+    Counting counting;                          ///< N_f, N, rank, h, k
+    EquilibriumRecord<Dim> record;              ///< `record.verdict`: is it an isostatic equilibrium
+    std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
+    std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
-    std::vector<int> rattlers;               ///< disks without a force-carrying contact
-    bool equilibrium = false;                ///< isostatic and all forces positive lexicographically, proved
-    /// proved: strict local minimum of W (isostatic equilibrium); refuted: W has a maximum along the mechanism, the equilibrium is
-    /// not stable; undecided: neither was shown.
+    std::vector<int> rattlers;                  ///< disks without a force-carrying contact
+    bool equilibrium = false;                   ///< isostatic and all forces positive lexicographically, proved
+    /// proved: strict local minimum of W (isostatic equilibrium); refuted: W has a maximum along the mechanism, the
+    /// equilibrium is not stable; undecided: neither was shown.
     Verdict stable = Verdict::undecided;
-    Enclosure second_order;                  ///< d2W/ds2 along the mechanism (k = 1), s = the fastest coordinate
-    std::string remark;                      ///< when not an equilibrium: which contact and by how much
+    Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1), s = the fastest coordinate
+    std::string remark;     ///< when not an equilibrium: which contact and by how much
 };
-/// Failure: `not_isostatic` when h > 0 (the message gives N_f, N, rank, h, k), `undecided` when no bound of the inverse or no true
-/// vertex near the stored one was proved.
+/// Failure: `not_isostatic` when h > 0 (the message gives N_f, N, rank, h, k), `undecided` when no bound of the inverse
+/// or no true vertex near the stored one was proved.
 template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state);
 
-extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&, RunObserver<2>&);
+extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
+                                              RunObserver<2>&);
 extern template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
 
 } // namespace isostat

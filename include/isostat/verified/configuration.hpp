@@ -2,10 +2,10 @@
 /// \file
 /// The true vertex near a stored configuration, and the signs of the gaps there.
 
-#include <vector>
-
 #include <isostat/core/enclosure.hpp>
 #include <isostat/verified/inverse_bound.hpp>
+
+#include <vector>
 
 namespace isostat {
 
@@ -21,19 +21,22 @@ struct VertexEnclosure {
 
 /// Rung double_bound: gaps in double, radius about 1e-15 sqrt(N) / sigma_min. Cost O(N).
 template <int Dim>
-VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const InverseBound& inverse);
+VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                               const InverseBound& inverse);
 
-/// Rung double_double: one or two corrections, gaps in double-double; radius about 1e-29 / sigma_min. Cost: two solves and O(N).
+/// Rung double_double: one or two corrections, gaps in double-double; radius about 1e-29 / sigma_min. Cost: two solves
+/// and O(N).
 template <int Dim>
 VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                              const Factorisation& factorisation, const InverseBound& inverse);
 
 /// Gap of any candidate at the true vertex.
-template <int Dim> Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact);
+template <int Dim>
+Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact);
 
 extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
-extern template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                                                const InverseBound&);
+extern template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
+                                                                const Factorisation&, const InverseBound&);
 extern template Enclosure gap_at_vertex<2>(const Packing<2>&, const VertexEnclosure&, const Contact&);
 
 } // namespace isostat

@@ -2,16 +2,16 @@
 /// \file
 /// Contact forces with a proved error bound, in double or double-double.
 
-#include <vector>
-
 #include <isostat/core/enclosure.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
+#include <vector>
+
 namespace isostat {
 
-/// Solution of H f = F for the exact matrix H of the stored configuration: |f_l - (value_l + low_l)| <= bound for every l.
-/// `low` is empty on the rung double_bound. A bound of infinity (or NaN) means that nothing is known.
+/// Solution of H f = F for the exact matrix H of the stored configuration: |f_l - (value_l + low_l)| <= bound for every
+/// l. `low` is empty on the rung double_bound. A bound of infinity (or NaN) means that nothing is known.
 struct ForceSolution {
     std::vector<double> value;
     std::vector<double> low;
@@ -20,28 +20,33 @@ struct ForceSolution {
     Rung rung = Rung::double_bound;
 };
 
-/// Unit normals of the stored configuration in double-double, made when the first solve climbs; reused for every right-hand side.
-/// Column l holds the entries of `structure.matrix()` in the same order, relative error below 2^-98.
+/// Unit normals of the stored configuration in double-double, made when the first solve climbs; reused for every
+/// right-hand side. Column l holds the entries of `structure.matrix()` in the same order, relative error below 2^-98.
 struct ExtendedMatrix {
     std::vector<double> high;
     std::vector<double> low;
 };
-template <int Dim> ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
-
-/// LU solve, one step of refinement, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the rounding of the residual and of the
-/// entries of H included (statement V3). \pre `inverse` proved; otherwise the bound is infinite. Cost: two solves.
 template <int Dim>
-ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, const InverseBound& inverse,
-                           const std::vector<double>& force);
+ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
 
-/// Refines `solution` with residuals in double-double: bound near 1e-30 |f| |H^-1|. The right-hand side is the same `force`, taken as exact.
+/// LU solve, one step of refinement, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the rounding of the residual
+/// and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound is infinite. Cost: two
+/// solves.
 template <int Dim>
-void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix, const IsostaticStructure<Dim>& structure,
-                          const Factorisation& factorisation, const InverseBound& inverse, const std::vector<double>& force);
+ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+                           const InverseBound& inverse, const std::vector<double>& force);
+
+/// Refines `solution` with residuals in double-double: bound near 1e-30 |f| |H^-1|. The right-hand side is the same
+/// `force`, taken as exact.
+template <int Dim>
+void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
+                          const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+                          const InverseBound& inverse, const std::vector<double>& force);
 
 extern template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&);
-extern template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&, const std::vector<double>&);
-extern template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&, const Factorisation&,
-                                             const InverseBound&, const std::vector<double>&);
+extern template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
+                                              const std::vector<double>&);
+extern template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
+                                             const Factorisation&, const InverseBound&, const std::vector<double>&);
 
 } // namespace isostat

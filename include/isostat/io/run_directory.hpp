@@ -1,0 +1,131 @@
+#pragma once
+/// \file
+/// The folder of a run: everything it found, at every instant complete up to the last record.
+
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What identifies a run: written at its start, compared on resume.
+struct RunHeader {
+    std::string program;                ///< name and version
+    std::string command;                ///< command line
+    std::string scene_name;             ///< file name of the scene
+    std::string scene_text;             ///< its whole text: a resumed run must have the same
+    std::string settings = "{}";        ///< JSON object: every setting with its value, defaults included
+    std::vector<std::string> programme; ///< one line of text per segment
+    std::vector<int> keep;              ///< equilibria that later segments start from: their states are stored
+    int states_every = 0;               ///< also store every k-th equilibrium; 0: none but those needed
+};
+
+/// Where an interrupted run goes on.
+struct Checkpoint {
+    State<2> state;            ///< the last equilibrium
+    int segment = 0;           ///< number of the segment it belongs to
+    int made = 0;              ///< equilibria made in that segment
+    bool segment_done = false; ///< that equilibrium completed the segment
+    RunCounters counters;
+};
+
+/// How a run ended.
+enum class RunStatus { completed, failed, undecided, interrupted };
+
+/// The word used in files and messages.
+const char* to_string(RunStatus status);
+
+/// Receives the records of a run and writes them as they come. Files (all of them JSON but equilibria.csv):
+/// - run.json: what was asked, by which program, and the status ("running" until `finish`);
+/// - events.jsonl: one object per arc, handed to the system line by line;
+/// - equilibria.csv: one row per equilibrium, a header line that starts with '#': numpy.loadtxt(delimiter=",") and
+///   numpy.genfromtxt(delimiter=",", names=True) read it (columns: `equilibria_columns`);
+/// - states/eq_000012.json: the first equilibrium, those that later segments start from, every k-th; states/last.json:
+/// the last one;
+/// - checkpoint.json: replaced after every equilibrium (atomically, after the records have reached the disk);
+/// - summary.json: written by `finish` only.
+/// After a kill at any instant, `resume` cuts events and equilibria back to the checkpoint; the run goes on from there.
+/// Every failure to write throws `Error(cannot_write)`, also out of the observer's calls.
+class RunDirectory final : public RunObserver<2> {
+  public:
+    enum class Mode {
+        fresh, ///< `Error(usage)` when the folder holds a run
+        force, ///< its files are deleted first
+        resume ///< goes on; `Error(bad_input)` when there is none, or when it is the run of another scene or program
+               ///< version
+    };
+    /// Makes the folder if needed and locks it: `Error(cannot_write)` when a running program holds it. `counters` must
+    /// outlive this object: they are read after every equilibrium (and set from the checkpoint by the caller on
+    /// resume).
+    RunDirectory(std::filesystem::path directory, RunHeader header, Mode mode, const RunCounters& counters);
+    ~RunDirectory() override;
+    RunDirectory(const RunDirectory&) = delete;
+    RunDirectory& operator=(const RunDirectory&) = delete;
+
+    /// Where to go on: none in a fresh run, or when the interrupted one had not reached its first equilibrium.
+    [[nodiscard]] const std::optional<Checkpoint>& checkpoint() const { return checkpoint_; }
+    /// "completed", "failed: ...", ... of the interrupted run; "running" when it was killed; empty in a fresh one.
+    [[nodiscard]] const std::string& previous_status() const { return previous_status_; }
+    /// The state that the interrupted run started from, kept beside it (start.json); none in a fresh run.
+    [[nodiscard]] std::optional<State<2>> start() const;
+    void store_start(const State<2>& state);
+    /// The state of an equilibrium that was stored. Throws `Error(bad_input)` when it was not.
+    [[nodiscard]] State<2> stored(int equilibrium) const;
+
+    /// Before each `run_segment`: its number, its goal, equilibria already made in it (after a resume) and the
+    /// equilibrium it starts from.
+    void begin_segment(int number, const Segment& goal, int made, int from);
+    void on_arc(const ArcRecord<2>& arc) override;
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& forces) override;
+    /// Ends the run: status with its reason, states/last.json, summary.json. Nothing may follow.
+    void finish(RunStatus status, const std::string& reason);
+
+    /// The text of summary.json. \pre `finish` was called.
+    [[nodiscard]] const std::string& summary() const { return summary_; }
+    [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
+
+  private:
+    struct Files;
+    void write_header(const std::string& status) const;
+    void write_checkpoint();
+    void open_for_resume();
+    std::filesystem::path directory_;
+    RunHeader header_;
+    const RunCounters& counters_;
+    bool resumed_;
+    std::unique_ptr<Files> files_;
+    std::optional<Checkpoint> checkpoint_;
+    std::string previous_status_, provenance_, summary_;
+    Segment goal_;
+    int segment_ = 0;
+    int made_ = 0;
+    int previous_ = 0; ///< equilibrium that the next one follows
+    State<2> last_;
+    std::vector<double> last_forces_;
+    EquilibriumRecord<2> last_record_;
+};
+
+/// Names of the columns of equilibria.csv, in order. Contacts are two columns, i and j: disks from 0; j = -1 left, -2
+/// bottom, -3 right, -4 top wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double, 3 mpfr, 4 exact.
+/// `proved`: 1 or 0. An unbounded interval ends at inf or -inf. `previous` is the equilibrium that this one follows on
+/// its path (-1: the start).
+const std::vector<std::string>& equilibria_columns();
+
+/// One equilibrium as equilibria.csv gives it back.
+struct EquilibriumRow {
+    int number = 0, previous = -1, segment = 0;
+    double stress = 0, ratio = 0, strain1 = 0, strain2 = 0, solid_fraction = 0;
+    int arcs = 0, rattlers = 0, backbone = 0, hyperstaticity = 0;
+    double stress_low = 0, stress_high = 0, min_force = 0, min_gap = 0, margin = 0;
+    bool proved = false;
+};
+
+/// Reads equilibria.csv of a run. Throws `Error(bad_input)` with file and line.
+std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path);
+
+} // namespace isostat

@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// State files: one vertex, complete, with numbers that come back bit for bit.
+
+#include <isostat/contact/state.hpp>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What a state file holds.
+template <int Dim> struct StateFile {
+    State<Dim> state;
+    std::vector<double>
+        forces; ///< empty, or f0 of every contact of the state: for pictures, never a start of a computation
+};
+
+/// The JSON text of a state (format "isostat-state", version 1): packing, load, contacts, provenance, and forces when
+/// given (one per contact). Doubles are written in a short form that reads back to the same bits. Rows are one per
+/// line. Throws `Error(bad_input)` naming the field when a number is not finite.
+template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces = {});
+
+/// Writes `state_text` atomically. Throws `Error(cannot_write)`.
+template <int Dim>
+void write_state(const std::filesystem::path& path, const State<Dim>& state, std::span<const double> forces = {});
+
+/// Writes what a failed preparation reached, for pictures: format "isostat-packing", disks and box only, with the
+/// reason. No command takes it for a state. Throws `Error(cannot_write)`.
+template <int Dim>
+void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason);
+
+/// Reads a state from text; `source` (a file name) starts every message. Numbers may also be strings with a hexadecimal
+/// float. Throws `Error(bad_input)` with file, field, value and what was expected: text that is not complete JSON,
+/// unknown or missing fields, numbers that are not finite, radii that are not positive, disks larger than the box,
+/// contacts out of range, of a disk with itself or given twice. It does not look at the geometry (gaps, overlaps) nor
+/// count contacts: see `check_start`.
+template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source);
+
+/// Reads a state file or, recognised by its first character, a vertex text (`vertex_text.hpp`).
+template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path);
+
+/// What must hold of a state before a trajectory starts from it, in the words of a user: throws `Error(bad_input)` when
+/// contacts and degrees of freedom do not match or the rank is deficient (h or k > 0, with the numbers), when two
+/// grains overlap (which, by how much), or when a listed contact is visibly open. The thresholds on lengths (1e-6 of
+/// the smallest radius) only choose between a clear message here and a proof later: `run_segment` decides the signs of
+/// all gaps with bounds.
+template <int Dim> void check_start(const State<Dim>& state, const std::string& source);
+
+extern template std::string state_text<2>(const State<2>&, std::span<const double>);
+extern template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
+extern template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
+extern template StateFile<2> parse_state<2>(const std::string&, const std::string&);
+extern template StateFile<2> read_state<2>(const std::filesystem::path&);
+extern template void check_start<2>(const State<2>&, const std::string&);
+
+} // namespace isostat

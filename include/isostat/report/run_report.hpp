@@ -1,0 +1,39 @@
+#pragma once
+/// \file
+/// Tables and figures of a run or of a state.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What to make.
+struct ReportOptions {
+    bool pictures = true; ///< force pictures (SVG), data and scripts of the charts
+    bool charts = true;   ///< call gnuplot on the scripts (SVG and PNG)
+    bool vtk = false;     ///< ParaView files
+};
+
+/// What was made.
+struct ReportResult {
+    std::string text;                         ///< tables, for a terminal (of a run also in report.txt)
+    std::vector<std::filesystem::path> files; ///< pictures, data and scripts, in the order in which they were written
+    std::vector<std::string> notes;           ///< what was not made, and why
+};
+
+/// Report of the folder of a run, finished or not, into `output`:
+/// - staircase: sigma2/sigma1 against eps2 (paper, figure 2); cycles: the segments that start from an earlier
+/// equilibrium (figure 3);
+/// - stress_increments, strain_increments: their distributions, linear and logarithmic (figures 4 and 5);
+/// - force pictures of the stored states: the first, the last, and those that segments start from.
+/// Each chart is a data file (.dat), a gnuplot script (.gp), and .svg and .png when gnuplot is there; otherwise a note
+/// says so. Throws `Error(bad_input)` when the folder holds no run, `Error(cannot_write)`.
+ReportResult report_run(const std::filesystem::path& directory, const std::filesystem::path& output,
+                        const ReportOptions& options);
+
+/// Force picture, and VTK file when asked for, of one state. Forces are those of the file, or else solved for here.
+ReportResult report_state(const std::filesystem::path& state, const std::filesystem::path& output,
+                          const ReportOptions& options);
+
+} // namespace isostat

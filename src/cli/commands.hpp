@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// The subcommands of `isostat`: arguments as parsed, exit status as returned.
+
+#include <string>
+#include <vector>
+
+namespace isostat::cli {
+
+/// Exit statuses beyond those of `Error` (64 usage, 65 bad input, 74 cannot write).
+enum Status { done = 0, failed = 1, undecided = 2, interrupted = 130 };
+
+/// Options that several subcommands have.
+struct Common {
+    bool quiet = false;  ///< no progress, no tables
+    bool json = false;   ///< one JSON object on standard output and nothing else there
+    std::string command; ///< the command line, for records
+};
+
+struct PrepareArguments {
+    Common common;
+    std::string scene, output;
+};
+int prepare(const PrepareArguments& arguments);
+
+struct RunArguments {
+    Common common;
+    std::string scene, output;
+    bool resume = false, force = false;
+};
+int run(const RunArguments& arguments);
+
+struct InspectArguments {
+    Common common;
+    std::string file;
+};
+int inspect(const InspectArguments& arguments);
+
+struct PlanArguments {
+    Common common;
+    std::string scene;
+};
+int plan(const PlanArguments& arguments);
+
+struct ReportArguments {
+    Common common;
+    std::string input, output;
+    bool vtk = false;
+    bool no_charts = false;
+};
+int report(const ReportArguments& arguments);
+
+struct ConvertArguments {
+    Common common;
+    std::string input, output;
+};
+int convert(const ConvertArguments& arguments);
+
+/// "isostat 0.1.0".
+std::string program_name();
+
+} // namespace isostat::cli

@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// What several subcommands share.
+
+#include <isostat/core/result.hpp>
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/scene/scene.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace isostat::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// null for infinities and NaN, which JSON does not have.
+Json number(double value);
+
+/// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
+int status_of(FailureKind kind);
+
+/// The start of a scene that reads one: file, overrides of [load], checks in the words of a user. Throws
+/// `Error(bad_input)`.
+State<2> load_start(const Scene& scene);
+
+/// Prepares the packing of a scene with progress on the terminal. After a failure, what was reached is in `failed`
+/// (atomically).
+Result<State<2>> prepare_start(const Scene& scene, const std::string& command, bool quiet,
+                               const std::filesystem::path& failed);
+
+} // namespace isostat::cli

@@ -1,0 +1,32 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace isostat::cli {
+
+int convert(const ConvertArguments& arguments) {
+    StateFile<2> file = read_state<2>(arguments.input);
+    Json provenance = file.state.provenance.empty() ? Json::object() : Json::parse(file.state.provenance);
+    if (!provenance.contains("program")) {
+        provenance["program"] = program_name();
+        provenance["command"] = arguments.common.command;
+    }
+    file.state.provenance = provenance.dump();
+    write_state<2>(arguments.output, file.state, file.forces);
+    const int disks = file.state.packing.disk_count();
+    if (arguments.common.json) {
+        fmt::print(
+            "{}\n",
+            Json{{"state", arguments.output}, {"disks", disks}, {"contacts", file.state.contacts.size()}}.dump());
+    } else {
+        fmt::print("{}: {} disks, {} contacts\n", arguments.output, disks, file.state.contacts.size());
+    }
+    return done;
+}
+
+} // namespace isostat::cli

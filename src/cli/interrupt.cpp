@@ -1,0 +1,30 @@
+#include "cli/interrupt.hpp"
+
+#include <csignal>
+
+namespace isostat::cli {
+
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
+
+extern "C" void on_signal(int signal) {
+    if (stop.exchange(true)) {
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
+}
+
+} // namespace
+
+void catch_interrupts() {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+}
+
+const std::atomic<bool>& stop_flag() {
+    return stop;
+}
+
+} // namespace isostat::cli

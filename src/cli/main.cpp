@@ -1,0 +1,194 @@
+// The command line: what is asked for goes into plain structures, one function per subcommand does it.
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+namespace {
+
+using namespace isostat::cli;
+
+/// The command line as a shell would take it back.
+std::string quoted(int argc, char** argv) {
+    std::string line;
+    for (int k = 0; k < argc; ++k) {
+        const std::string word = argv[k]; // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
+        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`!*?[](){}<>|&;#~") == std::string::npos;
+        std::string safe = word;
+        for (std::size_t at = safe.find('\''); at != std::string::npos; at = safe.find('\'', at + 4)) {
+            safe.replace(at, 1, "'\\''");
+        }
+        line += (k == 0 ? "" : " ") + (plain ? word : "'" + safe + "'");
+    }
+    return line;
+}
+
+void add_common(CLI::App& command, Common& common, bool progress) {
+    if (progress) {
+        command.add_flag("-q,--quiet", common.quiet, "no progress and no tables");
+    }
+    command.add_flag("--json", common.json, "print one JSON object on standard output, for programs");
+}
+
+/// The registered subcommands; each sets `todo` when it was chosen.
+struct Program {
+    CLI::App app{"Quasi-static trajectories of rigid frictionless disks: equilibria and rearrangements, with proofs",
+                 "isostat"};
+    PrepareArguments prepare_arguments;
+    RunArguments run_arguments;
+    InspectArguments inspect_arguments;
+    PlanArguments plan_arguments;
+    ReportArguments report_arguments;
+    ConvertArguments convert_arguments;
+    std::function<int()> todo;
+
+    explicit Program(const std::string& line) {
+        app.require_subcommand(1);
+        app.set_version_flag("--version", program_name());
+        app.footer("Exit status: 0 done or proved; 1 refuted, or failed with a result; 2 undecided; 64 usage; 65 bad "
+                   "input; 74 cannot write;\n"
+                   "130 stopped by Ctrl-C or SIGTERM, with valid files.\n"
+                   "Example: isostat run examples/biaxial-400.toml -o out");
+        add_prepare(line);
+        add_run(line);
+        add_inspect(line);
+        add_plan(line);
+        add_report(line);
+        add_convert(line);
+    }
+
+  private:
+    CLI::App& add(const char* name, const char* description, const char* footer) {
+        CLI::App& command = *app.add_subcommand(name, description);
+        command.footer(footer);
+        return command;
+    }
+
+    void add_prepare(const std::string& line) {
+        PrepareArguments& a = prepare_arguments;
+        CLI::App& command = add("prepare", "random disks -> equilibrium under isotropic load",
+                                "Writes a state file. When a stage fails, what it reached goes to STATE.failed.json, "
+                                "which no command takes for a\n"
+                                "state.\nExample: isostat prepare examples/biaxial-400.toml -o start.json");
+        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
+        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+        add_common(command, a.common, true);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return prepare(a); };
+        });
+    }
+
+    void add_run(const std::string& line) {
+        RunArguments& a = run_arguments;
+        CLI::App& command = add("run", "a whole trajectory: start, then the programme of the scene",
+                                "The folder holds run.json, events.jsonl, equilibria.csv, checkpoint.json, states/ "
+                                "and, at the end, summary.json and\n"
+                                "figures/. After a kill or Ctrl-C, --resume goes on from the last equilibrium; the "
+                                "files are then those of a run that\n"
+                                "was not interrupted, times apart.\n"
+                                "Examples: isostat run examples/biaxial-400.toml -o out\n"
+                                "          isostat run examples/biaxial-400.toml -o out --resume");
+        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
+        command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
+        CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
+        command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
+        add_common(command, a.common, true);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return run(a); };
+        });
+    }
+
+    void add_inspect(const std::string& line) {
+        InspectArguments& a = inspect_arguments;
+        CLI::App& command =
+            add("inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
+                "Nothing moves. Exit status 0: proved to be an isostatic equilibrium; 1: proved not to be one; 2: "
+                "undecided.\n"
+                "Example: isostat inspect start.json");
+        command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return inspect(a); };
+        });
+    }
+
+    void add_plan(const std::string& line) {
+        PlanArguments& a = plan_arguments;
+        CLI::App& command =
+            add("plan", "which stages, solvers and outputs a scene uses and which it leaves out, and every setting",
+                "Nothing is computed.\nExample: isostat plan examples/biaxial-1936.toml");
+        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return plan(a); };
+        });
+    }
+
+    void add_report(const std::string& line) {
+        ReportArguments& a = report_arguments;
+        CLI::App& command =
+            add("report", "tables and figures of a run, or the force picture of a state",
+                "Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.\n"
+                "Examples: isostat report out\n          isostat report start.json -o pictures --vtk");
+        command.add_option("input", a.input, "folder of a run, or state file")->required()->type_name("DIR|STATE");
+        command
+            .add_option("-o,--output", a.output,
+                        "folder of the figures (default: DIR/figures, or the folder of the state)")
+            ->type_name("DIR");
+        command.add_flag("--vtk", a.vtk, "also write ParaView files");
+        command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
+        add_common(command, a.common, true);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return report(a); };
+        });
+    }
+
+    void add_convert(const std::string& line) {
+        ConvertArguments& a = convert_arguments;
+        CLI::App& command = add("convert", "vertex text (or a state file) -> state file",
+                                "Example: isostat convert tests/data/vertex100.txt -o start.json");
+        command.add_option("input", a.input, "vertex text or state file")->required()->type_name("FILE");
+        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return convert(a); };
+        });
+    }
+};
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        Program program(quoted(argc, argv));
+        try {
+            program.app.parse(argc, argv);
+        } catch (const CLI::ParseError& error) {
+            const int status = program.app.exit(error);
+            return status == 0 ? 0 : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
+        }
+        catch_interrupts();
+        return program.todo();
+    } catch (const isostat::Error& error) {
+        std::cerr << "isostat: " << error.what() << '\n';
+        return error.exit_status();
+    } catch (const std::filesystem::filesystem_error& error) {
+        std::cerr << "isostat: " << error.what() << '\n';
+        return isostat::Error(isostat::ErrorKind::cannot_write, "").exit_status();
+    } catch (const std::exception& error) {
+        std::cerr << "isostat: unexpected failure: " << error.what() << '\n';
+        return failed;
+    }
+}

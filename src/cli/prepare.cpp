@@ -1,0 +1,63 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace isostat::cli {
+
+namespace {
+
+/// A long computation must not end in a file that cannot be written: tries to make one beside it first.
+void check_writable(const std::filesystem::path& output) {
+    const std::filesystem::path trial = output.string() + ".trial";
+    write_atomically(trial, "\n");
+    std::filesystem::remove(trial);
+}
+
+} // namespace
+
+int prepare(const PrepareArguments& arguments) {
+    const Scene scene = read_scene(arguments.scene);
+    if (!scene.start.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: file in [packing] is {}: there is nothing to prepare, expected disks, radii or "
+                                "radii_file",
+                                arguments.scene, scene.start.string()));
+    }
+    check_writable(arguments.output);
+    const bool quiet = arguments.common.quiet || arguments.common.json;
+    const auto prepared = prepare_start(scene, arguments.common.command, quiet, arguments.output + ".failed.json");
+    if (!prepared.ok()) {
+        fmt::print(stderr, "isostat: {}\n", prepared.failure().message);
+        if (arguments.common.json) {
+            fmt::print(
+                "{}\n",
+                Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message}}.dump());
+        }
+        return status_of(prepared.failure().kind);
+    }
+    const State<2>& state = prepared.value();
+    write_state<2>(arguments.output, state);
+    if (arguments.common.json) {
+        Json object;
+        object["status"] = "completed";
+        object["state"] = arguments.output;
+        object["disks"] = state.packing.disk_count();
+        object["contacts"] = state.contacts.size();
+        object["length"] = {state.packing.length(0), state.packing.length(1)};
+        object["solid_fraction"] = number(state.packing.solid_fraction());
+        fmt::print("{}\n", object.dump());
+    } else if (!quiet) {
+        fmt::print("{}: {} disks, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),
+                   state.contacts.size(), state.packing.solid_fraction());
+    }
+    return done;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,113 @@
+#include "cli/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace isostat::cli {
+
+StatusLine::StatusLine(bool quiet) : active_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+
+void StatusLine::show(const std::string& text) {
+    constexpr auto pause = std::chrono::milliseconds(100);
+    constexpr std::size_t width = 100;
+    const auto now = std::chrono::steady_clock::now();
+    if (!active_ || now - last_ < pause) {
+        return;
+    }
+    last_ = now;
+    shown_ = true;
+    fmt::print(stderr, "\r{:<{}}", text.substr(0, width), width);
+    std::fflush(stderr);
+}
+
+void StatusLine::clear() {
+    if (shown_) {
+        fmt::print(stderr, "\r\033[K");
+        std::fflush(stderr);
+        shown_ = false;
+    }
+}
+
+std::string clock_text(double seconds) {
+    if (!std::isfinite(seconds) || seconds < 0) {
+        return "?";
+    }
+    const long whole = std::lround(seconds);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+RunTable::RunTable(const std::vector<ProgrammeStep>& programme, bool quiet)
+    : programme_(programme), quiet_(quiet), line_(quiet) {}
+
+void RunTable::begin_segment(int number, int equilibrium, double ratio, int made) {
+    segment_ = number;
+    made_ = made;
+    start_equilibrium_ = equilibrium;
+    start_ratio_ = ratio;
+    if (quiet_) {
+        return;
+    }
+    line_.clear();
+    if (!header_shown_) {
+        header_shown_ = true;
+        fmt::print("{:>7} {:>13} {:>12} {:>6} {:>2} {:>8} {:<13} {:>8} {:>8}\n", "equil", "sigma2/sigma1", "eps2",
+                   "arcs", "h", "margin", "precision", "elapsed", "rest");
+    }
+    fmt::print("segment {} of {}: {}\n", number + 1, programme_.size(),
+               programme_[static_cast<std::size_t>(number)].name);
+    std::fflush(stdout);
+}
+
+double RunTable::remaining(double ratio) const {
+    double rest = 0;
+    for (std::size_t s = static_cast<std::size_t>(segment_); s < programme_.size(); ++s) {
+        const ProgrammeStep& step = programme_[s];
+        const bool current = s == static_cast<std::size_t>(segment_);
+        const int done = current ? made_ : 0;
+        if (step.equilibria) {
+            rest += *step.equilibria - done;
+            continue;
+        }
+        // By the part of the way in sigma2/sigma1; before it starts, as many as there are on the way to where it
+        // starts.
+        const double whole = *step.to - start_ratio_;
+        const double part = current && whole != 0 ? (ratio - start_ratio_) / whole : 0;
+        constexpr double enough = 0.05; // of the way, to trust its rate
+        rest += part > enough
+                    ? done * (1 - part) / part
+                    : std::max(1, step.from.value_or(current ? start_equilibrium_ : start_equilibrium_ + made_));
+    }
+    return rest;
+}
+
+void RunTable::on_arc(const ArcRecord<2>& arc) {
+    if (!quiet_) {
+        line_.show(fmt::format("after equilibrium {}: arc {} at sigma2 = {:.9g}, eps2 = {:.6g}", arc.equilibrium,
+                               arc.arc, arc.stress, arc.strain));
+    }
+}
+
+void RunTable::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                              const std::vector<double>& /*forces*/) {
+    if (record.number != 0) {
+        ++made_;
+        ++here_;
+    }
+    if (quiet_) {
+        return;
+    }
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    const double ratio = record.stress / record.sigma1;
+    const double rest = here_ == 0 ? NAN : elapsed / here_ * remaining(ratio);
+    line_.clear();
+    fmt::print("{:>7} {:>13.9f} {:>12.5e} {:>6} {:>2} {:>8.1e} {:<13} {:>8} {:>8}\n", record.number, ratio,
+               record.strain[static_cast<std::size_t>(state.load.loaded_axis)], record.arcs, record.hyperstaticity,
+               record.margin, to_string(record.decided_by), clock_text(record.seconds), clock_text(rest));
+    std::fflush(stdout);
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,80 @@
+#pragma once
+/// \file
+/// What a person sees of long work: a table of equilibria, and a line that is rewritten on a terminal.
+
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/scene/scene.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <chrono>
+#include <string>
+
+namespace isostat::cli {
+
+/// A line on standard error that is rewritten in place: only on a terminal, at most ten times per second.
+class StatusLine {
+  public:
+    explicit StatusLine(bool quiet);
+    ~StatusLine() { clear(); }
+    StatusLine(const StatusLine&) = delete;
+    StatusLine& operator=(const StatusLine&) = delete;
+    void show(const std::string& text);
+    /// Before anything else is printed.
+    void clear();
+
+  private:
+    bool active_;
+    bool shown_ = false;
+    std::chrono::steady_clock::time_point last_;
+};
+
+/// "1:02:03".
+std::string clock_text(double seconds);
+
+/// Prints one row per equilibrium: number, sigma2/sigma1, eps2, arcs, h, smallest margin, precision used, elapsed,
+/// estimated rest.
+class RunTable final : public RunObserver<2> {
+  public:
+    RunTable(const std::vector<ProgrammeStep>& programme, bool quiet);
+    /// `number`, the equilibrium and the ratio it starts from, equilibria already made in it.
+    void begin_segment(int number, int equilibrium, double ratio, int made);
+    void on_arc(const ArcRecord<2>& arc) override;
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& forces) override;
+    void end() { line_.clear(); }
+
+  private:
+    /// Equilibria still to come, by the count of those segments that have one and by the ratio in those that do not.
+    [[nodiscard]] double remaining(double ratio) const;
+    const std::vector<ProgrammeStep>& programme_;
+    bool quiet_;
+    StatusLine line_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    int segment_ = 0;
+    int made_ = 0; ///< in this segment
+    int here_ = 0; ///< equilibria made by this process
+    int start_equilibrium_ = 0;
+    double start_ratio_ = 1;
+    bool header_shown_ = false;
+};
+
+/// Calls two observers one after the other: the files first.
+class Both final : public RunObserver<2> {
+  public:
+    Both(RunObserver<2>& first, RunObserver<2>& second) : first_(first), second_(second) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        first_.on_arc(arc);
+        second_.on_arc(arc);
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& forces) override {
+        first_.on_equilibrium(record, state, forces);
+        second_.on_equilibrium(record, state, forces);
+    }
+
+  private:
+    RunObserver<2>& first_;
+    RunObserver<2>& second_;
+};
+
+} // namespace isostat::cli

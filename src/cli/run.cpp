@@ -1,0 +1,209 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/report/run_report.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace isostat::cli {
+
+namespace {
+
+double ratio_of(const State<2>& state) {
+    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+    return state.load.stress[loaded] / state.load.stress[1 - loaded];
+}
+
+RunStatus run_status(FailureKind kind) {
+    switch (status_of(kind)) {
+    case undecided: return RunStatus::undecided;
+    case interrupted: return RunStatus::interrupted;
+    default: return RunStatus::failed;
+    }
+}
+
+int exit_status(RunStatus status) {
+    switch (status) {
+    case RunStatus::completed: return done;
+    case RunStatus::failed: return failed;
+    case RunStatus::undecided: return undecided;
+    case RunStatus::interrupted: return interrupted;
+    }
+    return failed;
+}
+
+/// How the programme ended.
+struct Ending {
+    RunStatus status = RunStatus::completed;
+    std::string reason;
+};
+
+Ending ended(const Failure& failure, const std::string& where) {
+    return {run_status(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message)};
+}
+
+RunHeader header_of(const Scene& scene, const std::string& command) {
+    RunHeader header;
+    header.program = program_name();
+    header.command = command;
+    header.scene_name = scene.file;
+    header.scene_text = scene.text;
+    header.settings = settings_json(scene);
+    for (const ProgrammeStep& step : scene.programme) {
+        header.programme.push_back(step.name);
+    }
+    header.keep = needed_equilibria(scene);
+    header.states_every = scene.states_every;
+    return header;
+}
+
+/// Carries out the programme from a start or from a checkpoint.
+class Player {
+  public:
+    Player(const Scene& scene, RunDirectory& directory, RunCounters& counters, bool quiet)
+        : scene_(scene), directory_(directory), counters_(counters), table_(scene.programme, quiet) {}
+
+    Ending play(State<2> state) {
+        std::size_t first = 0;
+        int made = 0;
+        if (const auto& point = directory_.checkpoint()) {
+            state = point->state;
+            counters_ = point->counters;
+            first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
+            made = point->segment_done ? 0 : point->made;
+        }
+        for (std::size_t s = first; s < scene_.programme.size(); ++s, made = 0) {
+            const ProgrammeStep& step = scene_.programme[s];
+            if (step.from && made == 0) {
+                if (*step.from > counters_.equilibria) {
+                    return {RunStatus::failed,
+                            fmt::format("segment \"{}\" starts from equilibrium {}, but the run has only reached {}",
+                                        step.name, *step.from, counters_.equilibria)};
+                }
+                state = directory_.stored(*step.from);
+            }
+            const Ending ending = play_segment(state, step, static_cast<int>(s), made);
+            if (ending.status != RunStatus::completed) {
+                return ending;
+            }
+        }
+        table_.end();
+        return {};
+    }
+
+  private:
+    Ending play_segment(State<2>& state, const ProgrammeStep& step, int number, int made) {
+        const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+        Segment segment;
+        try {
+            segment = segment_of(step, state.load.stress[1 - loaded], state.load.stress[loaded], scene_.file);
+        } catch (const Error& error) {
+            return {RunStatus::failed, error.what()}; // only the packing could tell
+        }
+        directory_.begin_segment(number, segment, made, state.equilibrium);
+        table_.begin_segment(number, state.equilibrium, ratio_of(state), made);
+        if (segment.equilibria) {
+            *segment.equilibria -= made;
+        }
+        RunOptions options = scene_.run;
+        options.stop = &stop_flag();
+        Both both(directory_, table_);
+        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, both);
+        table_.end();
+        return outcome.completed ? Ending{} : ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
+    }
+
+    const Scene& scene_;
+    RunDirectory& directory_;
+    RunCounters& counters_;
+    RunTable table_;
+};
+
+/// The start of the run: stored one, file or preparation.
+Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& from_file, RunDirectory& directory,
+                          const std::string& command, bool quiet) {
+    if (const auto stored = directory.start()) {
+        return *stored;
+    }
+    if (from_file) {
+        directory.store_start(*from_file);
+        return *from_file;
+    }
+    auto prepared = prepare_start(scene, command, quiet, directory.path() / "preparation_failed.json");
+    if (prepared.ok()) {
+        directory.store_start(prepared.value());
+    }
+    return prepared;
+}
+
+void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
+    ReportOptions options;
+    options.vtk = scene.vtk;
+    options.pictures = scene.pictures;
+    const ReportResult report = report_run(directory.path(), directory.path() / "figures", options);
+    if (quiet) {
+        return;
+    }
+    fmt::print("\n{}\n", report.text);
+    for (const std::string& note : report.notes) {
+        fmt::print("{}\n", note);
+    }
+    fmt::print("figures: {}\n", (directory.path() / "figures").string());
+}
+
+} // namespace
+
+int run(const RunArguments& arguments) {
+    const Scene scene = read_scene(arguments.scene);
+    if (scene.programme.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
+    }
+    const bool quiet = arguments.common.quiet || arguments.common.json;
+    const auto mode = arguments.resume  ? RunDirectory::Mode::resume
+                      : arguments.force ? RunDirectory::Mode::force
+                                        : RunDirectory::Mode::fresh;
+    std::optional<State<2>> from_file;
+    if (!scene.start.empty() && !arguments.resume) {
+        from_file = load_start(scene); // bad input leaves no folder behind
+    }
+    RunCounters counters;
+    RunDirectory directory(arguments.output, header_of(scene, arguments.common.command), mode, counters);
+    if (!scene.start.empty() && !from_file && !directory.start()) {
+        from_file = load_start(scene);
+    }
+    if (!quiet && arguments.resume) {
+        const auto& point = directory.checkpoint();
+        fmt::print("resuming {} (it was {}) {}\n", arguments.output, directory.previous_status(),
+                   point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
+    }
+    const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
+    Ending ending;
+    if (start.ok()) {
+        ending = Player(scene, directory, counters, quiet).play(start.value());
+    } else {
+        ending = ended(start.failure(), "");
+    }
+    directory.finish(ending.status, ending.reason);
+    if (arguments.common.json) {
+        fmt::print("{}", directory.summary());
+    } else if (!quiet) {
+        fmt::print("{}{}{}: {} arcs, {} equilibria, {}\n", to_string(ending.status), ending.reason.empty() ? "" : ": ",
+                   ending.reason, counters.steps, counters.equilibria, clock_text(counters.seconds));
+    }
+    if (ending.status != RunStatus::completed) {
+        fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
+    }
+    if ((scene.pictures || scene.vtk) && ending.status != RunStatus::interrupted && start.ok()) {
+        draw(scene, directory, quiet);
+    }
+    return exit_status(ending.status);
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// Contacts in state files: [i, j] for two disks, [i, "left"] for a wall, ["held", coordinate] for a held coordinate.
+
+#include "io/json.hpp"
+
+namespace isostat::json {
+
+template <int Dim> Json contact_to_json(const Contact& contact);
+
+/// The contact, its disks in increasing order. Throws `Error(bad_input)` when an index is out of range, a disk touches
+/// itself or a wall is unknown or absent.
+template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing);
+
+/// Throws `Error(bad_input)` naming the first contact that is listed twice, and its position. `name` is that of the
+/// list.
+template <int Dim>
+void refuse_duplicates(const std::vector<Contact>& contacts, const std::string& source, const std::string& name);
+
+} // namespace isostat::json

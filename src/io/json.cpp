@@ -1,0 +1,151 @@
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace isostat::json {
+
+namespace {
+
+std::string shortened(const Json& value) {
+    constexpr std::size_t longest = 60;
+    std::string text = value.dump();
+    if (text.size() > longest) {
+        text = text.substr(0, longest) + "...";
+    }
+    return text;
+}
+
+/// "0x1.8p+3" or "-0x1p-2", whole string.
+bool parse_hexadecimal(const std::string& text, double& value) {
+    const bool negative = text.starts_with("-");
+    const std::size_t begin = negative ? 1 : 0;
+    if (text.compare(begin, 2, "0x") != 0) {
+        return false;
+    }
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + begin + 2, end, value, std::chars_format::hex);
+    value = negative ? -value : value;
+    return error == std::errc() && stop == end && std::isfinite(value);
+}
+
+} // namespace
+
+Json Field::parse(const std::string& text, const std::string& source) {
+    try {
+        return Json::parse(text);
+    } catch (const nlohmann::json::parse_error& error) {
+        const std::size_t at = std::min(error.byte, text.size());
+        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: {}", source, line,
+                                at >= text.size() ? "the file ends before its JSON document is complete: truncated?"
+                                                  : "not valid JSON here: expected a complete JSON document"));
+    } catch (const nlohmann::json::exception& error) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: a number is out of the range of double ({})", source, error.what()));
+    }
+}
+
+void Field::fail(const std::string& expected) const {
+    throw Error(ErrorKind::bad_input,
+                fmt::format("{}: {} is {}: expected {}", source_, path_.empty() ? "the document" : path_,
+                            shortened(*value_), expected));
+}
+
+void Field::only(std::initializer_list<const char*> keys) const {
+    if (!value_->is_object()) {
+        fail("an object");
+    }
+    for (const auto& [key, unused] : value_->items()) {
+        if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: unknown field '{}'{}: expected one of {}", source_, key,
+                                                          path_.empty() ? "" : " in " + path_, fmt::join(keys, ", ")));
+        }
+    }
+}
+
+Field Field::at(const char* key) const {
+    if (!value_->is_object()) {
+        fail(fmt::format("an object with the field '{}'", key));
+    }
+    const auto found = value_->find(key);
+    if (found == value_->end()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: the field '{}{}{}' is missing", source_, path_, path_.empty() ? "" : ".", key));
+    }
+    return {*found, source_, path_.empty() ? std::string(key) : path_ + "." + key};
+}
+
+Field Field::at(std::size_t index) const {
+    return {(*value_)[index], source_, fmt::format("{}[{}]", path_, index)};
+}
+
+std::size_t Field::size() const {
+    if (!value_->is_array()) {
+        fail("an array");
+    }
+    return value_->size();
+}
+
+void Field::require_size(std::size_t expected, const std::string& what) const {
+    if (size() != expected) {
+        fail(fmt::format("{} ({} values, {} found)", what, expected, value_->size()));
+    }
+}
+
+double Field::number() const {
+    if (value_->is_number()) {
+        const double number = value_->get<double>();
+        if (!std::isfinite(number)) {
+            fail("a finite number");
+        }
+        return number;
+    }
+    double number = 0;
+    if (!value_->is_string() || !parse_hexadecimal(value_->get_ref<const std::string&>(), number)) {
+        fail("a finite number");
+    }
+    return number;
+}
+
+long Field::integer() const {
+    if (!value_->is_number_integer()) {
+        fail("an integer");
+    }
+    return value_->get<long>();
+}
+
+bool Field::boolean() const {
+    if (!value_->is_boolean()) {
+        fail("true or false");
+    }
+    return value_->get<bool>();
+}
+
+const std::string& Field::string() const {
+    if (!value_->is_string()) {
+        fail("a string");
+    }
+    return value_->get_ref<const std::string&>();
+}
+
+Json or_null(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+void append_rows(std::string& text, const char* name, const std::vector<Json>& rows) {
+    text += fmt::format("  \"{}\": [", name);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        text += i == 0 ? "\n    " : ",\n    ";
+        text += rows[i].dump();
+    }
+    text += rows.empty() ? "]" : "\n  ]";
+}
+
+} // namespace isostat::json

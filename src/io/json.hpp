@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// JSON with messages that name file and field. The only place, with the .cpp files that include it, that knows the
+/// JSON library.
+
+#include <isostat/contact/contact.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+namespace isostat::json {
+
+using Json = nlohmann::ordered_json;
+
+/// A value of a document together with where it is: "state.json: load.stress[1]".
+class Field {
+  public:
+    /// Parses the whole text. Throws `Error(bad_input)` with line and column when it is not one complete JSON document.
+    static Json parse(const std::string& text, const std::string& source);
+
+    Field(const Json& value, std::string source, std::string path = "")
+        : value_(&value), source_(std::move(source)), path_(std::move(path)) {}
+
+    /// Throws `Error(bad_input)`: "FILE: PATH is VALUE: expected WHAT".
+    [[noreturn]] void fail(const std::string& expected) const;
+
+    /// Every key must be in the list.
+    void only(std::initializer_list<const char*> keys) const;
+    [[nodiscard]] bool has(const char* key) const { return value_->is_object() && value_->contains(key); }
+    /// Member of an object. Throws when this is no object or the key is missing.
+    [[nodiscard]] Field at(const char* key) const;
+    /// Element of an array. \pre index < size().
+    [[nodiscard]] Field at(std::size_t index) const;
+    /// Length of an array. Throws when this is no array.
+    [[nodiscard]] std::size_t size() const;
+    /// The same, and it must be `expected`.
+    void require_size(std::size_t expected, const std::string& what) const;
+
+    /// A finite number, or a string with a hexadecimal float.
+    [[nodiscard]] double number() const;
+    [[nodiscard]] long integer() const;
+    [[nodiscard]] bool boolean() const;
+    [[nodiscard]] const std::string& string() const;
+    [[nodiscard]] const Json& value() const { return *value_; }
+
+  private:
+    const Json* value_;
+    std::string source_;
+    std::string path_;
+};
+
+/// A number for a record: infinities and NaN, which JSON does not have, become null.
+Json or_null(double value);
+
+/// Appends "name": [ rows ] with one row per line, so that a state can be read and compared by people.
+void append_rows(std::string& text, const char* name, const std::vector<Json>& rows);
+
+} // namespace isostat::json

@@ -1,0 +1,153 @@
+#include "io/record_text.hpp"
+
+#include <isostat/io/run_directory.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat {
+
+namespace {
+
+using json::Json;
+
+/// Columns i and j of a contact: see `equilibria_columns`.
+std::string two_columns(const Contact& contact) {
+    constexpr int none = -9;
+    if (contact.i < 0) {
+        return fmt::format("{0},{0}", none);
+    }
+    switch (contact.kind) {
+    case ContactKind::disk_disk: return fmt::format("{},{}", contact.i, contact.j);
+    case ContactKind::lower_wall: return fmt::format("{},{}", contact.i, -1 - contact.j);
+    case ContactKind::upper_wall: return fmt::format("{},{}", contact.i, -3 - contact.j);
+    case ContactKind::held: break;
+    }
+    return fmt::format("{},{}", contact.i, none);
+}
+
+} // namespace
+
+std::string event_line(const ArcRecord<2>& arc) {
+    Json line;
+    line["step"] = arc.step;
+    line["equilibrium"] = arc.equilibrium;
+    line["arc"] = arc.arc;
+    line["kind"] = arc.kind;
+    line["opened"] = to_string<2>(arc.opened);
+    line["closed"] = to_string<2>(arc.closed);
+    line["power_turn"] = arc.power_turn;
+    line["sigma2"] = json::or_null(arc.stress);
+    line["eps2"] = json::or_null(arc.strain);
+    line["force"] = json::or_null(arc.force);
+    line["power"] = json::or_null(arc.power);
+    line["work"] = json::or_null(arc.work);
+    line["displacement"] = json::or_null(arc.displacement);
+    line["steps"] = arc.steps;
+    line["margin"] = json::or_null(arc.margin);
+    line["decided_by"] = to_string(arc.decided_by);
+    return line.dump() + "\n";
+}
+
+const std::vector<std::string>& equilibria_columns() {
+    static const std::vector<std::string> columns{"number",
+                                                  "previous",
+                                                  "segment",
+                                                  "sigma2",
+                                                  "ratio",
+                                                  "eps1",
+                                                  "eps2",
+                                                  "L1",
+                                                  "L2",
+                                                  "solid_fraction",
+                                                  "arcs",
+                                                  "rattlers",
+                                                  "backbone",
+                                                  "dofs",
+                                                  "contacts",
+                                                  "rank",
+                                                  "h",
+                                                  "k",
+                                                  "held",
+                                                  "sigma2_low",
+                                                  "sigma2_high",
+                                                  "opens_low_i",
+                                                  "opens_low_j",
+                                                  "opens_high_i",
+                                                  "opens_high_j",
+                                                  "potential",
+                                                  "min_force",
+                                                  "min_force_i",
+                                                  "min_force_j",
+                                                  "min_gap",
+                                                  "min_gap_i",
+                                                  "min_gap_j",
+                                                  "force_bound",
+                                                  "sigma_min_bound",
+                                                  "balance",
+                                                  "virtual_power",
+                                                  "gap_residual",
+                                                  "margin",
+                                                  "decided_by",
+                                                  "proved",
+                                                  "seconds"};
+    return columns;
+}
+
+std::string equilibria_header() {
+    return fmt::format("# {}\n", fmt::join(equilibria_columns(), ","));
+}
+
+std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous) {
+    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+    const std::size_t other = 1 - loaded;
+    std::string row = fmt::format("{},{},{},{},{}", record.number, previous, record.segment, record.stress,
+                                  record.stress / record.sigma1);
+    row += fmt::format(",{},{},{},{},{}", record.strain[other], record.strain[loaded], record.length[other],
+                       record.length[loaded], state.packing.solid_fraction());
+    row += fmt::format(",{},{},{},{},{},{},{},{},{}", record.arcs, record.rattlers, record.backbone, record.dof_count,
+                       record.contact_count, record.rank, record.hyperstaticity, record.mechanisms, record.held);
+    row += fmt::format(",{},{},{},{}", record.stress_low, record.stress_high, two_columns(record.opens_low),
+                       two_columns(record.opens_high));
+    row += fmt::format(",{},{},{},{},{}", record.potential, record.min_force, two_columns(record.min_force_contact),
+                       record.min_gap, two_columns(record.min_gap_contact));
+    row += fmt::format(",{},{},{},{},{}", record.force_bound, record.sigma_min_bound, record.balance,
+                       record.virtual_power, record.gap_residual);
+    row += fmt::format(",{},{},{},{:.3f}\n", record.margin, static_cast<int>(record.decided_by),
+                       record.verdict == Verdict::proved ? 1 : 0, record.seconds);
+    return row;
+}
+
+Json tally_json(const Tally& tally) {
+    Json object;
+    object["combinatorial"] = tally.combinatorial;
+    object["double"] = tally.double_bound;
+    object["double-double"] = tally.double_double;
+    object["undecided"] = tally.undecided;
+    object["smallest_margin"] = json::or_null(tally.smallest_margin);
+    return object;
+}
+
+Json counters_json(const RunCounters& counters) {
+    Json object;
+    object["arcs"] = counters.steps;
+    object["equilibria"] = counters.equilibria;
+    object["seconds"] = counters.seconds;
+    object["decisions"] = tally_json(counters.tally);
+    return object;
+}
+
+RunCounters counters_from(const json::Field& field) {
+    RunCounters counters;
+    counters.steps = field.at("arcs").integer();
+    counters.equilibria = static_cast<int>(field.at("equilibria").integer());
+    counters.seconds = field.at("seconds").number();
+    const json::Field tally = field.at("decisions");
+    counters.tally.combinatorial = tally.at("combinatorial").integer();
+    counters.tally.double_bound = tally.at("double").integer();
+    counters.tally.double_double = tally.at("double-double").integer();
+    counters.tally.undecided = tally.at("undecided").integer();
+    counters.tally.smallest_margin = tally.at("smallest_margin").number();
+    return counters;
+}
+
+} // namespace isostat

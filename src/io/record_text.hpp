@@ -1,0 +1,25 @@
+#pragma once
+/// \file
+/// Records as text: a line of events.jsonl, a row of equilibria.csv, counters.
+
+#include "io/json.hpp"
+
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <string>
+
+namespace isostat {
+
+/// One JSON object and a newline.
+std::string event_line(const ArcRecord<2>& arc);
+
+/// The header line of equilibria.csv.
+std::string equilibria_header();
+/// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start.
+std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous);
+
+json::Json tally_json(const Tally& tally);
+json::Json counters_json(const RunCounters& counters);
+RunCounters counters_from(const json::Field& field);
+
+} // namespace isostat

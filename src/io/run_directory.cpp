@@ -1,0 +1,258 @@
+#include "io/descriptor.hpp"
+#include "io/json.hpp"
+#include "io/record_text.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isostat {
+
+namespace {
+
+using json::Field;
+using json::Json;
+namespace fs = std::filesystem;
+
+/// Everything that a run may leave in its folder, figures apart.
+constexpr std::array<const char*, 6> run_files{"run.json",        "events.jsonl", "equilibria.csv",
+                                               "checkpoint.json", "summary.json", "start.json"};
+
+fs::path state_path(const fs::path& directory, int equilibrium) {
+    return directory / "states" / fmt::format("eq_{:06}.json", equilibrium);
+}
+
+std::string header_text(const RunHeader& header, const std::string& status) {
+    Json object;
+    object["format"] = "isostat-run";
+    object["version"] = 1;
+    object["program"] = header.program;
+    object["command"] = header.command;
+    object["status"] = status;
+    object["scene_file"] = header.scene_name;
+    object["scene"] = header.scene_text;
+    object["programme"] = header.programme;
+    object["settings"] = Json::parse(header.settings);
+    return object.dump(2) + "\n";
+}
+
+} // namespace
+
+const char* to_string(RunStatus status) {
+    switch (status) {
+    case RunStatus::completed: return "completed";
+    case RunStatus::failed: return "failed";
+    case RunStatus::undecided: return "undecided";
+    case RunStatus::interrupted: return "interrupted";
+    }
+    return "failed";
+}
+
+struct RunDirectory::Files {
+    Descriptor lock, events, equilibria;
+};
+
+RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, const RunCounters& counters)
+    : directory_(std::move(directory)), header_(std::move(header)), counters_(counters),
+      files_(std::make_unique<Files>()) {
+    make_directory(directory_);
+    files_->lock = Descriptor::open(directory_ / "lock", O_RDWR | O_CREAT);
+    if (!files_->lock.try_lock()) {
+        throw Error(ErrorKind::cannot_write,
+                    fmt::format("{}: another running program writes into this folder", directory_.string()));
+    }
+    const bool holds_a_run = fs::exists(directory_ / "run.json");
+    if (mode == Mode::fresh && holds_a_run) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: holds a run already: expected an empty folder, --resume to go on or --force to "
+                                "delete it first",
+                                directory_.string()));
+    }
+    if (mode == Mode::resume) {
+        open_for_resume();
+    } else if (holds_a_run) {
+        for (const char* name : run_files) {
+            fs::remove(directory_ / name);
+        }
+        fs::remove_all(directory_ / "states");
+        fs::remove_all(directory_ / "figures");
+    }
+    make_directory(directory_ / "states");
+    fs::remove(directory_ / "summary.json"); // of the interrupted run: it must not look like that of this one
+    write_header("running");
+    const int flags = O_WRONLY | O_CREAT | O_APPEND | (checkpoint_ ? 0 : O_TRUNC);
+    files_->events = Descriptor::open(directory_ / "events.jsonl", flags);
+    files_->equilibria = Descriptor::open(directory_ / "equilibria.csv", flags);
+    if (!checkpoint_) {
+        files_->equilibria.write(equilibria_header());
+    }
+    Json provenance;
+    provenance["program"] = header_.program;
+    provenance["command"] = header_.command;
+    provenance["scene_file"] = header_.scene_name;
+    provenance["settings"] = Json::parse(header_.settings);
+    provenance_ = provenance.dump();
+}
+
+RunDirectory::~RunDirectory() = default;
+
+void RunDirectory::open_for_resume() {
+    const fs::path run = directory_ / "run.json";
+    if (!fs::exists(run)) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no run to resume", run.string()));
+    }
+    const Json parsed = Field::parse(read_text(run), run.string());
+    const Field old(parsed, run.string());
+    previous_status_ = old.at("status").string();
+    if (old.at("scene").string() != header_.scene_text) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: the run is of another scene ({}): expected the text of {}",
+                                                      run.string(), old.at("scene_file").string(), header_.scene_name));
+    }
+    if (old.at("program").string() != header_.program) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: the run was made by {}: expected {}, the same bits are not promised otherwise",
+                                run.string(), old.at("program").string(), header_.program));
+    }
+    header_.command = old.at("command").string(); // states tell how the run was started
+    const fs::path path = directory_ / "checkpoint.json";
+    if (!fs::exists(path)) {
+        return;
+    }
+    const Json text = Field::parse(read_text(path), path.string());
+    const Field file(text, path.string());
+    if (file.at("format").string() != "isostat-checkpoint") {
+        file.at("format").fail("\"isostat-checkpoint\"");
+    }
+    Checkpoint& point = checkpoint_.emplace();
+    point.segment = static_cast<int>(file.at("segment").integer());
+    point.made = static_cast<int>(file.at("made").integer());
+    point.segment_done = file.at("segment_done").boolean();
+    point.counters = counters_from(file.at("counters"));
+    StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path.string());
+    point.state = state.state;
+    segment_ = point.segment;
+    last_ = std::move(state.state);
+    last_forces_ = std::move(state.forces);
+    for (const char* name : {"events.jsonl", "equilibria.csv"}) {
+        const long bytes = file.at("bytes").at(name).integer();
+        Descriptor records = Descriptor::open(directory_ / name, O_WRONLY);
+        if (records.size() < bytes) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint",
+                                    (directory_ / name).string(), records.size(), bytes));
+        }
+        records.truncate(bytes);
+    }
+}
+
+std::optional<State<2>> RunDirectory::start() const {
+    const fs::path path = directory_ / "start.json";
+    if (!resumed_ || !fs::exists(path)) { // a file of that name in a new folder is not ours
+        return std::nullopt;
+    }
+    return read_state<2>(path).state;
+}
+
+void RunDirectory::store_start(const State<2>& state) {
+    write_state<2>(directory_ / "start.json", state);
+}
+
+State<2> RunDirectory::stored(int equilibrium) const {
+    return read_state<2>(state_path(directory_, equilibrium)).state;
+}
+
+void RunDirectory::begin_segment(int number, const Segment& goal, int made, int from) {
+    segment_ = number;
+    goal_ = goal;
+    made_ = made;
+    previous_ = from;
+}
+
+void RunDirectory::on_arc(const ArcRecord<2>& arc) {
+    files_->events.write(event_line(arc));
+}
+
+void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                                  const std::vector<double>& forces) {
+    const bool first = record.number == 0;
+    files_->equilibria.write(equilibrium_row(record, state, first ? -1 : previous_));
+    previous_ = record.number;
+    made_ += first ? 0 : 1;
+    last_ = state;
+    last_.provenance = provenance_;
+    last_forces_ = forces;
+    last_record_ = record;
+    const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
+    const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
+    if (first || every || kept) {
+        write_state<2>(state_path(directory_, record.number), last_, last_forces_);
+    }
+    if (!first) { // the start is made again from start.json: run_segment reports number 0 itself
+        write_checkpoint();
+    }
+}
+
+void RunDirectory::write_checkpoint() {
+    files_->events.sync();
+    files_->equilibria.sync();
+    const bool reached = goal_.to_stress && last_record_.stress == *goal_.to_stress;
+    Json object;
+    object["format"] = "isostat-checkpoint";
+    object["version"] = 1;
+    object["segment"] = segment_;
+    object["made"] = made_;
+    object["segment_done"] = reached || (goal_.equilibria && made_ >= *goal_.equilibria);
+    object["counters"] = counters_json(counters_);
+    object["bytes"] = {{"events.jsonl", files_->events.size()}, {"equilibria.csv", files_->equilibria.size()}};
+    std::string text = object.dump();
+    text.pop_back();
+    write_atomically(directory_ / "checkpoint.json",
+                     text + ",\n\"state\": " + state_text<2>(last_, last_forces_) + "}\n");
+}
+
+void RunDirectory::finish(RunStatus status, const std::string& reason) {
+    const std::string words = reason.empty() ? to_string(status) : fmt::format("{}: {}", to_string(status), reason);
+    if (!last_.packing.radius.empty()) {
+        write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);
+    }
+    Json object;
+    object["format"] = "isostat-summary";
+    object["version"] = 1;
+    object["program"] = header_.program;
+    object["status"] = to_string(status);
+    object["reason"] = reason;
+    object["directory"] = directory_.string();
+    object["segments"] = header_.programme.size();
+    object["segment"] = segment_;
+    object["last_equilibrium"] = last_.equilibrium;
+    object["counters"] = counters_json(counters_);
+    if (!last_.packing.radius.empty()) {
+        const auto loaded = static_cast<std::size_t>(last_.load.loaded_axis);
+        const auto strain = [&](std::size_t axis) {
+            const double reference = last_.load.reference_length[axis];
+            return (reference - last_.packing.length(static_cast<int>(axis))) / reference;
+        };
+        object["disks"] = last_.packing.disk_count();
+        object["ratio"] = json::or_null(last_.load.stress[loaded] / last_.load.stress[1 - loaded]);
+        object["eps1"] = json::or_null(strain(1 - loaded));
+        object["eps2"] = json::or_null(strain(loaded));
+        object["solid_fraction"] = json::or_null(last_.packing.solid_fraction());
+    }
+    summary_ = object.dump(2) + "\n";
+    files_->events.sync();
+    files_->equilibria.sync();
+    write_atomically(directory_ / "summary.json", summary_);
+    write_header(words);
+}
+
+void RunDirectory::write_header(const std::string& status) const {
+    write_atomically(directory_ / "run.json", header_text(header_, status));
+}
+
+} // namespace isostat

@@ -1,0 +1,203 @@
+#include "io/contact_json.hpp"
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/io/vertex_text.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat {
+
+namespace {
+
+using json::Field;
+
+WallKind wall_kind(const Field& field) {
+    const std::string& word = field.string();
+    if (word == "absent") {
+        return WallKind::absent;
+    }
+    if (word == "fixed") {
+        return WallKind::fixed;
+    }
+    if (word == "movable") {
+        return WallKind::movable;
+    }
+    field.fail("\"absent\", \"fixed\" or \"movable\"");
+}
+
+/// Dim numbers per disk; the array may be absent.
+template <int Dim> std::vector<double> vectors(const Field& document, const char* name, std::size_t disks) {
+    std::vector<double> values;
+    if (!document.has(name)) {
+        return values;
+    }
+    const Field list = document.at(name);
+    list.require_size(disks, "one row per disk");
+    values.reserve(Dim * disks);
+    for (std::size_t i = 0; i < disks; ++i) {
+        const Field row = list.at(i);
+        row.require_size(Dim, "one number per axis");
+        for (std::size_t a = 0; a < Dim; ++a) {
+            values.push_back(row.at(a).number());
+        }
+    }
+    return values;
+}
+
+template <int Dim> Packing<Dim> packing_of(const Field& document) {
+    Packing<Dim> packing;
+    const Field disks = document.at("disks");
+    if (disks.size() == 0) {
+        disks.fail("at least one disk [radius, x, y]");
+    }
+    for (std::size_t i = 0; i < disks.size(); ++i) {
+        const Field row = disks.at(i);
+        row.require_size(1 + Dim, "[radius, x, y]");
+        const double radius = row.at(std::size_t{0}).number();
+        if (!(radius > 0)) {
+            row.at(std::size_t{0}).fail("a positive radius");
+        }
+        packing.radius.push_back(radius);
+        for (std::size_t a = 0; a < Dim; ++a) {
+            packing.q.push_back(row.at(1 + a).number());
+        }
+    }
+    const Field length = document.at("length");
+    length.require_size(Dim, "one length per axis");
+    for (std::size_t a = 0; a < Dim; ++a) {
+        packing.q.push_back(length.at(a).number());
+    }
+    if (document.has("walls")) {
+        const Field walls = document.at("walls");
+        walls.only({"lower", "upper"});
+        walls.at("lower").require_size(Dim, "one wall per axis");
+        walls.at("upper").require_size(Dim, "one wall per axis");
+        for (std::size_t a = 0; a < Dim; ++a) {
+            packing.walls.lower[a] = wall_kind(walls.at("lower").at(a));
+            packing.walls.upper[a] = wall_kind(walls.at("upper").at(a));
+            if (packing.walls.lower[a] == WallKind::movable) {
+                walls.at("lower").at(a).fail("\"absent\" or \"fixed\": the lower walls are the origin");
+            }
+        }
+    }
+    if (document.has("fixed")) {
+        const Field fixed = document.at("fixed");
+        packing.fixed.assign(packing.radius.size(), 0);
+        for (std::size_t k = 0; k < fixed.size(); ++k) {
+            const long i = fixed.at(k).integer();
+            if (i < 0 || i >= packing.disk_count()) {
+                fixed.at(k).fail(fmt::format("a disk from 0 to {}", packing.disk_count() - 1));
+            }
+            packing.fixed[static_cast<std::size_t>(i)] = 1;
+        }
+    }
+    return packing;
+}
+
+template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& packing) {
+    Load<Dim> load;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        load.stress[a] = 1;
+        load.reference_length[a] = packing.length(static_cast<int>(a));
+    }
+    if (document.has("load")) {
+        const Field field = document.at("load");
+        field.only({"kind", "stress", "loaded_axis", "reference_length"});
+        if (field.has("kind")) {
+            const std::string& kind = field.at("kind").string();
+            if (kind != "nominal" && kind != "true") {
+                field.at("kind").fail("\"nominal\" or \"true\"");
+            }
+            load.kind = kind == "nominal" ? LoadKind::nominal : LoadKind::true_stress;
+        }
+        for (const char* name : {"stress", "reference_length"}) {
+            if (!field.has(name)) {
+                continue;
+            }
+            field.at(name).require_size(Dim, "one number per axis");
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const Field number = field.at(name).at(a);
+                const bool is_stress = name == std::string("stress");
+                (is_stress ? load.stress : load.reference_length)[a] = number.number();
+                if (!is_stress && !(number.number() > 0)) {
+                    number.fail("a positive length");
+                }
+            }
+        }
+        if (field.has("loaded_axis")) {
+            const long axis = field.at("loaded_axis").integer();
+            if (axis < 0 || axis >= Dim) {
+                field.at("loaded_axis").fail(fmt::format("an axis from 0 to {}", Dim - 1));
+            }
+            load.loaded_axis = static_cast<int>(axis);
+        }
+    }
+    load.disk_force = vectors<Dim>(document, "disk_force", packing.radius.size());
+    load.infinitesimal = vectors<Dim>(document, "infinitesimal", packing.radius.size());
+    return load;
+}
+
+} // namespace
+
+template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source) {
+    const json::Json parsed = Field::parse(text, source);
+    const Field document(parsed, source);
+    if (!document.value().is_object()) {
+        document.fail("an object with \"format\": \"isostat-state\"");
+    }
+    if (document.at("format").string() != "isostat-state") {
+        document.at("format").fail("\"isostat-state\"");
+    }
+    if (document.at("version").integer() != 1) {
+        document.at("version").fail("1, the version that this program reads");
+    }
+    document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks",
+                   "fixed", "disk_force", "infinitesimal", "contacts", "forces"});
+    if (document.has("dimension") && document.at("dimension").integer() != Dim) {
+        document.at("dimension").fail(fmt::format("{}", Dim));
+    }
+    StateFile<Dim> file;
+    State<Dim>& state = file.state;
+    state.packing = packing_of<Dim>(document);
+    validate(state.packing, source);
+    state.load = load_of(document, state.packing);
+    if (document.has("equilibrium")) {
+        const long number = document.at("equilibrium").integer();
+        if (number < 0 || number > 1'000'000'000) {
+            document.at("equilibrium").fail("the number of an equilibrium, from 0");
+        }
+        state.equilibrium = static_cast<int>(number);
+    }
+    if (document.has("provenance")) {
+        state.provenance = document.at("provenance").value().dump();
+    }
+    const Field contacts = document.at("contacts");
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        state.contacts.push_back(json::contact_from_json<Dim>(contacts.at(l), state.packing));
+    }
+    json::refuse_duplicates<Dim>(state.contacts, source, "contacts");
+    if (document.has("forces")) {
+        const Field forces = document.at("forces");
+        forces.require_size(state.contacts.size(), "one force per contact");
+        for (std::size_t l = 0; l < forces.size(); ++l) {
+            file.forces.push_back(forces.at(l).number());
+        }
+    }
+    return file;
+}
+
+template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) {
+    const std::string text = read_text(path);
+    if (text[text.find_first_not_of(" \t\r\n")] == '{') {
+        return parse_state<Dim>(text, path.string());
+    }
+    return {parse_vertex_text(text, path.string()), {}};
+}
+
+template StateFile<2> parse_state<2>(const std::string&, const std::string&);
+template StateFile<2> read_state<2>(const std::filesystem::path&);
+
+} // namespace isostat

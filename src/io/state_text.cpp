@@ -1,0 +1,147 @@
+#include "io/contact_json.hpp"
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+using json::Json;
+
+const char* word(WallKind kind) {
+    switch (kind) {
+    case WallKind::absent: return "absent";
+    case WallKind::fixed: return "fixed";
+    case WallKind::movable: return "movable";
+    }
+    return "absent";
+}
+
+/// JSON has no NaN and no infinity: a state that holds one is not written at all.
+double finite(double value, const char* field) {
+    if (!std::isfinite(value)) {
+        throw Error(ErrorKind::bad_input, fmt::format("{} is {}: expected a finite number in a state", field, value));
+    }
+    return value;
+}
+
+template <class Range> Json numbers(const Range& values, const char* field) {
+    Json list = Json::array();
+    for (const double v : values) {
+        list.push_back(finite(v, field));
+    }
+    return list;
+}
+
+/// Dim numbers per disk, one row each.
+template <int Dim> std::vector<Json> vectors(const std::vector<double>& values, const char* field) {
+    std::vector<Json> rows;
+    for (std::size_t k = 0; k + Dim <= values.size(); k += Dim) {
+        rows.push_back(numbers(std::span(values).subspan(k, Dim), field));
+    }
+    return rows;
+}
+
+/// The members "length" and "disks".
+template <int Dim> void append_disks(std::string& text, const Packing<Dim>& packing) {
+    const std::size_t first_length = Dim * packing.radius.size();
+    text +=
+        fmt::format("  \"length\": {},\n", numbers(std::span(packing.q).subspan(first_length, Dim), "length").dump());
+
+    std::vector<Json> rows;
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        Json row = Json::array({finite(packing.radius[i], "disks (radius)")});
+        for (std::size_t a = 0; a < Dim; ++a) {
+            row.push_back(finite(packing.q[Dim * i + a], "disks (position)"));
+        }
+        rows.push_back(std::move(row));
+    }
+    json::append_rows(text, "disks", rows);
+}
+
+} // namespace
+
+template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces) {
+    const Packing<Dim>& packing = state.packing;
+    const Load<Dim>& load = state.load;
+    std::string text = "{\n  \"format\": \"isostat-state\",\n  \"version\": 1,\n";
+    text += fmt::format("  \"dimension\": {},\n  \"equilibrium\": {},\n", Dim, state.equilibrium);
+    text +=
+        fmt::format("  \"provenance\": {},\n", state.provenance.empty() ? "{}" : Json::parse(state.provenance).dump());
+
+    Json head;
+    head["kind"] = load.kind == LoadKind::nominal ? "nominal" : "true";
+    head["stress"] = numbers(load.stress, "load.stress");
+    head["loaded_axis"] = load.loaded_axis;
+    head["reference_length"] = numbers(load.reference_length, "load.reference_length");
+    text += fmt::format("  \"load\": {},\n", head.dump());
+
+    Json walls;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        walls["lower"].push_back(word(packing.walls.lower[a]));
+        walls["upper"].push_back(word(packing.walls.upper[a]));
+    }
+    text += fmt::format("  \"walls\": {},\n", walls.dump());
+    append_disks(text, packing);
+    std::vector<Json> rows;
+
+    for (std::size_t i = 0; i < packing.fixed.size(); ++i) {
+        if (packing.fixed[i] != 0) {
+            rows.emplace_back(i);
+        }
+    }
+    if (!rows.empty()) {
+        text += ",\n";
+        json::append_rows(text, "fixed", rows);
+    }
+    if (!load.disk_force.empty()) {
+        text += ",\n";
+        json::append_rows(text, "disk_force", vectors<Dim>(load.disk_force, "disk_force"));
+    }
+    if (!load.infinitesimal.empty()) {
+        text += ",\n";
+        json::append_rows(text, "infinitesimal", vectors<Dim>(load.infinitesimal, "infinitesimal"));
+    }
+
+    rows.clear();
+    for (const Contact& contact : state.contacts) {
+        rows.push_back(json::contact_to_json<Dim>(contact));
+    }
+    text += ",\n";
+    json::append_rows(text, "contacts", rows);
+    if (!forces.empty()) {
+        rows.clear();
+        for (const double f : forces) {
+            rows.emplace_back(finite(f, "forces"));
+        }
+        text += ",\n";
+        json::append_rows(text, "forces", rows);
+    }
+    return text + "\n}\n";
+}
+
+template <int Dim>
+void write_state(const std::filesystem::path& path, const State<Dim>& state, std::span<const double> forces) {
+    write_atomically(path, state_text(state, forces));
+}
+
+template <int Dim>
+void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason) {
+    std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 1,\n";
+    text += fmt::format("  \"incomplete\": {},\n", Json(reason).dump());
+    append_disks(text, packing);
+    write_atomically(path, text + "\n}\n");
+}
+
+template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
+template std::string state_text<2>(const State<2>&, std::span<const double>);
+template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
+
+} // namespace isostat

@@ -1,0 +1,82 @@
+#include "io/contact_json.hpp"
+#include "io/json.hpp"
+#include "io/rows.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/vertex_text.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isostat {
+
+namespace {
+
+/// Types of the format: 0 disk-disk, then the walls.
+constexpr std::array<Contact, 4> wall_of_type{{{ContactKind::lower_wall, 0, 0},
+                                               {ContactKind::lower_wall, 0, 1},
+                                               {ContactKind::upper_wall, 0, 0},
+                                               {ContactKind::upper_wall, 0, 1}}};
+
+Contact contact_of(const Row& row, int disks) {
+    const long type = row.integer(0, "type of the contact", 0, 4);
+    const auto i = static_cast<int>(row.integer(1, "first disk of the contact", 0, disks - 1));
+    if (type != 0) {
+        Contact contact = wall_of_type[static_cast<std::size_t>(type - 1)];
+        contact.i = i;
+        return contact;
+    }
+    const auto j = static_cast<int>(row.integer(2, "second disk of the contact", 0, disks - 1));
+    if (i == j) {
+        row.fail(2, "second disk of the contact", "another disk than the first");
+    }
+    return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+}
+
+} // namespace
+
+State<2> parse_vertex_text(const std::string& text, const std::string& source) {
+    constexpr long most = 100'000'000;
+    RowReader rows(text, source);
+    State<2> state;
+    const auto disks = static_cast<int>(rows.next("the number of disks", 1).integer(0, "number of disks", 1, most));
+    for (int i = 0; i < disks; ++i) {
+        const Row row = rows.next(fmt::format("disk {} of {}: radius x y gx gy", i, disks), 5);
+        const double radius = row.number(0, fmt::format("radius of disk {}", i));
+        if (!(radius > 0)) {
+            row.fail(0, fmt::format("radius of disk {}", i), "a positive number");
+        }
+        state.packing.radius.push_back(radius);
+        state.packing.q.push_back(row.number(1, fmt::format("x of disk {}", i)));
+        state.packing.q.push_back(row.number(2, fmt::format("y of disk {}", i)));
+        state.load.infinitesimal.push_back(row.number(3, fmt::format("gx of disk {}", i)));
+        state.load.infinitesimal.push_back(row.number(4, fmt::format("gy of disk {}", i)));
+    }
+    const Row box = rows.next("the box: Lx Ly", 2);
+    for (std::size_t a = 0; a < 2; ++a) {
+        const char* const name = a == 0 ? "Lx" : "Ly";
+        const double length = box.number(a, name);
+        if (!(length > 0)) {
+            box.fail(a, name, "a positive number");
+        }
+        state.packing.q.push_back(length);
+        state.load.reference_length[a] = length;
+        state.load.stress[a] = 1;
+    }
+    validate(state.packing, source);
+    const auto contacts =
+        static_cast<int>(rows.next("the number of contacts", 1).integer(0, "number of contacts", 0, most));
+    for (int l = 0; l < contacts; ++l) {
+        state.contacts.push_back(
+            contact_of(rows.next(fmt::format("contact {} of {}: type i j", l, contacts), 3), disks));
+    }
+    rows.finish(fmt::format("the end of the file after {} contacts", contacts));
+    json::refuse_duplicates<2>(state.contacts, source, "contacts");
+    std::sort(state.contacts.begin(), state.contacts.end());
+    snap_to_grid(state.packing);
+    state.provenance = json::Json{{"converted_from", source}}.dump();
+    return state;
+}
+
+} // namespace isostat

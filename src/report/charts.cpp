@@ -1,0 +1,214 @@
+#include "report/charts.hpp"
+
+#include <isostat/report/statistics.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+constexpr std::array<const char*, 6> colours{"#1f4e79", "#c55a11", "#548235", "#7b3f99", "#997300", "#a61c3c"};
+
+/// gnuplot strings in double quotes.
+std::string quoted(const std::string& text) {
+    std::string safe = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\') {
+            safe += '\\';
+        }
+        safe += c;
+    }
+    return safe + "\"";
+}
+
+/// The same plot on both terminals.
+std::string script_of(const std::string& name, int width, int height, const std::string& body) {
+    std::string script = "# gnuplot script; run it in this folder\n";
+    const std::array<std::pair<std::string, std::string>, 2> terminals{
+        {{"svg",
+          fmt::format("set terminal svg size {},{} dynamic font \"sans,14\" background \"#ffffff\"", width, height)},
+         {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}}};
+    for (const auto& [suffix, terminal] : terminals) {
+        script +=
+            fmt::format("reset\n{}\nset output {}\n{}unset output\n", terminal, quoted(name + "." + suffix), body);
+    }
+    return script;
+}
+
+void append_points(std::string& data, const std::string& title, const std::vector<std::pair<double, double>>& points) {
+    data += fmt::format("# {}\n", title);
+    for (const auto& [x, y] : points) {
+        data += fmt::format("{} {}\n", x, y);
+    }
+    data += "\n\n";
+}
+
+/// (eps2, ratio) along a path: at constant structure the stress moves, at constant stress the strain jumps.
+std::vector<std::pair<double, double>> stairs(const std::vector<EquilibriumRow>& path) {
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        if (k > 0) {
+            points.emplace_back(path[k - 1].strain2, path[k].ratio);
+        }
+        points.emplace_back(path[k].strain2, path[k].ratio);
+    }
+    return points;
+}
+
+/// The rows of one segment, with the equilibrium that it starts from.
+std::vector<EquilibriumRow> segment_path(const std::vector<EquilibriumRow>& rows, int segment) {
+    std::vector<EquilibriumRow> path;
+    for (const EquilibriumRow& row : rows) {
+        if (row.segment != segment) {
+            continue;
+        }
+        if (path.empty() && row.previous >= 0) {
+            const auto before =
+                std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.number == row.previous; });
+            if (before != rows.end()) {
+                path.push_back(*before);
+            }
+        }
+        path.push_back(row);
+    }
+    return path;
+}
+
+struct Curve {
+    std::string title;
+    std::vector<EquilibriumRow> path;
+};
+
+Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves) {
+    Chart chart;
+    chart.name = name;
+    std::string plot;
+    for (std::size_t k = 0; k < curves.size(); ++k) {
+        append_points(chart.data, "eps2 sigma2/sigma1: " + curves[k].title, stairs(curves[k].path));
+        plot +=
+            fmt::format("{} {} index {} with lines lw 1.5 lc rgb {} title {} noenhanced", k == 0 ? "plot" : ",\\\n    ",
+                        quoted(name + ".dat"), k, quoted(colours[k % colours.size()]), quoted(curves[k].title));
+    }
+    chart.script =
+        script_of(name, 800, 560,
+                  "set xlabel \"{/Symbol e}_2\"\nset ylabel \"{/Symbol s}_2 / {/Symbol s}_1\"\nset key bottom right\n"
+                  "set format x \"%g\"\nset grid lc rgb \"#dddddd\"\n" +
+                      plot + "\n");
+    return chart;
+}
+
+/// Segments whose first equilibrium does not follow the last one made before: they branch off.
+bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<EquilibriumRow>& path) {
+    const auto first =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.number == path[1].number; });
+    return first != rows.begin() && (first - 1)->number != path.front().number;
+}
+
+void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& rows,
+                const std::vector<std::string>& names) {
+    std::vector<Curve> main_path;
+    std::vector<Curve> cycles;
+    int highest_branch = -1;
+    const int segments = rows.empty() ? 0 : rows.back().segment + 1;
+    for (int s = 0; s < segments; ++s) {
+        std::vector<EquilibriumRow> path = segment_path(rows, s);
+        if (path.size() < 2) {
+            continue;
+        }
+        const std::string title = static_cast<std::size_t>(s) < names.size() ? names[static_cast<std::size_t>(s)]
+                                                                             : fmt::format("segment {}", s);
+        const bool branch =
+            branches(rows, path) || (!cycles.empty() && main_path.back().path.back().number != path.front().number);
+        if (branch) {
+            highest_branch = std::max(highest_branch, path.front().number);
+        }
+        (branch ? cycles : main_path).push_back({title, std::move(path)});
+    }
+    if (!main_path.empty()) {
+        charts.push_back(stairs_chart("staircase", main_path));
+    }
+    if (!cycles.empty()) {
+        cycles.insert(cycles.begin(),
+                      Curve{fmt::format("path to equilibrium {}", highest_branch), path_to(rows, highest_branch)});
+        charts.push_back(stairs_chart("cycles", cycles));
+    }
+}
+
+/// Two panels: histogram, and complementary distribution with logarithmic scales.
+void add_distribution(std::vector<Chart>& charts, const std::string& name, const std::string& label,
+                      const Increments& increments, bool power_law) {
+    constexpr std::size_t fewest = 3;
+    constexpr int bins = 20;
+    Chart chart;
+    chart.name = name;
+    std::string left;
+    std::string right;
+    int index = 0;
+    const std::array<std::pair<const char*, const std::vector<double>*>, 2> kinds{
+        {{"loading", &increments.loading}, {"unloading", &increments.unloading}}};
+    for (std::size_t k = 0; k < kinds.size(); ++k) {
+        const std::vector<double>& values = *kinds[k].second;
+        if (values.size() < fewest) {
+            continue;
+        }
+        std::vector<double> shown = values;
+        if (power_law) {
+            std::transform(values.begin(), values.end(), shown.begin(), [](double v) { return std::log10(v); });
+        }
+        const auto [low, high] = std::minmax_element(shown.begin(), shown.end());
+        const double from = power_law ? *low : 0;
+        if (!(*high > from)) {
+            continue;
+        }
+        const double average = mean(values);
+        append_points(chart.data, fmt::format("{}, {}: centre density", label, kinds[k].first),
+                      histogram(shown, from, *high, bins));
+        std::vector<std::pair<double, double>> tail = complementary_distribution(values);
+        append_points(chart.data,
+                      fmt::format("{}, {}: value, share of the values that are not smaller", label, kinds[k].first),
+                      tail);
+        const std::string title = fmt::format("{}: {} values, mean {:.3g}", kinds[k].first, values.size(), average);
+        const auto curve = [&](std::string& plot, int block, const char* style) {
+            plot += fmt::format("{} {} index {} with {} lw 1.5 lc rgb {} title {}", plot.empty() ? "plot" : ",\\\n    ",
+                                quoted(name + ".dat"), block, style, quoted(colours[k]), quoted(title));
+        };
+        curve(left, index, "histeps");
+        curve(right, index + 1, "steps");
+        if (!power_law) {
+            right += fmt::format(",\\\n     exp(-x/{}) dt 2 lc rgb {} title \"exponential of the same mean\"", average,
+                                 quoted(colours[k]));
+        }
+        index += 2;
+    }
+    if (index == 0) {
+        return;
+    }
+    const std::string x = quoted(label);
+    const std::string x_left = power_law ? quoted("log_{10} " + label) : x;
+    std::string body = "set multiplot layout 1,2\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
+                       "\"#dddddd\"\nset yrange [0:*]\n";
+    body += fmt::format("set xlabel {}\nset ylabel \"density\"\n{}\n", x_left, left);
+    body += fmt::format("set xlabel {}\nset ylabel \"share of the values {{/Symbol \\263}} x\"\nset logscale y\nset "
+                        "yrange [*:1.5]\nset format y "
+                        "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
+                        x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
+    chart.script = script_of(name, 1100, 480, body);
+    charts.push_back(std::move(chart));
+}
+
+} // namespace
+
+std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
+    std::vector<Chart> charts;
+    add_stairs(charts, rows, names);
+    add_distribution(charts, "stress_increments", "{/Symbol Ds}_2 / {/Symbol s}_1", stress_increments(rows), false);
+    add_distribution(charts, "strain_increments", "{/Symbol De}_2", strain_increments(rows), true);
+    return charts;
+}
+
+} // namespace isostat

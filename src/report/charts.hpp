@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// The charts of a run: data and gnuplot scripts.
+
+#include <isostat/io/run_directory.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// One chart: NAME.dat, NAME.gp; the script makes NAME.svg and NAME.png.
+struct Chart {
+    std::string name, data, script;
+};
+
+/// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments.
+std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names);
+
+} // namespace isostat

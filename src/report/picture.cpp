@@ -1,0 +1,235 @@
+#include <isostat/report/picture.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+namespace {
+
+struct Point {
+    double x = 0, y = 0;
+};
+
+Point centre(const State<2>& state, int disk) {
+    return {state.packing.coordinate(DiskId(disk), 0), state.packing.coordinate(DiskId(disk), 1)};
+}
+
+/// Foot of the normal on the wall of a contact; none for two disks.
+std::optional<Point> foot(const State<2>& state, const Contact& contact) {
+    if (contact.kind != ContactKind::lower_wall && contact.kind != ContactKind::upper_wall) {
+        return std::nullopt;
+    }
+    Point at = centre(state, contact.i);
+    (contact.j == 0 ? at.x : at.y) = contact.kind == ContactKind::lower_wall ? 0 : state.packing.length(contact.j);
+    return at;
+}
+
+double mean_force(std::span<const double> forces) {
+    double sum = 0;
+    int count = 0;
+    for (const double f : forces) {
+        sum += std::abs(f);
+        count += f != 0 ? 1 : 0;
+    }
+    return count > 0 ? sum / count : 1;
+}
+
+/// Writes shapes in picture units: 1000 across the box, y downwards.
+class Canvas {
+  public:
+    explicit Canvas(const State<2>& state) : height_(extent(state, 1)), scale_(1000 / extent(state, 0)) {}
+
+    [[nodiscard]] double scale() const { return scale_; }
+    [[nodiscard]] double height() const { return height_ * scale_; }
+    void circle(Point at, double radius, const char* style) {
+        add(R"(<circle cx="{:.3f}" cy="{:.3f}" r="{:.3f}" class="{}"/>)", x(at), y(at), radius * scale_, style);
+    }
+    void line(Point from, Point to, double width, const char* style) {
+        add(R"(<line x1="{:.3f}" y1="{:.3f}" x2="{:.3f}" y2="{:.3f}" stroke-width="{:.3f}" class="{}"/>)", x(from),
+            y(from), x(to), y(to), width, style);
+    }
+    std::string take() { return std::move(text_); }
+
+  private:
+    static double extent(const State<2>& state, int axis) {
+        double most = state.packing.walls.upper[static_cast<std::size_t>(axis)] == WallKind::absent
+                          ? 0
+                          : state.packing.length(axis);
+        for (int i = 0; i < state.packing.disk_count(); ++i) {
+            most = std::max(most, state.packing.coordinate(DiskId(i), axis) +
+                                      state.packing.radius[static_cast<std::size_t>(i)]);
+        }
+        return most > 0 ? most : 1;
+    }
+    [[nodiscard]] double x(Point p) const { return p.x * scale_; }
+    [[nodiscard]] double y(Point p) const { return (height_ - p.y) * scale_; }
+    template <class... Values> void add(fmt::format_string<Values...> format, Values&&... values) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
+        text_ += '\n';
+    }
+    double height_, scale_;
+    std::string text_;
+};
+
+void draw_walls(Canvas& canvas, const State<2>& state) {
+    const auto& walls = state.packing.walls;
+    const double lx = state.packing.length(0);
+    const double ly = state.packing.length(1);
+    const auto draw = [&](WallKind kind, Point from, Point to) {
+        if (kind != WallKind::absent) {
+            canvas.line(from, to, 8, kind == WallKind::fixed ? "fixed" : "movable");
+        }
+    };
+    draw(walls.lower[0], {0, 0}, {0, ly});
+    draw(walls.lower[1], {0, 0}, {lx, 0});
+    draw(walls.upper[0], {lx, 0}, {lx, ly});
+    draw(walls.upper[1], {0, ly}, {lx, ly});
+}
+
+void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+    constexpr double width_at_mean = 0.25; // of the mean radius
+    constexpr double hairline = 0.4;
+    double radius = 0;
+    for (const double r : state.packing.radius) {
+        radius += r / static_cast<double>(state.packing.radius.size());
+    }
+    const double unit = width_at_mean * radius * canvas.scale() / mean_force(forces);
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& contact = state.contacts[l];
+        if (contact.kind == ContactKind::held) {
+            continue;
+        }
+        const double force = forces.empty() ? 0 : forces[l];
+        const Point end =
+            foot(state, contact).value_or(contact.kind == ContactKind::disk_disk ? centre(state, contact.j) : Point{});
+        canvas.line(centre(state, contact.i), end, force == 0 ? hairline : std::abs(force) * unit,
+                    force > 0   ? "force"
+                    : force < 0 ? "traction"
+                                : "contact");
+    }
+}
+
+std::string escaped(const std::string& text) {
+    std::string safe;
+    for (const char c : text) {
+        safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+    }
+    return safe;
+}
+
+} // namespace
+
+std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const double> forces) {
+    assert(forces.size() == state.contacts.size());
+    std::vector<unsigned char> flags(state.packing.radius.size(), 1);
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& contact = state.contacts[l];
+        if (forces[l] == 0 || contact.kind == ContactKind::held) {
+            continue;
+        }
+        flags[static_cast<std::size_t>(contact.i)] = 0;
+        if (contact.kind == ContactKind::disk_disk) {
+            flags[static_cast<std::size_t>(contact.j)] = 0;
+        }
+    }
+    return flags;
+}
+
+std::string force_picture(const State<2>& state, std::span<const double> forces, const std::string& caption) {
+    Canvas canvas(state);
+    std::vector<unsigned char> rattler(state.packing.radius.size(), 0);
+    if (!forces.empty()) {
+        rattler = rattler_flags(state, forces);
+    }
+    for (int i = 0; i < state.packing.disk_count(); ++i) {
+        const auto s = static_cast<std::size_t>(i);
+        canvas.circle(centre(state, i), state.packing.radius[s], rattler[s] != 0 ? "rattler" : "disk");
+    }
+    draw_contacts(canvas, state, forces);
+    draw_walls(canvas, state);
+    constexpr double border = 20;
+    constexpr double caption_height = 40;
+    const double width = 1000 + 2 * border;
+    const double height = canvas.height() + 2 * border + caption_height;
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" viewBox=\"{2:.0f} {2:.0f} {0:.0f} {1:.0f}\">\n",
+        width, height, -border);
+    text +=
+        "<style>.disk{fill:#e9e6df;stroke:#a9a59b;stroke-width:0.5}.rattler{fill:#9fb8cf;stroke:#6f89a3;stroke-width:0."
+        "5}"
+        ".force{stroke:#8c1c13;stroke-linecap:round}.traction{stroke:#1b5fbf;stroke-linecap:round}.contact{stroke:#777}"
+        ".fixed{stroke:#222;stroke-linecap:square}.movable{stroke:#8f8f8f;stroke-linecap:square}"
+        "text{font-family:sans-serif;font-size:20px;fill:#222}</style>\n";
+    text += fmt::format(
+        "<title>{}</title>\n<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#ffffff\"/>\n",
+        escaped(caption), -border, -border, width, height);
+    text += canvas.take();
+    text += fmt::format("<text x=\"0\" y=\"{:.0f}\">{}</text>\n</svg>\n", canvas.height() + border + caption_height / 2,
+                        escaped(caption));
+    return text;
+}
+
+std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title) {
+    const auto disks = state.packing.radius.size();
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < disks; ++i) {
+        points.push_back(centre(state, static_cast<int>(i)));
+    }
+    std::string lines;
+    std::string line_force;
+    std::size_t line_count = 0;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& contact = state.contacts[l];
+        if (contact.kind == ContactKind::held) {
+            continue;
+        }
+        auto end = static_cast<std::size_t>(contact.j);
+        if (const auto on_wall = foot(state, contact)) {
+            end = points.size();
+            points.push_back(*on_wall);
+        }
+        lines += fmt::format("2 {} {}\n", contact.i, end);
+        line_force += fmt::format("{:.17g}\n", forces.empty() ? 0 : forces[l]);
+        ++line_count;
+    }
+    std::vector<unsigned char> rattler(disks, 0);
+    if (!forces.empty()) {
+        rattler = rattler_flags(state, forces);
+    }
+    rattler.resize(points.size(), 0);
+    // The title is one line of at most 256 characters; ours is short.
+    std::string text = fmt::format("# vtk DataFile Version 3.0\n{}\nASCII\nDATASET POLYDATA\nPOINTS {} double\n",
+                                   title.substr(0, 200), points.size());
+    for (const Point& p : points) {
+        text += fmt::format("{:.17g} {:.17g} 0\n", p.x, p.y);
+    }
+    text += fmt::format("VERTICES {} {}\n", disks, 2 * disks);
+    for (std::size_t i = 0; i < disks; ++i) {
+        text += fmt::format("1 {}\n", i);
+    }
+    text += fmt::format("LINES {} {}\n{}", line_count, 3 * line_count, lines);
+    text += fmt::format("POINT_DATA {}\nSCALARS radius double 1\nLOOKUP_TABLE default\n", points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        text += fmt::format("{:.17g}\n", i < disks ? state.packing.radius[i] : 0.0);
+    }
+    text += "SCALARS rattler int 1\nLOOKUP_TABLE default\n";
+    for (const unsigned char flag : rattler) {
+        text += fmt::format("{}\n", static_cast<int>(flag));
+    }
+    // Cell data: vertices first, then lines, as VTK numbers the cells.
+    text += fmt::format("CELL_DATA {}\nSCALARS force double 1\nLOOKUP_TABLE default\n", disks + line_count);
+    for (std::size_t i = 0; i < disks; ++i) {
+        text += "0\n";
+    }
+    return text + line_force;
+}
+
+} // namespace isostat

@@ -1,0 +1,143 @@
+#include "io/json.hpp"
+#include "report/charts.hpp"
+#include "report/gnuplot.hpp"
+#include "report/tables.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/report/picture.hpp>
+#include <isostat/report/run_report.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isostat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Writer {
+  public:
+    Writer(fs::path output, const ReportOptions& options) : output_(std::move(output)), options_(options) {
+        make_directory(output_);
+    }
+
+    void write(const std::string& name, const std::string& text) {
+        write_atomically(output_ / name, text);
+        result_.files.push_back(output_ / name);
+    }
+    void note(const std::string& text) {
+        if (std::find(result_.notes.begin(), result_.notes.end(), text) == result_.notes.end()) {
+            result_.notes.push_back(text);
+        }
+    }
+    void picture(const fs::path& path, const std::string& name) {
+        StateFile<2> file = read_state<2>(path);
+        if (file.forces.empty()) {
+            file.forces = solve_forces(file.state, path);
+        }
+        const State<2>& state = file.state;
+        const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+        const std::string caption =
+            fmt::format("equilibrium {}, {} disks, \u03c3\u2082/\u03c3\u2081 = {:.6g}", state.equilibrium,
+                        state.packing.disk_count(), state.load.stress[loaded] / state.load.stress[1 - loaded]);
+        if (options_.pictures) {
+            write(name + ".svg", force_picture(state, file.forces, caption));
+        }
+        if (options_.vtk) {
+            write(name + ".vtk",
+                  vtk_text(state, file.forces, fmt::format("isostat: equilibrium {}", state.equilibrium)));
+        }
+    }
+    void chart(const Chart& chart) {
+        write(chart.name + ".dat", chart.data);
+        write(chart.name + ".gp", chart.script);
+        if (!options_.charts) {
+            return;
+        }
+        const std::string trouble = run_gnuplot(output_, chart.name + ".gp");
+        if (!trouble.empty()) {
+            note(trouble);
+            return;
+        }
+        for (const char* suffix : {".svg", ".png"}) {
+            result_.files.push_back(output_ / (chart.name + suffix));
+        }
+    }
+    ReportResult take(std::string text) {
+        result_.text = std::move(text);
+        return std::move(result_);
+    }
+
+  private:
+    std::vector<double> solve_forces(const State<2>& state, const fs::path& path) {
+        State<2> snapped = state;
+        snap_to_grid(snapped.packing);
+        const auto inspection = inspect_vertex(snapped);
+        if (!inspection.ok()) {
+            note(fmt::format("{}: the picture shows no forces: {}", path.string(), inspection.failure().message));
+            return {};
+        }
+        std::vector<double> forces = inspection.value().forces;
+        forces.resize(state.contacts.size()); // multipliers of held coordinates come last
+        return forces;
+    }
+    fs::path output_;
+    ReportOptions options_;
+    ReportResult result_;
+};
+
+} // namespace
+
+ReportResult report_run(const fs::path& directory, const fs::path& output, const ReportOptions& options) {
+    const fs::path run = directory / "run.json";
+    if (!fs::exists(run)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: does not exist: expected the folder of a run", run.string()));
+    }
+    const json::Json parsed = json::Field::parse(read_text(run), run.string());
+    const json::Field header(parsed, run.string());
+    std::vector<std::string> names;
+    const json::Field programme = header.at("programme");
+    for (std::size_t s = 0; s < programme.size(); ++s) {
+        names.push_back(programme.at(s).string());
+    }
+    const std::vector<EquilibriumRow> rows = read_equilibria(directory / "equilibria.csv");
+    Writer writer(output, options);
+    if (options.pictures) {
+        for (const Chart& chart : make_charts(rows, names)) {
+            writer.chart(chart);
+        }
+    }
+    if (options.pictures || options.vtk) {
+        std::vector<fs::path> states;
+        if (fs::exists(directory / "states")) {
+            for (const fs::directory_entry& entry : fs::directory_iterator(directory / "states")) {
+                if (entry.path().extension() == ".json") {
+                    states.push_back(entry.path());
+                }
+            }
+        }
+        std::sort(states.begin(), states.end());
+        for (const fs::path& path : states) {
+            writer.picture(path, "forces_" + path.stem().string());
+        }
+    }
+    const std::string text = run_tables(rows, names, header.at("status").string());
+    writer.write("report.txt", text);
+    return writer.take(text);
+}
+
+ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
+    Writer writer(output, options);
+    const std::string name = "forces_" + state.stem().string();
+    writer.picture(state, name);
+    return writer.take(fmt::format("force picture of {}\n", state.string()));
+}
+
+} // namespace isostat

@@ -1,0 +1,103 @@
+#include <isostat/report/statistics.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace isostat {
+
+namespace {
+
+using Index = std::map<int, const EquilibriumRow*>;
+
+Index by_number(const std::vector<EquilibriumRow>& rows) {
+    Index index;
+    for (const EquilibriumRow& row : rows) {
+        index[row.number] = &row;
+    }
+    return index;
+}
+
+const EquilibriumRow* find(const Index& index, int number) {
+    const auto found = index.find(number);
+    return found == index.end() ? nullptr : found->second;
+}
+
+} // namespace
+
+Increments stress_increments(const std::vector<EquilibriumRow>& rows) {
+    const Index index = by_number(rows);
+    Increments increments;
+    for (const EquilibriumRow& row : rows) {
+        const EquilibriumRow* before = find(index, row.previous);
+        if (before == nullptr || before->segment != row.segment || before->arcs == 0 || row.arcs == 0 ||
+            row.ratio == before->ratio) {
+            continue;
+        }
+        (row.ratio > before->ratio ? increments.loading : increments.unloading)
+            .push_back(std::abs(row.ratio - before->ratio));
+    }
+    return increments;
+}
+
+Increments strain_increments(const std::vector<EquilibriumRow>& rows) {
+    const Index index = by_number(rows);
+    Increments increments;
+    for (const EquilibriumRow& row : rows) {
+        const EquilibriumRow* before = find(index, row.previous);
+        if (before == nullptr || row.arcs == 0 || row.strain2 == before->strain2) {
+            continue; // nothing moved, or only rattlers did
+        }
+        (row.ratio > before->ratio ? increments.loading : increments.unloading)
+            .push_back(std::abs(row.strain2 - before->strain2));
+    }
+    return increments;
+}
+
+std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    std::vector<std::pair<double, double>> points;
+    const auto count = static_cast<double>(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i > 0 && values[i] == values[i - 1]) {
+            continue;
+        }
+        points.emplace_back(values[i], (count - static_cast<double>(i)) / count);
+    }
+    return points;
+}
+
+std::vector<std::pair<double, double>> histogram(const std::vector<double>& values, double low, double high, int bins) {
+    const double width = (high - low) / bins;
+    std::vector<int> count(static_cast<std::size_t>(bins), 0);
+    for (const double v : values) {
+        if (v >= low && v <= high) {
+            const auto bin = static_cast<int>((v - low) / width);
+            ++count[static_cast<std::size_t>(std::min(bin, bins - 1))];
+        }
+    }
+    std::vector<std::pair<double, double>> points;
+    for (int b = 0; b < bins; ++b) {
+        points.emplace_back(low + (b + 0.5) * width,
+                            count[static_cast<std::size_t>(b)] / (static_cast<double>(values.size()) * width));
+    }
+    return points;
+}
+
+std::vector<EquilibriumRow> path_to(const std::vector<EquilibriumRow>& rows, int number) {
+    const Index index = by_number(rows);
+    std::vector<EquilibriumRow> path;
+    for (const EquilibriumRow* row = find(index, number); row != nullptr && path.size() < rows.size();
+         row = find(index, row->previous)) {
+        path.push_back(*row);
+    }
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+double mean(const std::vector<double>& values) {
+    return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+} // namespace isostat

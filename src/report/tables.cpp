@@ -1,0 +1,125 @@
+#include "report/tables.hpp"
+
+#include <isostat/report/statistics.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+void add_segments(std::string& text, const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
+    text += fmt::format("\n{:>3} {:<36} {:>6} {:>6} {:>12} {:>12} {:>12} {:>12} {:>6}\n", "seg", "name", "from", "made",
+                        "ratio from", "to", "eps2 from", "to", "arcs");
+    for (std::size_t s = 0; s < names.size(); ++s) {
+        const EquilibriumRow* first = nullptr;
+        const EquilibriumRow* last = nullptr;
+        int made = 0;
+        long arcs = 0;
+        for (const EquilibriumRow& row : rows) {
+            if (row.segment != static_cast<int>(s)) {
+                continue;
+            }
+            first = first == nullptr ? &row : first;
+            last = &row;
+            made += row.number != 0 ? 1 : 0;
+            arcs += row.arcs;
+        }
+        if (first == nullptr) {
+            text += fmt::format("{:>3} {:<36} not run\n", s + 1, names[s]);
+            continue;
+        }
+        const auto before = std::find_if(rows.begin(), rows.end(),
+                                         [&](const EquilibriumRow& r) { return r.number == first->previous; });
+        const EquilibriumRow& start = before == rows.end() ? *first : *before;
+        text += fmt::format("{:>3} {:<36} {:>6} {:>6} {:>12.8f} {:>12.8f} {:>12.5e} {:>12.5e} {:>6}\n", s + 1, names[s],
+                            start.number, made, start.ratio, last->ratio, start.strain2, last->strain2, arcs);
+    }
+}
+
+void add_increments(std::string& text, const char* what, const Increments& increments) {
+    for (const auto& [name, values] :
+         {std::pair{"loading", &increments.loading}, std::pair{"unloading", &increments.unloading}}) {
+        if (!values->empty()) {
+            const auto [low, high] = std::minmax_element(values->begin(), values->end());
+            text += fmt::format("{:<20} {:<10} {:>6} values, mean {:.4e}, from {:.4e} to {:.4e}\n", what, name,
+                                values->size(), mean(*values), *low, *high);
+        }
+    }
+}
+
+void add_checks(std::string& text, const std::vector<EquilibriumRow>& rows) {
+    const auto count = [&](auto&& test) { return std::count_if(rows.begin(), rows.end(), test); };
+    const auto [fewest, most] =
+        std::minmax_element(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.rattlers < b.rattlers; });
+    const auto margin =
+        std::min_element(rows.begin(), rows.end(), [](auto& a, auto& b) { return a.margin < b.margin; });
+    const auto [loose, dense] = std::minmax_element(
+        rows.begin(), rows.end(), [](auto& a, auto& b) { return a.solid_fraction < b.solid_fraction; });
+    text += fmt::format("equilibria proved    {} of {}\n", count([](auto& r) { return r.proved; }), rows.size());
+    text += fmt::format("h = 0                {} of {}\n", count([](auto& r) { return r.hyperstaticity == 0; }),
+                        rows.size());
+    text += fmt::format("rattlers             from {} to {}\n", fewest->rattlers, most->rattlers);
+    text += fmt::format("solid fraction       from {:.6f} to {:.6f}\n", loose->solid_fraction, dense->solid_fraction);
+    text += fmt::format("smallest margin      {:.3g} (equilibrium {}): |quantity| / proved bound of its error\n",
+                        margin->margin, margin->number);
+}
+
+void add_arcs(std::string& text, const std::vector<EquilibriumRow>& rows) {
+    std::vector<int> arcs;
+    for (const EquilibriumRow& row : rows) {
+        if (row.arcs > 0) {
+            arcs.push_back(row.arcs);
+        }
+    }
+    if (arcs.empty()) {
+        return;
+    }
+    std::sort(arcs.begin(), arcs.end());
+    const auto single = std::count(arcs.begin(), arcs.end(), 1);
+    text += fmt::format("rearrangements       {}, single arcs {:.1f} %, median {} arcs, longest {}\n", arcs.size(),
+                        100.0 * static_cast<double>(single) / static_cast<double>(arcs.size()), arcs[arcs.size() / 2],
+                        arcs.back());
+}
+
+/// What is left of the largest strain when the path has come back to the ratio it started from.
+void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows,
+                      const std::vector<std::string>& names) {
+    for (std::size_t s = 0; s < names.size(); ++s) {
+        const auto last =
+            std::find_if(rows.rbegin(), rows.rend(), [&](const auto& r) { return r.segment == static_cast<int>(s); });
+        if (last == rows.rend() || last->number == 0) {
+            continue;
+        }
+        const std::vector<EquilibriumRow> path = path_to(rows, last->number);
+        const auto peak =
+            std::max_element(path.begin(), path.end(), [](auto& a, auto& b) { return a.strain2 < b.strain2; });
+        if (last->ratio == path.front().ratio && peak->strain2 > 0) {
+            text += fmt::format(
+                "left of peak strain  {:.1f} % after \"{}\" (peak eps2 {:.5e}, back at sigma2/sigma1 = {:g}: {:.5e})\n",
+                100 * last->strain2 / peak->strain2, names[s], peak->strain2, last->ratio, last->strain2);
+        }
+    }
+}
+
+} // namespace
+
+std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
+                       const std::string& status) {
+    std::string text = fmt::format("status               {}\nequilibria           {}\n", status, rows.size());
+    if (rows.empty()) {
+        return text;
+    }
+    add_checks(text, rows);
+    add_arcs(text, rows);
+    add_increments(text, "increments of ratio", stress_increments(rows));
+    add_increments(text, "jumps of eps2", strain_increments(rows));
+    add_irreversible(text, rows, names);
+    add_segments(text, rows, names);
+    return text;
+}
+
+} // namespace isostat

@@ -1,0 +1,16 @@
+#pragma once
+/// \file
+/// The figures of a run as text.
+
+#include <isostat/io/run_directory.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// Segments, increments, arcs, checks. `names`: of the segments; `status`: that of run.json.
+std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
+                       const std::string& status);
+
+} // namespace isostat

@@ -1,0 +1,266 @@
+#include "scene/radii_file.hpp"
+#include "scene/section.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/scene/scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double largest_number = 1e300;
+
+/// A TOML integer has a sign: seeds are its non-negative half.
+constexpr long largest_seed = std::numeric_limits<long>::max();
+
+/// Exactly one way to say where the disks come from.
+void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
+    const auto file = section.string("file");
+    const auto disks = section.integer("disks");
+    const auto diameters = section.numbers("diameters");
+    const auto radii = section.numbers("radii");
+    const auto radii_file = section.string("radii_file");
+    const std::array<std::pair<const char*, bool>, 4> sources{{{"file", file.has_value()},
+                                                               {"disks", disks.has_value()},
+                                                               {"radii", radii.has_value()},
+                                                               {"radii_file", radii_file.has_value()}}};
+    const auto chosen = std::find_if(sources.begin(), sources.end(), [](const auto& s) { return s.second; });
+    if (chosen == sources.end()) {
+        section.refuse("",
+                       "[packing] does not say where the disks come from: expected file, disks, radii or radii_file");
+    }
+    for (auto other = chosen + 1; other != sources.end(); ++other) {
+        if (other->second) {
+            section.refuse(other->first,
+                           fmt::format("'{}' and '{}' in [packing] exclude each other: expected one of them",
+                                       chosen->first, other->first));
+        }
+    }
+    if (diameters && !disks) {
+        section.refuse(
+            "diameters",
+            fmt::format("'diameters' in [packing] goes with 'disks' and has no meaning with '{}'", chosen->first));
+    }
+    PreparationOptions& options = scene.preparation;
+    if (file) {
+        for (const char* key : {"seed", "aspect"}) {
+            if (section.has(key)) {
+                section.refuse(
+                    key,
+                    fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
+            }
+        }
+        scene.start = folder / *file;
+        section.record("file", toml_text(*file));
+        return;
+    }
+    if (disks) {
+        options.disks = static_cast<int>(section.integer("disks", 0, 1, 10'000'000));
+        options.diameters = {1.0, 2.0};
+        if (diameters) {
+            if (diameters->size() != 2 || !((*diameters)[0] > 0) || !((*diameters)[1] >= (*diameters)[0])) {
+                section.fail("diameters", "[smallest, largest] with 0 < smallest <= largest");
+            }
+            options.diameters = {(*diameters)[0], (*diameters)[1]};
+        }
+        section.record("diameters", fmt::format("[{}, {}]", toml_text(options.diameters.smallest),
+                                                toml_text(options.diameters.largest)));
+    } else if (radii) {
+        if (radii->empty()) {
+            section.fail("radii", "at least one radius");
+        }
+        for (std::size_t i = 0; i < radii->size(); ++i) {
+            if (!((*radii)[i] > 0)) {
+                section.refuse("radii",
+                               fmt::format("radii[{}] in [packing] is {}: expected a positive radius", i, (*radii)[i]));
+            }
+        }
+        options.radii = *radii;
+        section.record("radii", fmt::format("[{}]", fmt::join(*radii, ", ")));
+    } else {
+        options.radii = read_radii(folder / *radii_file);
+        section.record("radii_file", toml_text(*radii_file));
+    }
+    options.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, largest_seed));
+    options.aspect = section.number("aspect", options.aspect, 0.01, 100, "a number from 0.01 to 100");
+}
+
+void read_preparation(Section& section, Scene& scene) {
+    PreparationOptions& options = scene.preparation;
+    options.loose_fraction =
+        section.number("loose_fraction", options.loose_fraction, 0.05, 0.8, "a solid fraction from 0.05 to 0.8");
+    options.softness = section.number("softness", options.softness, 1e-9, 1e-3, "a number from 1e-9 to 1e-3");
+    options.relaxation = section.number("relaxation", options.relaxation, 1e-12, 1, "a number from 1e-12 to 1");
+    options.max_steps = section.integer("max_steps", options.max_steps, 1, 1'000'000'000);
+    options.infinitesimal_weight = section.number("infinitesimal_weight", options.infinitesimal_weight, 1e-12, 1e-3,
+                                                  "a number from 1e-12 to 1e-3");
+    options.max_programmes = static_cast<int>(section.integer("max_programmes", options.max_programmes, 1, 100'000));
+}
+
+void read_load(Section& section, Scene& scene) {
+    const bool has_file = !scene.start.empty();
+    const auto infinitesimal = section.integer("infinitesimal_seed");
+    const bool kind_given = section.has("kind");
+    const auto sigma1 = section.number("sigma1");
+    if (has_file && sigma1) {
+        section.refuse("sigma1",
+                       "'sigma1' in [load] is of a preparation: a packing read from a file has its own stresses");
+    }
+    if (!has_file && infinitesimal) {
+        section.refuse("infinitesimal_seed",
+                       "'infinitesimal_seed' in [load] is for a packing read from a file: a prepared packing rests on "
+                       "its own infinitesimal loads, made from 'seed' in [packing]");
+    }
+    if (!has_file || kind_given) {
+        scene.load_kind = section.word("kind", 0, {"nominal", "true"}) == 0 ? LoadKind::nominal : LoadKind::true_stress;
+        scene.preparation.load = *scene.load_kind;
+    } else {
+        (void)section.string("kind");
+    }
+    if (!has_file) {
+        if (sigma1 && !(*sigma1 > 0)) {
+            section.fail("sigma1", "a positive stress");
+        }
+        scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
+    }
+    if (infinitesimal) {
+        if (*infinitesimal < 0) {
+            section.fail("infinitesimal_seed", "a seed that is not negative");
+        }
+        scene.infinitesimal_seed = static_cast<std::uint64_t>(*infinitesimal);
+        section.record("infinitesimal_seed", fmt::format("{}", *infinitesimal));
+    }
+}
+
+ProgrammeStep read_step(Section& section) {
+    ProgrammeStep step;
+    step.line = section.line_of("");
+    if (!section.has("do")) {
+        section.refuse("", "a [[programme]] segment has no 'do': expected \"up\", \"down\" or \"to\"");
+    }
+    step.action = static_cast<Action>(section.word("do", 0, {"up", "down", "to"}));
+    if (const auto equilibria = section.integer("equilibria")) {
+        step.equilibria = static_cast<int>(section.integer("equilibria", 0, 1, 1'000'000'000));
+    }
+    if (const auto to = section.number("to")) {
+        step.to = section.number("to", 0, 0, largest_number, "a ratio sigma2/sigma1 that is not negative");
+    }
+    if (const auto from = section.integer("from")) {
+        step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
+    }
+    const auto name = section.string("name");
+    step.name = name.value_or(describe(step));
+    section.record("name", toml_text(step.name));
+    section.finish();
+    return step;
+}
+
+void read_run(Section& section, Scene& scene) {
+    RunOptions& run = scene.run;
+    run.rule =
+        static_cast<OpeningRule>(section.word("rule", 0, {"most_negative", "steepest", "random", "least_negative"}));
+    run.rule_seed =
+        static_cast<std::uint64_t>(section.integer("rule_seed", static_cast<long>(run.rule_seed), 0, largest_seed));
+    run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);
+    run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
+    run.step_fraction = section.number("step_fraction", run.step_fraction, 1e-6, 10, "a number from 1e-6 to 10");
+}
+
+void read_output(Section& section, Scene& scene) {
+    scene.states_every = static_cast<int>(section.integer("states_every", scene.states_every, 0, 1'000'000'000));
+    scene.pictures = section.boolean("pictures", scene.pictures);
+    scene.vtk = section.boolean("vtk", scene.vtk);
+}
+
+const toml::table* table_of(const toml::table& document, const char* name, const std::string& source) {
+    const toml::node* node = document.get(name);
+    if (node != nullptr && !node->is_table()) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: '{}' is not a table: expected [{}]", source,
+                                                      node->source().begin.line, name, name));
+    }
+    return node == nullptr ? nullptr : node->as_table();
+}
+
+void check_sections(const toml::table& document, const std::string& source) {
+    static constexpr std::array<std::string_view, 6> sections{"packing",   "preparation", "load",
+                                                              "programme", "run",         "output"};
+    for (const auto& [key, node] : document) {
+        if (std::find(sections.begin(), sections.end(), key.str()) == sections.end()) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}:{}: unknown section or key '{}': expected one of [{}]", source,
+                                    key.source().begin.line, key.str(), fmt::join(sections, "], [")));
+        }
+    }
+}
+
+} // namespace
+
+Scene parse_scene(const std::string& text, const std::string& source, const std::filesystem::path& folder) {
+    toml::table document;
+    try {
+        document = toml::parse(text, source);
+    } catch (const toml::parse_error& error) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: not valid TOML: {}", source, error.source().begin.line, error.description()));
+    }
+    check_sections(document, source);
+    Scene scene;
+    scene.file = source;
+    scene.text = text;
+    const auto section = [&](const char* name) {
+        return Section(table_of(document, name, source), name, source, scene.settings);
+    };
+    if (table_of(document, "packing", source) == nullptr) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: has no [packing]: expected one with file, disks, radii or radii_file", source));
+    }
+    Section packing = section("packing");
+    read_packing(packing, scene, folder);
+    packing.finish();
+    Section preparation = section("preparation");
+    if (scene.start.empty()) {
+        read_preparation(preparation, scene);
+        preparation.finish();
+    } else if (const toml::node* node = document.get("preparation")) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: [preparation] has no meaning: the packing is read from a file", source,
+                                node->source().begin.line));
+    }
+    Section load = section("load");
+    read_load(load, scene);
+    load.finish();
+    if (const toml::node* node = document.get("programme")) {
+        const toml::array* steps = node->as_array();
+        if (steps == nullptr || !steps->is_homogeneous<toml::table>()) {
+            throw Error(
+                ErrorKind::bad_input,
+                fmt::format("{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment",
+                            source, node->source().begin.line));
+        }
+        for (const toml::node& step : *steps) {
+            Section one(step.as_table(), "[programme]", source, scene.settings);
+            scene.programme.push_back(read_step(one));
+        }
+    }
+    Section run = section("run");
+    read_run(run, scene);
+    run.finish();
+    Section output = section("output");
+    read_output(output, scene);
+    output.finish();
+    check_programme(scene, scene.start.empty() ? std::optional<double>(1.0) : std::nullopt);
+    return scene;
+}
+
+Scene read_scene(const std::filesystem::path& path) {
+    return parse_scene(read_text(path), path.string(), path.parent_path());
+}
+
+} // namespace isostat

@@ -1,0 +1,111 @@
+#include <isostat/scene/scene.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace isostat {
+
+namespace {
+
+class Plan {
+  public:
+    void add(const char* kind, const char* name, bool used, const std::string& reason) {
+        entries_.push_back({kind, name, used, reason});
+    }
+    std::vector<PlanEntry> take() { return std::move(entries_); }
+
+  private:
+    std::vector<PlanEntry> entries_;
+};
+
+void add_stages(Plan& plan, const Scene& scene) {
+    const bool prepares = scene.start.empty();
+    const std::string given = fmt::format("the packing is read from {}", scene.start.string());
+    plan.add("stage", "read the start", !prepares, prepares ? "the packing is prepared from random disks" : given);
+    plan.add("stage", "damped dynamics", prepares, prepares ? "random disks to a relaxed soft packing" : given);
+    plan.add("stage", "sequential linear programmes", prepares,
+             prepares ? "soft packing to a vertex: the contacts are the rows of the basis" : given);
+    plan.add("stage", "Newton on the contacts", prepares, prepares ? "all gaps of the vertex to rounding" : given);
+    plan.add("stage", "trajectory", !scene.programme.empty(),
+             scene.programme.empty() ? "the scene has no [[programme]]"
+                                     : fmt::format("{} segments", scene.programme.size()));
+}
+
+void add_solvers(Plan& plan, const Scene& scene) {
+    const bool prepares = scene.start.empty();
+    const bool runs = !scene.programme.empty();
+    const bool nominal = scene.load_kind.value_or(LoadKind::nominal) == LoadKind::nominal;
+    const bool random = scene.run.rule == OpeningRule::random;
+    plan.add("solver", "regular triangulation (CGAL)", true,
+             "complete contact candidates and the proof that nothing overlaps");
+    plan.add("solver", "elimination mod 2^61 - 1", true,
+             "every contact matrix is proved regular before it is used in double precision");
+    plan.add("solver", "sparse LU (KLU)", true, "forces and mechanisms");
+    plan.add("solver", "double-double", true,
+             "only where the bound of the double precision result does not decide a sign");
+    plan.add("solver", "dual simplex (Clp)", prepares,
+             prepares ? "the linear programmes of the preparation" : "there is no preparation");
+    plan.add("solver", "infinitesimal loads", true,
+             scene.infinitesimal_seed ? "rattlers rest on two contacts each; made from infinitesimal_seed"
+             : prepares               ? "rattlers rest on two contacts each; made from the seed of the packing"
+                                      : "rattlers rest on two contacts each; those of the start file");
+    plan.add("solver", "descent of W", runs && nominal,
+             !runs     ? "no trajectory"
+             : nominal ? "wall forces are constant: W must decrease along every arc, and it is checked"
+                       : "true stresses on a box that changes shape have no potential");
+    plan.add("solver", "random choice of the contact that opens", runs && random,
+             random ? "rule = \"random\"" : "the rule is deterministic: rule_seed is not used");
+    plan.add("solver", "multiprecision (MPFR)", false,
+             "a sign that double-double leaves open ends the run as undecided");
+    plan.add("solver", "fixed disks, external forces on disks", false,
+             "a scene has none; a start file in the state format may");
+}
+
+void add_outputs(Plan& plan, const Scene& scene) {
+    const bool runs = !scene.programme.empty();
+    const std::string none = "no trajectory: `prepare` writes one state";
+    plan.add("output", "run.json, events.jsonl, equilibria.csv, checkpoint.json, summary.json", runs,
+             runs ? "always" : none);
+    const std::vector<int> needed = needed_equilibria(scene);
+    plan.add("output", "states/eq_*.json", runs,
+             !runs ? none
+                   : fmt::format("number 0{}{}{}",
+                                 needed.empty()
+                                     ? ""
+                                     : fmt::format("; those that segments start from: {}", fmt::join(needed, ", ")),
+                                 scene.states_every > 0 ? fmt::format("; every {}", scene.states_every) : "",
+                                 "; the last one as last.json"));
+    plan.add("output", "figures/*.svg, *.png (gnuplot), force pictures", runs && scene.pictures,
+             !runs            ? none
+             : scene.pictures ? "pictures = true"
+                              : "pictures = false; `isostat report` makes them later");
+    plan.add("output", "figures/*.vtk", runs && scene.vtk,
+             !runs       ? none
+             : scene.vtk ? "vtk = true"
+                         : "vtk = false; `isostat report --vtk` makes them later");
+}
+
+} // namespace
+
+std::vector<PlanEntry> make_plan(const Scene& scene) {
+    Plan plan;
+    add_stages(plan, scene);
+    add_solvers(plan, scene);
+    add_outputs(plan, scene);
+    return plan.take();
+}
+
+std::string settings_json(const Scene& scene) {
+    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    for (const Setting& setting : scene.settings) {
+        if (setting.section == "[programme]") {
+            continue; // a list: the scene's text and `programme` have it
+        }
+        // Numbers, lists and booleans are the same in both languages.
+        const auto value = nlohmann::ordered_json::parse(setting.value, nullptr, false);
+        object[setting.section][setting.key] = value.is_discarded() ? nlohmann::ordered_json(setting.value) : value;
+    }
+    return object.dump();
+}
+
+} // namespace isostat

@@ -1,0 +1,167 @@
+#include <isostat/core/error.hpp>
+#include <isostat/scene/scene.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+const char* word(Action action) {
+    switch (action) {
+    case Action::up: return "up";
+    case Action::down: return "down";
+    case Action::to: return "to";
+    }
+    return "to";
+}
+
+/// Ratios at which the run can be, and whether both ends are reached for sure.
+struct Range {
+    double low = 0;
+    double high = infinity;
+};
+
+/// Number of the last equilibrium of a segment, and the ratios of those that it makes. `last` is unknown (none) from
+/// the first segment on that ends at a ratio.
+struct Made {
+    std::optional<int> last;
+    Range ratio;
+};
+
+[[noreturn]] void refuse(const Scene& scene, const ProgrammeStep& step, const std::string& what) {
+    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: segment \"{}\": {}", scene.file, step.line, step.name, what));
+}
+
+std::string range_text(const Range& range) {
+    return range.low == range.high  ? fmt::format("{}", range.low)
+           : range.high == infinity ? fmt::format("at least {}", range.low)
+           : range.low == 0         ? fmt::format("at most {}", range.high)
+                                    : fmt::format("from {} to {}", range.low, range.high);
+}
+
+/// Ratios possible at the start of a segment that names the equilibrium it starts from.
+Range range_at(const Scene& scene, const ProgrammeStep& step, const std::vector<Made>& made) {
+    const int from = *step.from;
+    for (const Made& m : made) {
+        if (!m.last) {
+            return {}; // its number of equilibria is not known: `from` may be of this segment or of a later one
+        }
+        if (from <= *m.last) {
+            return m.ratio;
+        }
+    }
+    refuse(scene, step,
+           fmt::format("starts from equilibrium {}, but the segments before end at number {}: expected one of them",
+                       from, *made.back().last));
+}
+
+/// Ratios possible at its end.
+Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
+    const bool known = start.low == start.high;
+    if (step.action == Action::to) {
+        if (known && *step.to == start.low) {
+            refuse(scene, step, fmt::format("to = {}, where the run already is: there is nothing to do", *step.to));
+        }
+        return {*step.to, *step.to};
+    }
+    const bool up = step.action == Action::up;
+    if (step.to) {
+        const bool behind = up ? *step.to <= start.low : *step.to >= start.high;
+        if (behind) {
+            refuse(scene, step,
+                   fmt::format("{} to a ratio sigma2/sigma1 of {}, but the ratio at its start is {}: expected a {} one",
+                               word(step.action), *step.to, range_text(start), up ? "larger" : "smaller"));
+        }
+        if (!step.equilibria) {
+            return {*step.to, *step.to};
+        }
+    }
+    return up ? Range{start.low, step.to.value_or(infinity)} : Range{step.to.value_or(0), start.high};
+}
+
+} // namespace
+
+std::string describe(const ProgrammeStep& step) {
+    std::string text = word(step.action);
+    if (step.from) {
+        text += fmt::format(" from {}", *step.from);
+    }
+    if (step.equilibria) {
+        text += fmt::format(": {} equilibria", *step.equilibria);
+    }
+    if (step.to) {
+        text += fmt::format("{} sigma2/sigma1 = {}", step.equilibria ? " or to" : ": to", *step.to);
+    }
+    return text;
+}
+
+void check_programme(const Scene& scene, std::optional<double> ratio) {
+    const Range start = ratio ? Range{*ratio, *ratio} : Range{};
+    std::vector<Made> made{{0, start}};
+    Range now = start;
+    for (const ProgrammeStep& step : scene.programme) {
+        if (step.action == Action::to) {
+            if (!step.to) {
+                refuse(scene, step, "do = \"to\" without a ratio: expected to = RATIO");
+            }
+            if (step.equilibria) {
+                refuse(
+                    scene, step,
+                    "do = \"to\" ends at its ratio: expected no 'equilibria' (or do = \"up\" or \"down\" with both)");
+            }
+        } else if (!step.equilibria && !step.to) {
+            refuse(scene, step, "has no end: expected equilibria = NUMBER, to = RATIO or both");
+        }
+        if (step.from) {
+            now = range_at(scene, step, made);
+        }
+        const Range end = after(scene, step, now);
+        Made next;
+        if (made.back().last && step.equilibria && !step.to) {
+            next.last = *made.back().last + *step.equilibria;
+        }
+        next.ratio = {std::min(now.low, end.low), std::max(now.high, end.high)};
+        made.push_back(next);
+        now = end;
+    }
+}
+
+std::vector<int> needed_equilibria(const Scene& scene) {
+    std::set<int> needed;
+    for (const ProgrammeStep& step : scene.programme) {
+        if (step.from) {
+            needed.insert(*step.from);
+        }
+    }
+    return {needed.begin(), needed.end()};
+}
+
+Segment segment_of(const ProgrammeStep& step, double sigma1, double sigma2, const std::string& source) {
+    Segment segment;
+    segment.name = step.name;
+    segment.equilibria = step.equilibria;
+    segment.from = step.from;
+    if (step.to) {
+        segment.to_stress = *step.to * sigma1;
+    }
+    segment.direction = step.action == Action::up     ? +1
+                        : step.action == Action::down ? -1
+                        : *segment.to_stress > sigma2 ? +1
+                                                      : -1;
+    if (step.to && !(segment.direction * (*segment.to_stress - sigma2) > 0)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: segment \"{}\": sigma2/sigma1 is {} at its start: expected a {} ratio than {}",
+                                source, step.line, step.name, sigma2 / sigma1,
+                                segment.direction > 0 ? "larger" : "smaller", *step.to));
+    }
+    return segment;
+}
+
+} // namespace isostat

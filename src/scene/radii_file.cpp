@@ -1,0 +1,28 @@
+#include "scene/radii_file.hpp"
+
+#include "io/rows.hpp"
+
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat {
+
+std::vector<double> read_radii(const std::filesystem::path& path) {
+    const std::string source = path.string();
+    const std::string text = read_text(path);
+    RowReader rows(text, source);
+    std::vector<double> radii;
+    do {
+        const std::string name = fmt::format("radius of disk {}", radii.size());
+        const Row row = rows.next(name, 1);
+        const double radius = row.number(0, name);
+        if (!(radius > 0)) {
+            row.fail(0, name, "a positive number");
+        }
+        radii.push_back(radius);
+    } while (!rows.at_end());
+    return radii;
+}
+
+} // namespace isostat

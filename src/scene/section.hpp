@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// One table of a scene file. A key that is asked for is known; what was never asked for is an error: so the list of
+/// known keys, the defaults and what `plan` prints cannot disagree.
+
+#include <isostat/scene/scene.hpp>
+
+#include <toml++/toml.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+class Section {
+  public:
+    /// `table` may be null: all defaults.
+    Section(const toml::table* table, std::string name, std::string source, std::vector<Setting>& settings)
+        : table_(table), name_(std::move(name)), source_(std::move(source)), settings_(&settings) {}
+
+    /// Throws `Error(bad_input)`: "FILE:LINE: KEY is VALUE: expected WHAT".
+    [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
+    /// The same without a value: "FILE:LINE: WHAT", at the key's line (or the table's when the key is absent).
+    [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
+
+    [[nodiscard]] bool has(const std::string& key) const { return table_ != nullptr && table_->contains(key); }
+    [[nodiscard]] int line_of(const std::string& key) const;
+
+    /// Each `get` returns the value or nothing when the key is absent, and throws for another type or a value that is
+    /// not finite.
+    std::optional<double> number(const std::string& key);
+    std::optional<long> integer(const std::string& key);
+    std::optional<bool> boolean(const std::string& key);
+    std::optional<std::string> string(const std::string& key);
+    std::optional<std::vector<double>> numbers(const std::string& key);
+
+    /// With defaults; these are recorded as settings.
+    double number(const std::string& key, double fallback, double lowest, double highest, const std::string& expected);
+    long integer(const std::string& key, long fallback, long lowest, long highest);
+    bool boolean(const std::string& key, bool fallback);
+    /// Index of the word in `words`.
+    std::size_t word(const std::string& key, std::size_t fallback, const std::vector<std::string>& words);
+
+    /// Records a setting that the caller read itself.
+    void record(const std::string& key, const std::string& value);
+    /// Throws for the first key that nobody asked for.
+    void finish() const;
+
+  private:
+    const toml::node* find(const std::string& key);
+    const toml::table* table_;
+    std::string name_, source_;
+    std::vector<Setting>* settings_;
+    std::vector<std::string> known_;
+};
+
+/// A value as TOML text.
+std::string toml_text(double value);
+std::string toml_text(const std::string& value);
+
+} // namespace isostat

@@ -1,0 +1,226 @@
+// The linear programmes and the proofs at their end, from starts that are known.
+
+#include "../../src/preparation/neighbours.hpp"
+#include "../../src/preparation/polish.hpp"
+#include "../../src/preparation/programme.hpp"
+#include "check.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <map>
+#include <random>
+
+namespace {
+
+using namespace isostat;
+namespace room = isostat::preparation; // the suite has the same name
+
+class Noise {
+  public:
+    explicit Noise(unsigned long long seed) : engine_(seed) {}
+    double operator()() { return 2 * (static_cast<double>(engine_() >> 11U) * 0x1p-53) - 1; } // in [-1, 1)
+  private:
+    std::mt19937_64 engine_;
+};
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    Result<State<2>> result = prepare<2>(options, report);
+    BOOST_REQUIRE(result.ok());
+    return result.value();
+}
+
+/// Disks on a square lattice with noise: no overlap, no contact.
+Packing<2> loose_lattice(int side, unsigned long long seed) {
+    Noise noise(seed);
+    Packing<2> packing;
+    for (int k = 0; k < side * side; ++k) {
+        packing.radius.push_back(0.75 + 0.2 * noise());
+        packing.q.push_back(2.2 * (k % side) + 1.1 + 0.1 * noise());
+        packing.q.push_back(2.2 * (k / side) + 1.1 + 0.1 * noise());
+    }
+    packing.q.push_back(2.2 * side);
+    packing.q.push_back(2.2 * side);
+    return packing;
+}
+
+double smallest_gap(const Packing<2>& packing) {
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Contact& pair : check::all_pairs(packing)) {
+        smallest = std::min(smallest, gap(packing, pair));
+    }
+    return smallest;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(preparation)
+
+BOOST_AUTO_TEST_CASE(the_pair_list_is_the_one_of_brute_force) {
+    Noise noise(11);
+    for (const double ratio : {1.0, 3.0, 40.0}) {
+        for (const double reach : {0.0, 0.3, 5.0}) {
+            for (const int n : {1, 2, 7, 150}) {
+                std::vector<double> x;
+                std::vector<double> radius;
+                for (int i = 0; i < n; ++i) {
+                    x.push_back(1e3 + 12 * noise());
+                    x.push_back(n == 7 ? 0.0 : 6 * noise()); // seven disks in a row: no extent along y
+                    radius.push_back(0.5 * std::pow(ratio, noise()));
+                }
+                room::PairList pairs;
+                room::find_pairs<2>(x, radius, reach, pairs);
+                std::vector<std::pair<int, int>> found;
+                std::vector<std::pair<int, int>> expected;
+                for (std::size_t i = 0; i < radius.size(); ++i) {
+                    for (int k = pairs.start[i]; k < pairs.start[i + 1]; ++k) {
+                        found.emplace_back(static_cast<int>(i), pairs.partner[static_cast<std::size_t>(k)]);
+                    }
+                    for (std::size_t j = i + 1; j < radius.size(); ++j) {
+                        const double range = radius[i] + radius[j] + reach;
+                        if (std::pow(x[2 * j] - x[2 * i], 2) + std::pow(x[2 * j + 1] - x[2 * i + 1], 2) <
+                            range * range) {
+                            expected.emplace_back(static_cast<int>(i), static_cast<int>(j));
+                        }
+                    }
+                }
+                BOOST_TEST((found == expected));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
+    for (unsigned long long seed = 1; seed <= 10; ++seed) {
+        Packing<2> packing = loose_lattice(7, seed);
+        const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
+        room::ContactProgramme<2> programme(g, 0.3, nullptr);
+        for (int k = 0; k < 6; ++k) {
+            const double area = packing.length(0) * packing.length(1);
+            const room::ProgrammeStep step = programme.solve(packing, 1e-7);
+            BOOST_REQUIRE((step.outcome == room::ProgrammeStep::Outcome::optimal));
+            for (std::size_t c = 0; c < packing.q.size(); ++c) {
+                packing.q[c] += step.displacement[c];
+            }
+            BOOST_TEST(smallest_gap(packing) > -1e-8); // the programme's own feasibility tolerance is 1e-9
+            BOOST_TEST(packing.length(0) * packing.length(1) < area);
+            BOOST_TEST(step.contacts.size() + static_cast<std::size_t>(step.bounds) == packing.q.size());
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
+    const State<2> vertex = prepared(100, 2);
+    const auto before = inspect_vertex(vertex);
+    for (const double amplitude : {0.0, 1e-9, 1e-6, 1e-4}) {
+        BOOST_TEST_CONTEXT("amplitude " << amplitude) {
+            Noise noise(5);
+            Packing<2> shaken = vertex.packing;
+            for (double& x : shaken.q) {
+                x = x * (1 + amplitude) + amplitude * noise();
+            }
+            PreparationOptions options;
+            options.seed = 2; // the same infinitesimal loads
+            PreparationReport<2> report;
+            const auto found = find_vertex<2>(shaken, options, report);
+            BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+            check::is_proved_vertex(found.value(), 1);
+            const auto after = inspect_vertex(found.value());
+            for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
+                if (before.value().structural_zero[l] == 0) { // a rattler may have another place to rest
+                    BOOST_TEST(std::binary_search(found.value().contacts.begin(), found.value().contacts.end(),
+                                                  vertex.contacts[l]));
+                }
+            }
+            BOOST_TEST(found.value().packing.length(0) == vertex.packing.length(0),
+                       boost::test_tools::tolerance(1e-14));
+            BOOST_TEST(found.value().packing.length(1) == vertex.packing.length(1),
+                       boost::test_tools::tolerance(1e-14));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_loose_start_without_dynamics_ends_at_a_vertex_too) {
+    for (unsigned long long seed = 1; seed <= 4; ++seed) {
+        PreparationReport<2> report;
+        const auto found = find_vertex<2>(loose_lattice(5, seed), PreparationOptions{}, report);
+        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+        check::is_proved_vertex(found.value(), 1);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(large_overlaps_of_the_start_are_parted) {
+    Packing<2> start = loose_lattice(5, 3);
+    for (double& x : start.q) {
+        x *= 0.6;
+    }
+    BOOST_REQUIRE(smallest_gap(start) < -0.3);
+    PreparationReport<2> report;
+    const auto found = find_vertex<2>(start, PreparationOptions{}, report);
+    BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+    check::is_proved_vertex(found.value(), 1);
+}
+
+// One contact exchanged for a near miss: Newton closes it, and the proofs must see that something else is wrong then.
+BOOST_AUTO_TEST_CASE(a_wrong_contact_list_is_refused) {
+    const State<2> vertex = prepared(20, 6);
+    std::map<FailureKind, int> refused;
+    for (const Contact& near : find_candidates(vertex.packing, 0.3).contacts) {
+        if (std::binary_search(vertex.contacts.begin(), vertex.contacts.end(), near)) {
+            continue;
+        }
+        for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
+            std::vector<Contact> contacts = vertex.contacts;
+            contacts[l] = near;
+            long iterations = 0;
+            const auto polished = room::polish(vertex.packing, contacts, vertex.load, iterations);
+            if (polished.ok()) {
+                check::is_proved_vertex(polished.value().state, 1);
+            } else {
+                ++refused[polished.failure().kind];
+            }
+        }
+    }
+    BOOST_TEST(refused[FailureKind::not_isostatic] > 0);
+    BOOST_TEST(refused[FailureKind::not_converged] > 20); // a force is not compressive
+    BOOST_TEST(refused[FailureKind::overlap] > 0);
+    long iterations = 0;
+    BOOST_TEST(room::polish(vertex.packing, vertex.contacts, vertex.load, iterations).ok());
+    std::vector<Contact> few(vertex.contacts.begin(), vertex.contacts.end() - 1);
+    const auto short_list = room::polish(vertex.packing, few, vertex.load, iterations);
+    BOOST_REQUIRE(!short_list.ok());
+    BOOST_TEST((short_list.failure().kind == FailureKind::not_isostatic));
+}
+
+BOOST_AUTO_TEST_CASE(a_cap_on_programmes_is_a_failure_that_keeps_the_configuration) {
+    PreparationOptions options;
+    options.max_programmes = 1;
+    PreparationReport<2> report;
+    const auto found = find_vertex<2>(loose_lattice(4, 1), options, report);
+    BOOST_REQUIRE(!found.ok());
+    BOOST_TEST((found.failure().kind == FailureKind::not_converged));
+    BOOST_REQUIRE(report.last.has_value());
+    BOOST_TEST(smallest_gap(*report.last) > -1e-8);
+}
+
+BOOST_AUTO_TEST_CASE(other_walls_and_fixed_disks_are_bad_input) {
+    PreparationReport<2> report;
+    Packing<2> start = loose_lattice(3, 1);
+    start.fixed.assign(9, 0);
+    start.fixed[4] = 1;
+    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    start = loose_lattice(3, 1);
+    start.walls.upper[0] = WallKind::fixed;
+    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    start = loose_lattice(3, 1);
+    start.q[7] = std::numeric_limits<double>::quiet_NaN();
+    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+    start = loose_lattice(3, 1);
+    start.q.back() = -1;
+    BOOST_CHECK_THROW(find_vertex<2>(start, PreparationOptions{}, report), Error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

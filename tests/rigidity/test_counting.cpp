@@ -1,0 +1,258 @@
+// Counting, the gate, and the identities of statics on crafted packings.
+#include "support/crafted.hpp"
+
+#include <isostat/exact/independent_columns.hpp>
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/rigidity/counting.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <gmpxx.h>
+
+#include <random>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+/// Determinant over the rationals.
+mpq_class determinant(std::vector<std::vector<mpq_class>> a) {
+    mpq_class value = 1;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        std::size_t pivot = k;
+        while (pivot < a.size() && a[pivot][k] == 0) {
+            ++pivot;
+        }
+        if (pivot == a.size()) {
+            return 0;
+        }
+        if (pivot != k) {
+            std::swap(a[pivot], a[k]);
+            value = -value;
+        }
+        value *= a[k][k];
+        for (std::size_t i = k + 1; i < a.size(); ++i) {
+            const mpq_class factor = a[i][k] / a[k][k];
+            for (std::size_t j = k; j < a.size(); ++j) {
+                a[i][j] -= factor * a[k][j];
+            }
+        }
+    }
+    return value;
+}
+
+/// A pile in the corner of the box: every disk on two earlier contacts (bottom and left wall, or two earlier disks).
+State<2> pile(int disks, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    State<2> state;
+    state.packing.walls.upper = {WallKind::absent, WallKind::absent};
+    for (int i = 0; i < disks; ++i) {
+        const double r = 1 + 0.3 * static_cast<double>(random() % 1000) / 1000;
+        state.packing.radius.push_back(r);
+        double x = r;
+        double y = r;
+        if (i == 0) {
+            state.contacts.insert(state.contacts.end(), {left(0), bottom(0)});
+        } else if (i % 3 != 0) { // along the bottom, against the previous base disk
+            const int base = i - (i % 3 == 1 ? (i == 1 ? 1 : 2) : 1);
+            const auto b = static_cast<std::size_t>(base);
+            x = state.packing.q[2 * b] + 2 * std::sqrt(r * state.packing.radius[b]);
+            state.contacts.insert(state.contacts.end(), {pair(base, i), bottom(i)});
+        } else { // on the two previous disks
+            const auto a = static_cast<std::size_t>(i - 2);
+            const auto b = static_cast<std::size_t>(i - 1);
+            const double d0 = r + state.packing.radius[a];
+            const double d1 = r + state.packing.radius[b];
+            const double ux = state.packing.q[2 * b] - state.packing.q[2 * a];
+            const double uy = state.packing.q[2 * b + 1] - state.packing.q[2 * a + 1];
+            const double d = std::hypot(ux, uy);
+            const double along = (d0 * d0 - d1 * d1 + d * d) / (2 * d);
+            const double across = std::sqrt(d0 * d0 - along * along);
+            x = state.packing.q[2 * a] + (along * ux - across * uy) / d;
+            y = state.packing.q[2 * a + 1] + (along * uy + across * ux) / d;
+            state.contacts.insert(state.contacts.end(), {pair(i - 2, i), pair(i - 1, i)});
+        }
+        state.packing.q.insert(state.packing.q.end(), {x, y});
+        state.load.disk_force.insert(state.load.disk_force.end(), {0, -r * r});
+    }
+    state.packing.q.insert(state.packing.q.end(), {0, 0});
+    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 1);
+    snap_to_grid(state.packing);
+    return state;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(rigidity)
+
+BOOST_AUTO_TEST_CASE(square_lattices_have_the_hyperstaticity_of_the_closed_form) {
+    for (const int m : {2, 3, 5, 8}) {
+        const State<2> state = square_lattice(m);
+        const Counting counting = count_contacts(state.packing, state.contacts);
+        BOOST_TEST(counting.dof_count == 2 * m * m + 2);
+        BOOST_TEST(counting.contact_count == 2 * m * m + 2 * m);
+        BOOST_TEST(counting.hyperstaticity == 2 * m - 2);
+        BOOST_TEST(counting.mechanisms == 0);
+        BOOST_TEST((counting.rank_exact == Verdict::proved));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(triangular_patches_have_the_counts_of_the_closed_form) {
+    const std::vector<std::array<int, 5>> cases{{2, 3, 14, 17, 3}, {3, 3, 20, 25, 5}};
+    for (const auto& [rows, columns, dofs, contacts, h] : cases) {
+        const State<2> state = triangular_patch(rows, columns);
+        const Counting counting = count_contacts(state.packing, state.contacts);
+        BOOST_TEST(counting.dof_count == dofs);
+        BOOST_TEST(counting.contact_count == contacts);
+        BOOST_TEST(counting.hyperstaticity == h);
+        BOOST_TEST(counting.mechanisms == 0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_contact_taken_away_is_a_mechanism_and_its_release_is_found) {
+    State<2> state = two_disks(1, 2, 1, 1);
+    state.contacts.pop_back();
+    const Counting counting = count_contacts(state.packing, state.contacts);
+    BOOST_TEST(counting.mechanisms == 1);
+    BOOST_TEST(counting.hyperstaticity == 0);
+    BOOST_TEST_REQUIRE(counting.free_dofs.size() == 1U);
+    state.contacts.push_back(
+        {ContactKind::held, DofMap<2>(state.packing).coordinate_of(counting.free_dofs.front()), 0});
+    BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
+}
+
+BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices) {
+    State<2> state = two_disks(1, 2, 1, 1);
+    BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
+    State<2> twice = state;
+    twice.contacts[0] = twice.contacts[1]; // the same contact twice: two equal columns
+    BOOST_TEST(!IsostaticStructure<2>::prove(twice.packing, twice.contacts).ok());
+    State<2> fewer = state;
+    fewer.contacts.pop_back();
+    const auto refused = IsostaticStructure<2>::prove(fewer.packing, fewer.contacts);
+    BOOST_TEST_REQUIRE(!refused.ok());
+    BOOST_TEST(refused.failure().message.find("N_f = 6") != std::string::npos, refused.failure().message);
+    // Six contacts, but the right and the left wall would have to carry different forces: disk 0 touches neither disk 1
+    // nor the top.
+    State<2> special = one_disk(1, 1);
+    special.contacts = {left(0), right(0), left(0), top(0)};
+    BOOST_TEST(!IsostaticStructure<2>::prove(special.packing, special.contacts).ok());
+}
+
+BOOST_AUTO_TEST_CASE(the_rounded_and_the_exact_matrix_have_the_same_pattern) {
+    const State<2> state = triangular_patch(3, 4);
+    const DofMap<2> dofs(state.packing);
+    const auto rounded = contact_matrix(state.packing, dofs, state.contacts);
+    const auto exact = exact_contact_matrix(state.packing, dofs, state.contacts);
+    BOOST_TEST((rounded.start == exact.start));
+    BOOST_TEST((rounded.row == exact.row));
+}
+
+BOOST_AUTO_TEST_CASE(forces_and_displacements_are_reciprocal) {
+    const State<2> state = three_disks(1, 1.1, 1.3, 1, 1);
+    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    const Factorisation factorisation(proved.value());
+    const auto n = static_cast<std::size_t>(proved.value().size());
+    for (std::size_t l = 0; l < n; ++l) {
+        for (std::size_t mu = 0; mu < n; ++mu) {
+            std::vector<double> force(n, 0.0);
+            std::vector<double> velocity(n, 0.0);
+            force[mu] = 1;
+            velocity[l] = 1;
+            factorisation.solve_forces(force);
+            factorisation.solve_velocities(velocity);
+            BOOST_TEST(force[l] == velocity[mu], boost::test_tools::tolerance(1e-12));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_linearised_step_never_overestimates_a_gap) {
+    std::mt19937_64 random(11);
+    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+    for (int k = 0; k < 2000; ++k) {
+        Packing<2> packing;
+        packing.radius = {1, 1.5};
+        packing.q = {uniform(), uniform(), 3 + uniform(), 3 + uniform(), 9, 9};
+        const Contact contact = pair(0, 1);
+        const GapGradient<2> g = gap_gradient(packing, contact);
+        const double before = gap(packing, contact);
+        double linear = before;
+        Packing<2> moved = packing;
+        for (int e = 0; e < g.count; ++e) {
+            const double u = 0.5 * uniform();
+            moved.q[static_cast<std::size_t>(g.coordinate[static_cast<std::size_t>(e)])] += u;
+            linear += g.value[static_cast<std::size_t>(e)] * u;
+        }
+        BOOST_TEST(gap(moved, contact) >= linear - 1e-14);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(bead_by_bead_piles_are_isostatic_and_balance_by_back_substitution) {
+    for (const int disks : {1, 3, 6, 30}) {
+        const State<2> state = pile(disks, 3);
+        const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        BOOST_TEST_REQUIRE(proved.ok());
+        BOOST_TEST(proved.value().size() == 2 * disks);
+        // Blocks of at most 2 x 2: the matrix is block triangular, disk by disk.
+        const std::vector<int>& blocks = proved.value().ordering().block_start();
+        for (std::size_t b = 0; b + 1 < blocks.size(); ++b) {
+            BOOST_TEST(blocks[b + 1] - blocks[b] <= 2);
+        }
+        const auto inspection = inspect_vertex(state);
+        BOOST_TEST_REQUIRE(inspection.ok());
+        double bottom_force = 0;
+        double weight = 0;
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            if (state.contacts[l].kind == ContactKind::lower_wall && state.contacts[l].j == 1) {
+                bottom_force += inspection.value().forces[l];
+            }
+        }
+        for (int i = 0; i < disks; ++i) {
+            weight -= state.load.disk_force[2 * static_cast<std::size_t>(i) + 1];
+        }
+        BOOST_TEST(bottom_force == weight, boost::test_tools::tolerance(1e-10));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(exchanging_a_row_multiplies_the_determinant_by_the_closing_speed) {
+    // det G' = det G (g . v) with G v = e_l0, over the rationals and without any rounding.
+    std::mt19937_64 random(5);
+    const auto entry = [&] {
+        return mpq_class(static_cast<long>(random() % 41) - 20, static_cast<unsigned long>(random() % 7 + 1));
+    };
+    for (int k = 0; k < 200; ++k) {
+        const std::size_t n = 2 + random() % 6;
+        std::vector<std::vector<mpq_class>> g(n, std::vector<mpq_class>(n));
+        std::vector<mpq_class> row(n);
+        for (auto& r : g) {
+            for (auto& c : r) {
+                c = entry();
+                c.canonicalize();
+            }
+        }
+        for (auto& c : row) {
+            c = entry();
+            c.canonicalize();
+        }
+        const mpq_class det = determinant(g);
+        if (det == 0) {
+            continue;
+        }
+        const std::size_t l0 = random() % n;
+        // v by Cramer's rule.
+        mpq_class speed = 0;
+        for (std::size_t mu = 0; mu < n; ++mu) {
+            auto replaced = g;
+            for (std::size_t l = 0; l < n; ++l) {
+                replaced[l][mu] = l == l0 ? 1 : 0;
+            }
+            speed += row[mu] * determinant(replaced) / det;
+        }
+        auto exchanged = g;
+        exchanged[l0] = row;
+        BOOST_TEST((determinant(exchanged) == det * speed));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

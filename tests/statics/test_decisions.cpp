@@ -1,0 +1,210 @@
+// Decisions of the statics: classes, ties, rules, and the ladder of precision.
+#include "support/crafted.hpp"
+
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/statics/decisions.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <set>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+/// A structure with its statics; the parts refer to each other, so it stays where it is made.
+struct Loaded {
+    State<2> state;
+    IsostaticStructure<2> structure;
+    Factorisation factorisation;
+    InverseBoundCache cache;
+    InverseBound inverse;
+    Statics<2> statics;
+
+    explicit Loaded(State<2> s)
+        : state(std::move(s)), structure(proved(state)), factorisation(structure),
+          inverse(bound_inverse(structure, factorisation, cache)),
+          statics(state.packing, state.load, structure, factorisation, inverse) {}
+    static IsostaticStructure<2> proved(const State<2>& s) {
+        auto result = IsostaticStructure<2>::prove(s.packing, s.contacts);
+        BOOST_TEST_REQUIRE(result.ok());
+        return std::move(result.value());
+    }
+    [[nodiscard]] Contact contact(ContactId l) const { return state.contacts[l.index()]; }
+    [[nodiscard]] double sigma() const { return state.load.stress[1]; }
+};
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto result = prepare<2>(options, report);
+    BOOST_TEST_REQUIRE(result.ok());
+    return result.value();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(statics)
+
+BOOST_AUTO_TEST_CASE(forces_that_share_one_support_vanish_as_a_structural_class) {
+    Loaded loaded(three_disks(1, 1, 1.5, 1, 1));
+    const auto limit = find_limit(loaded.statics, loaded.sigma(), -1);
+    BOOST_TEST_REQUIRE(limit.ok());
+    // Without F2 the top disk carries nothing: its three contacts and the two bottoms reach zero together.
+    std::set<Contact> members;
+    for (const ContactId l : limit.value().tie_class) {
+        members.insert(loaded.contact(l));
+    }
+    BOOST_TEST((members == std::set<Contact>{top(2), pair(0, 2), pair(1, 2), bottom(0), bottom(1)}));
+    BOOST_TEST(std::abs(limit.value().stress) <= limit.value().stress_error + 1e-15);
+    // The member with the smallest f1 / |slope|.
+    for (const ContactId l : limit.value().tie_class) {
+        const auto key = [&](ContactId c) {
+            return loaded.statics.infinitesimal(c).value / std::abs(loaded.statics.slope(c).value);
+        };
+        BOOST_TEST(key(limit.value().opens) <= key(l));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(classes_of_prepared_packings_vanish_together_and_nothing_else_does) {
+    int classes = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        Loaded loaded(prepared(50, seed));
+        for (const int direction : {+1, -1}) {
+            const auto limit = find_limit(loaded.statics, loaded.sigma(), direction);
+            BOOST_TEST_REQUIRE(limit.ok());
+            std::set<int> members;
+            for (const ContactId l : limit.value().tie_class) {
+                members.insert(l.value());
+            }
+            classes += members.size() > 1 ? 1 : 0;
+            for (std::size_t l = 0; l < loaded.state.contacts.size(); ++l) {
+                const ContactId id(l);
+                if (loaded.statics.is_structural_zero(id)) {
+                    continue;
+                }
+                const Enclosure f = loaded.statics.force(id, limit.value().stress);
+                if (members.count(id.value()) != 0) {
+                    BOOST_TEST(std::abs(f.value) <= f.radius + limit.value().stress_error *
+                                                                   (std::abs(loaded.statics.slope(id).value) * 1.001 +
+                                                                    loaded.statics.slope(id).radius));
+                } else {
+                    BOOST_TEST(f.positive());
+                }
+            }
+        }
+    }
+    BOOST_TEST(classes > 0);
+}
+
+BOOST_AUTO_TEST_CASE(two_equal_tractions_are_a_tie_and_unequal_ones_are_ordered) {
+    // A small disk pulled out of the notch between two equal ones: equal tractions in its two lower contacts, larger
+    // than in the upper one.
+    Loaded equal(three_disks(1, 1, 0.1, 1, -1));
+    const auto tie = decide_opening(equal.statics, equal.sigma(), OpeningRule::most_negative, ContactId(), 0);
+    BOOST_TEST_REQUIRE(!tie.ok());
+    BOOST_TEST((tie.failure().kind == FailureKind::tie), tie.failure().message);
+    BOOST_TEST((tie.failure().message.find("0-2") != std::string::npos &&
+                tie.failure().message.find("1-2") != std::string::npos),
+               tie.failure().message);
+    BOOST_TEST((equal.statics.rung() == Rung::double_double)); // not given up before the second rung
+    for (const double delta : {1e-1, 1e-3, 1e-6, 1e-9, 1e-12}) {
+        Loaded larger_right(three_disks(1, 1 + delta, 0.1, 1, -1));
+        Loaded larger_left(three_disks(1 + delta, 1, 0.1, 1, -1));
+        const auto right = decide_opening(larger_right.statics, -1, OpeningRule::most_negative, ContactId(), 0);
+        const auto left = decide_opening(larger_left.statics, -1, OpeningRule::most_negative, ContactId(), 0);
+        BOOST_TEST_REQUIRE((right.ok() && left.ok()));
+        // Mirror images open mirrored contacts.
+        const Contact a = larger_right.contact(right.value().opening->contact);
+        const Contact b = larger_left.contact(left.value().opening->contact);
+        BOOST_TEST(((a == pair(0, 2) && b == pair(1, 2)) || (a == pair(1, 2) && b == pair(0, 2))), "delta " << delta);
+        BOOST_TEST(right.value().margin > 1);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
+    // Pull everything: several tractions.
+    State<2> state = prepared(30, 3);
+    state.load.stress = {1, 4};
+    Loaded loaded(state);
+    const auto choose = [&](OpeningRule rule, std::uint64_t bits) {
+        const auto decision = decide_opening(loaded.statics, 4, rule, ContactId(), bits);
+        BOOST_TEST_REQUIRE(decision.ok());
+        BOOST_TEST_REQUIRE(decision.value().opening.has_value());
+        return decision.value().opening->contact;
+    };
+    std::vector<ContactId> negative;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        if (loaded.statics.force(ContactId(l), 4).negative()) {
+            negative.push_back(ContactId(l));
+        }
+    }
+    BOOST_TEST_REQUIRE(negative.size() > 2U);
+    const auto value = [&](ContactId l) { return loaded.statics.force(l, 4).value; };
+    const ContactId most = choose(OpeningRule::most_negative, 0);
+    const ContactId least = choose(OpeningRule::least_negative, 0);
+    const ContactId steepest = choose(OpeningRule::steepest, 0);
+    const auto speed = [&](ContactId l) {
+        std::vector<double> v(state.contacts.size(), 0.0);
+        v[l.index()] = 1;
+        loaded.factorisation.solve_velocities(v);
+        double sum = 0;
+        for (const double c : v) {
+            sum += c * c;
+        }
+        return std::sqrt(sum);
+    };
+    std::set<int> drawn;
+    for (const ContactId l : negative) {
+        BOOST_TEST(value(most) <= value(l));
+        BOOST_TEST(value(least) >= value(l));
+        BOOST_TEST(value(steepest) / speed(steepest) <= value(l) / speed(l) * (1 - 1e-9));
+    }
+    for (std::uint64_t bits = 0; bits < 3 * negative.size(); ++bits) {
+        const ContactId l = choose(OpeningRule::random, bits);
+        BOOST_TEST(value(l) < 0);
+        drawn.insert(l.value());
+    }
+    BOOST_TEST(drawn.size() == negative.size());
+}
+
+BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undecided) {
+    // Disk 1 lies in the corner between bottom and right wall without touching anything else.
+    State<2> state =
+        in_box({{2, 2, 2}, {0.5, 3.5, 0.5}}, 4, 4, 1, 1, {left(0), right(0), bottom(0), top(0), right(1), bottom(1)});
+    state.load.infinitesimal = {0.1, -1, 0.1, -1}; // into the corner
+    Loaded resting(state);
+    BOOST_TEST(resting.statics.is_structural_zero(ContactId(4)));
+    BOOST_TEST(resting.statics.is_structural_zero(ContactId(5)));
+    const auto rests = decide_opening(resting.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+    BOOST_TEST_REQUIRE(rests.ok());
+    BOOST_TEST(!rests.value().opening.has_value());
+    state.load.infinitesimal[2] = -0.1; // away from the right wall
+    Loaded leaving(state);
+    const auto leaves = decide_opening(leaving.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+    BOOST_TEST_REQUIRE((leaves.ok() && leaves.value().opening.has_value()));
+    BOOST_TEST((leaving.contact(leaves.value().opening->contact) == right(1)));
+    BOOST_TEST(leaves.value().opening->infinitesimal);
+    state.load.infinitesimal.clear();
+    Loaded unloaded(state);
+    const auto open = decide_opening(unloaded.statics, 1, OpeningRule::most_negative, ContactId(), 0);
+    BOOST_TEST_REQUIRE(!open.ok());
+    BOOST_TEST((open.failure().kind == FailureKind::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(a_load_that_no_force_limits_is_unbounded_and_says_so) {
+    Loaded loaded(one_disk(1, 1));
+    const auto up = find_limit(loaded.statics, 1, +1);
+    BOOST_TEST_REQUIRE(up.ok());
+    BOOST_TEST(up.value().unbounded);
+    const auto down = find_limit(loaded.statics, 1, -1);
+    BOOST_TEST_REQUIRE(down.ok());
+    BOOST_TEST(!down.value().unbounded);
+    BOOST_TEST(down.value().stress == 0.0);
+    BOOST_TEST(down.value().tie_class.size() == 2U);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

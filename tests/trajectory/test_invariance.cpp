@@ -1,0 +1,302 @@
+// The sequence of events is a property of the packing: not of the predictor, the labels, the side from which one looks,
+// or the unit.
+#include "support/crafted.hpp"
+
+#include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <numeric>
+#include <random>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto result = prepare<2>(options, report);
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message));
+    return result.value();
+}
+
+/// A contact as seen after a change of labels and sides.
+template <class Map> std::vector<std::pair<Contact, Contact>> events(const Recorder& records, Map map) {
+    std::vector<std::pair<Contact, Contact>> list;
+    for (const auto& arc : records.arcs) {
+        list.emplace_back(map(arc.opened), map(arc.closed));
+    }
+    return list;
+}
+Contact same(const Contact& contact) {
+    return contact;
+}
+
+void check_same_sequence(const Played& a, const Played& b, const std::vector<std::pair<Contact, Contact>>& events_b) {
+    const auto events_a = events(a.records, same);
+    BOOST_TEST_REQUIRE(events_a.size() == events_b.size());
+    for (std::size_t k = 0; k < events_a.size(); ++k) {
+        BOOST_TEST((events_a[k] == events_b[k]), "arc " << k + 1 << ": " << to_string<2>(events_a[k].first) << " -> "
+                                                        << to_string<2>(events_a[k].second) << " against "
+                                                        << to_string<2>(events_b[k].first) << " -> "
+                                                        << to_string<2>(events_b[k].second));
+    }
+    for (std::size_t k = 0; k < a.records.equilibria.size(); ++k) {
+        BOOST_TEST(a.records.equilibria[k].stress == b.records.equilibria[k].stress,
+                   boost::test_tools::tolerance(1e-8));
+    }
+}
+
+constexpr int equilibria = 12;
+
+struct Base {
+    State<2> start = prepared(60, 5);
+    Played played = play(start, +1, equilibria);
+    Base() { BOOST_REQUIRE_MESSAGE(played.outcome.completed, played.why()); }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_predictor_step, Base) {
+    BOOST_TEST(played.records.arcs.size() > 20);
+    for (const double fraction : {0.4, 0.01}) {
+        RunOptions options;
+        options.step_fraction = fraction;
+        const Played other = play(start, +1, equilibria, {}, options);
+        check_same_sequence(played, other, events(other.records, same));
+    }
+}
+
+BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_labels, Base) {
+    const int n = start.packing.disk_count();
+    std::vector<int> label(static_cast<std::size_t>(n)); // new label -> old label
+    std::iota(label.begin(), label.end(), 0);
+    std::mt19937 random(3);
+    for (std::size_t k = label.size(); k > 1; --k) {
+        std::swap(label[k - 1], label[random() % k]);
+    }
+    std::vector<int> inverse(label.size());
+    State<2> shuffled = start;
+    for (std::size_t k = 0; k < label.size(); ++k) {
+        const auto old = static_cast<std::size_t>(label[k]);
+        inverse[old] = static_cast<int>(k);
+        shuffled.packing.radius[k] = start.packing.radius[old];
+        for (std::size_t a = 0; a < 2; ++a) {
+            shuffled.packing.q[2 * k + a] = start.packing.q[2 * old + a];
+            shuffled.load.infinitesimal[2 * k + a] = start.load.infinitesimal[2 * old + a];
+        }
+    }
+    const auto relabel = [](const Contact& c, const std::vector<int>& to) {
+        return c.kind == ContactKind::disk_disk
+                   ? pair(to[static_cast<std::size_t>(c.i)], to[static_cast<std::size_t>(c.j)])
+               : c.kind == ContactKind::held ? Contact{c.kind, 2 * to[static_cast<std::size_t>(c.i / 2)] + c.i % 2, 0}
+                                             : Contact{c.kind, to[static_cast<std::size_t>(c.i)], c.j};
+    };
+    for (Contact& c : shuffled.contacts) {
+        c = relabel(c, inverse);
+    }
+    std::reverse(shuffled.contacts.begin(), shuffled.contacts.end());
+    const Played other = play(shuffled, +1, equilibria);
+    check_same_sequence(played, other, events(other.records, [&](const Contact& c) { return relabel(c, label); }));
+}
+
+BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_mirroring_the_box, Base) {
+    State<2> mirrored = start;
+    const int n = start.packing.disk_count();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
+        mirrored.packing.q[2 * i] = start.packing.length(0) - start.packing.q[2 * i];
+        mirrored.load.infinitesimal[2 * i] = -start.load.infinitesimal[2 * i];
+    }
+    const auto mirror = [](const Contact& c) {
+        if (c.kind == ContactKind::lower_wall && c.j == 0) {
+            return Contact{ContactKind::upper_wall, c.i, 0};
+        }
+        if (c.kind == ContactKind::upper_wall && c.j == 0) {
+            return Contact{ContactKind::lower_wall, c.i, 0};
+        }
+        return c;
+    };
+    for (Contact& c : mirrored.contacts) {
+        c = mirror(c);
+    }
+    const Played other = play(mirrored, +1, equilibria);
+    check_same_sequence(played, other, events(other.records, mirror));
+}
+
+BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_exchanging_the_axes, Base) {
+    State<2> turned = start;
+    for (std::size_t k = 0; k < turned.packing.q.size(); k += 2) {
+        std::swap(turned.packing.q[k], turned.packing.q[k + 1]);
+    }
+    for (std::size_t k = 0; k < turned.load.infinitesimal.size(); k += 2) {
+        std::swap(turned.load.infinitesimal[k], turned.load.infinitesimal[k + 1]);
+    }
+    std::swap(turned.load.stress[0], turned.load.stress[1]);
+    std::swap(turned.load.reference_length[0], turned.load.reference_length[1]);
+    turned.load.loaded_axis = 0;
+    const auto exchange = [](const Contact& c) {
+        return c.kind == ContactKind::disk_disk ? c
+               : c.kind == ContactKind::held    ? Contact{c.kind, c.i ^ 1, 0}
+                                                : Contact{c.kind, c.i, 1 - c.j};
+    };
+    for (Contact& c : turned.contacts) {
+        c = exchange(c);
+    }
+    const Played other = play(turned, +1, equilibria);
+    check_same_sequence(played, other, events(other.records, exchange));
+}
+
+BOOST_FIXTURE_TEST_CASE(scaling_by_powers_of_two_changes_no_bit, Base) {
+    for (const auto& [length, stress] : {std::pair{-20, 3}, std::pair{40, -30}}) {
+        State<2> scaled = start;
+        const double l = std::ldexp(1.0, length);
+        const double s = std::ldexp(1.0, stress);
+        for (double& r : scaled.packing.radius) {
+            r *= l;
+        }
+        for (double& x : scaled.packing.q) {
+            x *= l;
+        }
+        for (std::size_t a = 0; a < 2; ++a) {
+            scaled.load.stress[a] *= s;
+            scaled.load.reference_length[a] *= l;
+        }
+        const Played other = play(scaled, +1, equilibria);
+        BOOST_REQUIRE(other.outcome.completed);
+        BOOST_TEST_REQUIRE(other.records.equilibria.size() == played.records.equilibria.size());
+        for (std::size_t k = 0; k < played.records.equilibria.size(); ++k) {
+            BOOST_TEST(other.records.equilibria[k].stress == s * played.records.equilibria[k].stress);
+            BOOST_TEST(other.records.equilibria[k].strain[1] == played.records.equilibria[k].strain[1]);
+        }
+        for (std::size_t k = 0; k < other.state.packing.q.size(); ++k) {
+            BOOST_TEST(other.state.packing.q[k] == l * played.state.packing.q[k]);
+        }
+    }
+}
+
+BOOST_FIXTURE_TEST_CASE(the_same_start_gives_the_same_bits, Base) {
+    const Played again = play(start, +1, equilibria);
+    BOOST_TEST((again.state.packing.q == played.state.packing.q));
+    BOOST_TEST((again.state.contacts == played.state.contacts));
+}
+
+BOOST_FIXTURE_TEST_CASE(a_run_in_two_parts_gives_the_same_bits_as_in_one, Base) {
+    Played first = play(start, +1, equilibria / 2);
+    BOOST_REQUIRE(first.outcome.completed);
+    Segment segment;
+    segment.equilibria = equilibria - equilibria / 2;
+    RunOptions options;
+    options.max_strain = 1e9;
+    const auto outcome = run_segment<2>(first.state, segment, 0, options, first.counters, first.records);
+    BOOST_REQUIRE(outcome.completed);
+    BOOST_TEST((first.state.packing.q == played.state.packing.q));
+    BOOST_TEST(first.counters.steps == played.counters.steps);
+    BOOST_TEST(first.records.equilibria.back().stress == played.records.equilibria.back().stress);
+}
+
+BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_opening_rule, Base) {
+    int compared = 0;
+    for (std::size_t k = 1; k < played.records.equilibria.size(); ++k) {
+        if (played.records.equilibria[k].arcs != 1) {
+            continue;
+        }
+        for (const OpeningRule rule : {OpeningRule::steepest, OpeningRule::random, OpeningRule::least_negative}) {
+            RunOptions options;
+            options.rule = rule;
+            const Played other = play(played.records.states[k - 1], +1, 1, {}, options);
+            BOOST_REQUIRE_MESSAGE(other.outcome.completed, other.why());
+            BOOST_TEST((other.state.contacts == played.records.states[k].contacts));
+            ++compared;
+        }
+    }
+    BOOST_TEST(compared > 0);
+}
+
+BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
+    const State<2> start = prepared(40, 2);
+    for (const OpeningRule rule :
+         {OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::random, OpeningRule::least_negative}) {
+        RunOptions options;
+        options.rule = rule;
+        const Played run = play(start, +1, 6, {}, options);
+        // A strut that turns exactly at a power turn carries the same force in both contacts: a true tie, named, is an
+        // honest end.
+        BOOST_TEST((run.outcome.completed || run.outcome.failure->kind == FailureKind::cap_reached ||
+                    run.outcome.failure->kind == FailureKind::tie),
+                   run.why());
+        BOOST_TEST(run.records.equilibria.size() > 1U);
+        for (const auto& e : run.records.equilibria) {
+            BOOST_TEST((e.verdict == Verdict::proved));
+            BOOST_TEST(e.rank == e.dof_count);
+            BOOST_TEST(e.contact_count == e.dof_count);
+            BOOST_TEST(e.dof_count + e.hyperstaticity == e.contact_count + e.mechanisms);
+            BOOST_TEST(e.backbone == 2 * (40 - e.rattlers) + 2);
+            BOOST_TEST(e.min_force > e.force_bound);
+            BOOST_TEST(e.min_gap > 0);
+            BOOST_TEST(e.balance < 1e-12);
+            BOOST_TEST(e.virtual_power < 1e-12);
+            BOOST_TEST(e.gap_residual < 1e-12);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(dead_loads_make_the_potential_decrease_along_every_arc) {
+    const Played run = play(prepared(80, 4), +1, 10);
+    BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
+    for (const auto& arc : run.records.arcs) {
+        BOOST_TEST((arc.work > 0 || arc.kind == "rattler"),
+                   "arc " << arc.step << " " << arc.kind << " work " << arc.work);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_opening_gap_that_turns_back_is_followed_past_its_start, *boost::unit_test::label("slow")) {
+    // Both runs meet an arc whose opened contact is predicted to close again: the start is a root of the event
+    // equations too.
+    for (const std::uint64_t seed : {4U, 9U}) {
+        const Played run = play(prepared(400, seed), +1, 60);
+        BOOST_TEST(run.outcome.completed, run.why());
+    }
+}
+
+BOOST_AUTO_TEST_CASE(true_stress_loads_follow_the_current_lengths) {
+    State<2> start = prepared(40, 9);
+    start.load.kind = LoadKind::true_stress;
+    const Played run = play(start, +1, 5);
+    BOOST_TEST((run.outcome.completed || run.outcome.failure->kind == FailureKind::cap_reached), run.why());
+    BOOST_REQUIRE(!run.records.states.empty());
+    const State<2>& last = run.records.states.back();
+    BOOST_TEST(last.load.external_force(last.packing)[2 * 40] == -last.load.stress[0] * last.packing.length(1));
+    // The first limit is a property of the start: the two kinds of load agree there.
+    const Played dead = play(prepared(40, 9), +1, 1);
+    BOOST_TEST(run.records.equilibria[1].stress == dead.records.equilibria[1].stress,
+               boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
+    RunOptions options;
+    options.max_arcs = 1;
+    const Played run = play(prepared(60, 5), +1, 12, {}, options);
+    BOOST_REQUIRE(run.outcome.failure);
+    BOOST_TEST((run.outcome.failure->kind == FailureKind::cap_reached));
+    const auto inspection = inspect_vertex(run.state);
+    BOOST_REQUIRE(inspection.ok());
+    BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
+}
+
+BOOST_AUTO_TEST_CASE(a_stop_request_ends_the_run_with_the_last_equilibrium) {
+    const std::atomic<bool> stop{true};
+    RunOptions options;
+    options.stop = &stop;
+    const Played run = play(prepared(20, 1), +1, 12, {}, options);
+    BOOST_REQUIRE(run.outcome.failure);
+    BOOST_TEST((run.outcome.failure->kind == FailureKind::interrupted));
+    BOOST_TEST(run.records.equilibria.size() == 1U);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

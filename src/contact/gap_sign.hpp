@@ -1,15 +1,14 @@
 #pragma once
-/// \file
-/// Exact sign of a gap of stored (dyadic) coordinates: private to the room.
+// Exact sign of a gap, and the sum of a few doubles with a bound.
 
 #include <isostat/contact/contact.hpp>
 
 namespace isostat {
 
-/// Sign (-1, 0, +1) of gap + allowance as a real number: double with a rounding bound first, rationals (GMP) when that
-/// does not decide.
-template <int Dim> int sign_of_gap_plus(const Packing<Dim>& packing, const Contact& contact, double allowance);
+/// Sign (-1, 0, 1) of gap + allowance over the reals, for the stored doubles: double with a bound, then double-double
+/// with a bound, then rationals. \pre finite coordinates and radii, allowance >= 0; not a held coordinate.
+template <int Dim> int gap_sign(const Packing<Dim>& packing, const Contact& contact, double allowance);
 
-extern template int sign_of_gap_plus<2>(const Packing<2>&, const Contact&, double);
+extern template int gap_sign<2>(const Packing<2>&, const Contact&, double);
 
 } // namespace isostat

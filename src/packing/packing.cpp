@@ -131,14 +131,16 @@ template <int Dim> double grid_step(const Packing<Dim>& packing) {
 }
 
 template <int Dim> void snap_to_grid(Packing<Dim>& packing) {
-    // Adding 1.5 * 2^52 steps leaves only multiples of the step (round to nearest even); every |x| <= 2^52 steps.
-    const double shift = std::ldexp(grid_step(packing), 52) * 1.5;
-    if (!std::isfinite(shift)) {
+    // With |x| <= 2^e, x +- 2^e away from 0 lies in the binade whose spacing is the step, 2^(e-52): the sum is rounded
+    // to nearest there, and the difference is exact.
+    const double shift = std::ldexp(grid_step(packing), 52);
+    if (!std::isfinite(2 * shift)) {
         return;
     }
     for (double& x : packing.q) {
-        const double shifted = x + shift;
-        x = shifted - shift;
+        const double away = std::copysign(shift, x);
+        const double shifted = x + away;
+        x = shifted - away;
     }
 }
 

@@ -3,9 +3,19 @@
 #include <btf.h>
 #include <klu.h>
 
+#include <cassert>
+#include <new>
+
 namespace isostat::sparse {
 
 Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) : n_(n) {
+    if (n == 0) {
+        block_start_ = {0}; // KLU refuses an empty matrix
+        return;
+    }
+    if (row.empty()) {
+        return; // KLU refuses null arrays
+    }
     klu_common common;
     klu_defaults(&common);
     // KLU's interface is not const-correct; the pattern is only read.
@@ -14,7 +24,8 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
                     const_cast<int*>(row.data()),      // NOLINT(cppcoreguidelines-pro-type-const-cast)
                     &common);
     if (symbolic == nullptr) {
-        return;
+        assert(common.status != KLU_INVALID); // n < 0, or no arrays: a programming error; otherwise memory is short
+        throw std::bad_alloc();
     }
     symbolic_ = std::shared_ptr<void>(symbolic, [](void* pointer) {
         klu_common release;
@@ -56,6 +67,7 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
 
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                std::span<const int> matched, std::span<const int> loaded_rows) {
+    assert(matched.size() + 1 == start.size());
     std::vector<unsigned char> nonzero(matched.size(), 0);
     std::vector<int> queue;
     const auto reach = [&](int r) {

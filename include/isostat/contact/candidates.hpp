@@ -1,42 +1,50 @@
 #pragma once
 /// \file
-/// Complete lists of contact candidates and the certificate of non-overlap, from CGAL's regular triangulation.
+/// Complete lists of contact candidates and the certificate of non-overlap, from CGAL's regular triangulation
+/// (proofs/contact_candidates.md).
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/verdict.hpp>
 
-#include <string>
 #include <vector>
 
 namespace isostat {
 
 /// Every pair that can come into contact before the displacements exceed the list's reach.
 template <int Dim> struct CandidateList {
-    std::vector<Contact> contacts; ///< sorted; disk pairs with gap < reach, walls with gap < reach
+    std::vector<Contact> contacts; ///< sorted; all with gap < reach, and perhaps a few beyond by rounding
     double reach = 0; ///< delta: complete as long as twice the largest displacement since `reference` < delta
     std::vector<double> reference; ///< q at which the list was made
 
-    /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach (walls included).
-    /// One-sided: false only means that the list must be rebuilt. Cost O(n).
+    /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
+    /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
+    /// another number of disks). Cost O(n).
     [[nodiscard]] bool covers(const Packing<Dim>& packing) const;
 };
 
-/// Candidates with gap < fraction * R_min, `fraction` in (0, 0.82], complete by statement T6 (proofs/): edges of the
-/// regular triangulation with weights R^2, walls by a scan. \pre The packing is admissible (up to rounding): with
-/// overlapping disks the list may be incomplete. Cost O(n log n): about 5 ms at n = 5000.
+/// Candidates with gap < fraction * R_min, \pre 0 < fraction <= 0.82, every coordinate and radius finite. Pairs
+/// that cannot move relative to each other (two fixed disks, a fixed disk and a wall that is not movable) are left
+/// out. The list is complete without further condition:
+/// - when the regular triangulation with weights R^2 shows that no two disks overlap by more than about 5e-4
+///   R_min^2 / R, its edges are complete (statements T5 and T6 with rounded weights, proofs/contact_candidates.md);
+///   cost O(n log n), 2.4 ms at n = 2000, 6 ms at n = 5000;
+/// - otherwise (deeper overlaps, size ratios above 1e5, lengths beyond 1e+-100) all pairs are swept along the first
+///   axis; O(n^1.5) for packings. Walls by a scan.
 template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction);
 
 /// Result of `certify_admissible`.
 struct Admissibility {
-    Verdict verdict = Verdict::undecided; ///< proved: no two grains overlap by more than `allowance`
-    double worst_gap = 0;                 ///< smallest gap met
-    Contact worst;                        ///< where
+    Verdict verdict = Verdict::undecided; ///< proved: no overlap by more than `allowance`; refuted: `worst` does
+    double worst_gap = 0;                 ///< rounded; the smallest gap met; infinity when no pair is near
+    Contact worst;                        ///< where (not set when no pair is near)
 };
 
-/// No pair of grains overlaps by more than `allowance` (a length >= 0): statement T5 (proofs/): no hidden vertex and no
-/// overlapping edge of the regular triangulation, walls by a scan. `refuted` names a pair whose gap is below
-/// -allowance. With allowance = 0 the signs of gaps are exact (dyadic coordinates); with allowance > 0 the disks are
-/// shrunk by allowance / 2 each and the statement is about the shrunk disks. Cost O(n log n).
+/// Whether no pair of grains (all pairs, fixed disks and walls included) overlaps by more than `allowance`, a
+/// length >= 0. The candidates are complete (as for `find_candidates`), and the sign of gap + allowance is decided
+/// for each of them over the reals that the stored doubles are: double with an error bound, double-double with an
+/// error bound, rationals. So the verdict is `proved` or `refuted`, never `undecided`; exact tangency is
+/// admissible. \pre every coordinate and radius finite. It speaks of the stored packing, not of a true one near it.
+/// Cost: as `find_candidates`.
 template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing, double allowance);
 
 extern template struct CandidateList<2>;

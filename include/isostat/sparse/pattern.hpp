@@ -18,18 +18,21 @@ template <class Value> struct Matrix {
     [[nodiscard]] int entries() const { return start.empty() ? 0 : start.back(); }
 };
 
-/// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing order
-/// inside the blocks (KLU: BTF + AMD). No number is looked at, so it may precede the rank check.
+/// Symbolic analysis of a square pattern: block upper triangular form with a zero-free diagonal, fill-reducing
+/// order inside the blocks (KLU: BTF + AMD). No number is looked at, so it may precede the rank check.
 class Ordering {
   public:
-    /// \pre square. `structurally_regular()` tells whether a perfect matching exists; if not, the rest is empty.
+    /// \pre square, rows sorted and not repeated in each column. `structurally_regular()` tells whether a perfect
+    /// matching exists; if not, orders and blocks are empty. Throws std::bad_alloc. Cost: 2 ms for 4000 contacts, 6
+    /// ms for 10 000.
     template <class Value>
     explicit Ordering(const Matrix<Value>& matrix) : Ordering(matrix.rows, matrix.start, matrix.row) {}
     Ordering(int n, std::span<const int> start, std::span<const int> row);
 
     [[nodiscard]] bool structurally_regular() const { return structural_rank_ == n_; }
     [[nodiscard]] int structural_rank() const { return structural_rank_; }
-    /// Position k of the permuted matrix holds row `row_order()[k]`, column `column_order()[k]`; these two are matched.
+    /// Position k of the permuted matrix holds row `row_order()[k]`, column `column_order()[k]`; these two are
+    /// matched.
     [[nodiscard]] const std::vector<int>& row_order() const { return row_order_; }
     [[nodiscard]] const std::vector<int>& column_order() const { return column_order_; }
     /// Block b is the range [block_start()[b], block_start()[b+1]) of positions.
@@ -44,10 +47,11 @@ class Ordering {
     std::shared_ptr<void> symbolic_;
 };
 
-/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: breadth-first search from the rows
-/// where b is non-zero, through the matching. Unknown c is false => x_c = 0 exactly, for the values stored (when A is
-/// regular) and for every other choice; true => non-zero for generic values, and says nothing of the values stored.
-/// Statement T11 (proofs/). Cost O(entries).
+/// Which unknowns of A x = b can be non-zero for *some* values with this pattern: search from the rows where b may
+/// be non-zero, through the matching. Unknown c is 0 => x_c = 0 exactly, for the values stored (when A is regular)
+/// and for every other choice that leaves A regular; 1 => x_c != 0 for generic values, which says nothing of the
+/// values stored. The answer does not depend on the matching. \pre structurally regular. Statement T11
+/// (proofs/structural_zeros.md). Cost O(entries).
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                const Ordering& ordering, std::span<const int> loaded_rows);
 
@@ -55,8 +59,8 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
                                                std::span<const int> matched, std::span<const int> loaded_rows);
 
-/// A perfect matching of rows to columns of a square pattern (BTF), or empty when there is none: the matrix is then
-/// singular for all values.
+/// A perfect matching of rows to columns of a square pattern (BTF): column of each row. Empty when there is none
+/// (the matrix is then singular for all values), and when n = 0.
 std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<const int> row);
 
 } // namespace isostat::sparse

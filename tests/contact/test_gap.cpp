@@ -1,0 +1,173 @@
+#include "oracle/packings.hpp"
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/contact/contact_set.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <gmpxx.h>
+
+#include <cmath>
+
+using namespace isostat;
+using namespace isostat::oracle;
+
+namespace {
+
+Packing<2> random_pair(Random& random, double scale) {
+    Packing<2> packing;
+    packing.radius = {random.real(0.5, 1) * scale, random.real(0.5, 1) * scale};
+    packing.q = {random.real(0, 5) * scale,
+                 random.real(0, 5) * scale,
+                 random.real(0, 5) * scale,
+                 random.real(0, 5) * scale,
+                 6 * scale,
+                 7 * scale};
+    snap_to_grid(packing);
+    return packing;
+}
+
+/// Centre line and distance with 400 bits.
+struct Line {
+    mpf_class x, y, distance;
+};
+
+Line line(const Packing<2>& packing) {
+    Line d{mpf_class(packing.q[2], 400) - packing.q[0], mpf_class(packing.q[3], 400) - packing.q[1], mpf_class(0, 400)};
+    d.distance = sqrt(mpf_class(d.x * d.x + d.y * d.y));
+    return d;
+}
+
+double relative_error(double value, const mpf_class& exact) {
+    return std::abs(mpf_class((value - exact) / exact).get_d());
+}
+
+constexpr double u = 0x1p-53;
+const Contact pair{ContactKind::disk_disk, 0, 1};
+const std::vector<Contact> every_kind = {pair,
+                                         {ContactKind::lower_wall, 0, 0},
+                                         {ContactKind::lower_wall, 1, 1},
+                                         {ContactKind::upper_wall, 0, 1},
+                                         {ContactKind::upper_wall, 1, 0}};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(gaps)
+
+BOOST_AUTO_TEST_CASE(gaps_and_normals_keep_their_error_bounds) {
+    Random random(51);
+    for (int repeat = 0; repeat < 3000; ++repeat) {
+        const double scale = repeat % 3 == 0 ? 1 : repeat % 3 == 1 ? 1e-8 : 1e8;
+        const Packing<2> packing = random_pair(random, scale);
+        const Line d = line(packing);
+        const mpf_class exact = d.distance - packing.radius[0] - packing.radius[1];
+        // 4 ulp of the distance, one more for the sum of the radii, and the last subtraction.
+        const double bound = 8 * u * d.distance.get_d() + u * (packing.radius[0] + packing.radius[1]);
+        BOOST_TEST(std::abs(mpf_class(gap(packing, pair) - exact).get_d()) <= bound + u * std::abs(exact.get_d()));
+        const GapGradient<2> g = gap_gradient(packing, pair);
+        BOOST_REQUIRE(g.count == 4);
+        const std::array<mpf_class, 4> normal = {mpf_class(-d.x / d.distance), mpf_class(-d.y / d.distance),
+                                                 mpf_class(d.x / d.distance), mpf_class(d.y / d.distance)};
+        for (std::size_t k = 0; k < 4; ++k) {
+            BOOST_TEST(g.coordinate[k] == static_cast<int>(k));
+            BOOST_TEST(relative_error(g.value[k], normal[k]) <= 4 * u);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(gradients_and_curvatures_are_derivatives_of_the_gap) {
+    Random random(52);
+    for (int repeat = 0; repeat < 300; ++repeat) {
+        const Packing<2> packing = random_pair(random, 1);
+        std::vector<double> v(6);
+        for (double& c : v) {
+            c = random.real(-1, 1);
+        }
+        for (const Contact& contact : every_kind) {
+            const auto along = [&](double t) {
+                Packing<2> moved = packing;
+                for (std::size_t k = 0; k < v.size(); ++k) {
+                    moved.q[k] += t * v[k];
+                }
+                return gap(moved, contact);
+            };
+            const double distance = contact.kind == ContactKind::disk_disk ? line(packing).distance.get_d() : 1;
+            const double t = 1e-4 * distance;
+            const GapGradient<2> g = gap_gradient(packing, contact);
+            double slope = 0;
+            for (int k = 0; k < g.count; ++k) {
+                const auto e = static_cast<std::size_t>(k);
+                slope += g.value[e] * v[static_cast<std::size_t>(g.coordinate[e])];
+            }
+            // Central differences: truncation t^2, rounding u / t.
+            BOOST_TEST(std::abs((along(t) - along(-t)) / (2 * t) - slope) < 1e-6 / distance + 1e-9);
+            const double curvature = (along(t) - 2 * along(0) + along(-t)) / (t * t);
+            BOOST_TEST(std::abs(curvature - gap_curvature(packing, contact, v.data())) <
+                       1e-4 / distance + 1e-5 / (distance * distance));
+            BOOST_TEST(gap_curvature(packing, contact, v.data()) >= 0);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(wall_gaps_of_snapped_coordinates) {
+    Packing<2> packing;
+    packing.radius = {0.5, 0.25};
+    packing.q = {1, 2, 3, 4, 6, 7};
+    BOOST_TEST(gap(packing, {ContactKind::lower_wall, 0, 0}) == 0.5);
+    BOOST_TEST(gap(packing, {ContactKind::lower_wall, 1, 1}) == 3.75);
+    BOOST_TEST(gap(packing, {ContactKind::upper_wall, 0, 1}) == 4.5);
+    BOOST_TEST(gap(packing, {ContactKind::upper_wall, 1, 0}) == 2.75);
+    BOOST_TEST(gap(packing, {ContactKind::held, 3, 0}) == 0);
+    const GapGradient<2> lower = gap_gradient(packing, {ContactKind::lower_wall, 1, 1});
+    BOOST_TEST(lower.count == 1);
+    BOOST_TEST(lower.coordinate[0] == 3);
+    BOOST_TEST(lower.value[0] == 1);
+    const GapGradient<2> upper = gap_gradient(packing, {ContactKind::upper_wall, 1, 0});
+    BOOST_TEST(upper.count == 2);
+    BOOST_TEST(upper.coordinate[0] == 2);
+    BOOST_TEST(upper.value[0] == -1);
+    BOOST_TEST(upper.coordinate[1] == 4);
+    BOOST_TEST(upper.value[1] == 1);
+    const GapGradient<2> held = gap_gradient(packing, {ContactKind::held, 3, 0});
+    BOOST_TEST(held.count == 1);
+    BOOST_TEST(held.coordinate[0] == 3);
+    BOOST_TEST(held.value[0] == 1);
+}
+
+BOOST_AUTO_TEST_CASE(contacts_have_names) {
+    BOOST_TEST(to_string<2>({ContactKind::disk_disk, 12, 40}) == "12-40");
+    BOOST_TEST(to_string<2>({ContactKind::lower_wall, 12, 0}) == "12-left");
+    BOOST_TEST(to_string<2>({ContactKind::lower_wall, 12, 1}) == "12-bottom");
+    BOOST_TEST(to_string<2>({ContactKind::upper_wall, 12, 0}) == "12-right");
+    BOOST_TEST(to_string<2>({ContactKind::upper_wall, 12, 1}) == "12-top");
+    BOOST_TEST(to_string<2>({ContactKind::held, 6, 0}).find("held x") == 0U);
+    BOOST_TEST(to_string<2>({ContactKind::held, 6, 0}).find('3') != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(contact_sets_contain_exactly_their_members) {
+    Random random(53);
+    for (int repeat = 0; repeat < 100; ++repeat) {
+        const int n = 1 + random.integer(8);
+        std::vector<Contact> members;
+        std::vector<Contact> others;
+        const auto deal = [&](const Contact& contact) {
+            (random.integer(2) == 0 ? members : others).push_back(contact);
+        };
+        for (int i = 0; i < n; ++i) {
+            for (int j = i + 1; j < n; ++j) {
+                deal({ContactKind::disk_disk, i, j});
+            }
+            for (int a = 0; a < 2; ++a) {
+                deal({ContactKind::lower_wall, i, a});
+                deal({ContactKind::upper_wall, i, a});
+            }
+        }
+        for (std::size_t k = members.size(); k-- > 1;) {
+            std::swap(members[k], members[static_cast<std::size_t>(random.integer(static_cast<int>(k) + 1))]);
+        }
+        const ContactSet set(members, n);
+        BOOST_TEST(std::all_of(members.begin(), members.end(), [&](const Contact& c) { return set.contains(c); }));
+        BOOST_TEST(std::none_of(others.begin(), others.end(), [&](const Contact& c) { return set.contains(c); }));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

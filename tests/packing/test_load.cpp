@@ -1,0 +1,107 @@
+#include "oracle/packings.hpp"
+
+#include <isostat/packing/load.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+using namespace isostat::oracle;
+
+namespace {
+
+Packing<2> boxed() {
+    Packing<2> packing = square_lattice(2, 2);
+    enclose(packing, 0.5);
+    packing.length(1) = 7;
+    return packing;
+}
+
+Load<2> two_stresses() {
+    Load<2> load;
+    load.stress = {2, 3};
+    load.reference_length = {4, 8};
+    return load;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(load)
+
+BOOST_AUTO_TEST_CASE(dead_wall_forces_use_the_reference_lengths) {
+    const Packing<2> packing = boxed();
+    const Load<2> load = two_stresses();
+    const std::vector<double> force = load.external_force(packing);
+    BOOST_REQUIRE(force.size() == 10U);
+    BOOST_TEST(force[8] == -2 * 8); // the right wall is as long as the box is high
+    BOOST_TEST(force[9] == -3 * 4);
+    BOOST_TEST(std::count(force.begin(), force.end(), 0.0) == 8);
+}
+
+BOOST_AUTO_TEST_CASE(true_stress_forces_use_the_current_lengths) {
+    const Packing<2> packing = boxed(); // 5 x 7
+    Load<2> load = two_stresses();
+    load.kind = LoadKind::true_stress;
+    const std::vector<double> force = load.external_force(packing);
+    BOOST_TEST(force[8] == -2 * 7);
+    BOOST_TEST(force[9] == -3 * 5);
+}
+
+BOOST_AUTO_TEST_CASE(force_is_affine_in_the_loaded_stress) {
+    const Packing<2> packing = boxed();
+    for (const LoadKind kind : {LoadKind::nominal, LoadKind::true_stress}) {
+        for (const int axis : {0, 1}) {
+            Load<2> load = two_stresses();
+            load.kind = kind;
+            load.loaded_axis = axis;
+            load.disk_force = {1, 2, 3, 4, 5, 6, 7, 8};
+            const auto total = load.external_force(packing);
+            const auto fixed = load.fixed_force(packing);
+            const auto unit = load.unit_force(packing);
+            for (std::size_t k = 0; k < total.size(); ++k) {
+                BOOST_TEST(total[k] == fixed[k] + load.stress[static_cast<std::size_t>(axis)] * unit[k]);
+                BOOST_TEST((unit[k] != 0) == (k == 8U + static_cast<std::size_t>(axis)));
+            }
+            BOOST_TEST(total[5] == 6);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(walls_that_cannot_move_carry_no_load) {
+    Packing<2> packing = boxed();
+    packing.walls.upper[0] = WallKind::fixed;
+    BOOST_TEST(two_stresses().external_force(packing)[8] == 0);
+}
+
+BOOST_AUTO_TEST_CASE(potential_is_minus_the_work_of_dead_loads) {
+    Packing<2> packing = boxed();
+    Load<2> load = two_stresses();
+    load.disk_force = {1, 0, 0, -2, 0, 0, 0, 0};
+    const double before = potential(packing, load);
+    packing.q[0] += 0.5;
+    packing.q[3] += 0.25;
+    packing.length(0) -= 0.125;
+    packing.length(1) -= 1;
+    // Work: 0.5 - 0.5 on the disks, 16/8 and 12 on the walls.
+    BOOST_TEST(potential(packing, load) - before == -14.0);
+}
+
+BOOST_AUTO_TEST_CASE(infinitesimal_loads_are_reproducible_generic_and_off_the_walls_normals) {
+    const std::vector<double> radius = {1, 2, 0.5, 1};
+    const auto g = generic_infinitesimal<2>(radius, 7);
+    BOOST_TEST(g == generic_infinitesimal<2>(radius, 7));
+    BOOST_TEST(g != generic_infinitesimal<2>(radius, 8));
+    for (std::size_t i = 0; i < radius.size(); ++i) {
+        const double weight = radius[i] * radius[i];
+        BOOST_TEST(g[2 * i] != 0);
+        BOOST_TEST(g[2 * i + 1] <= -0.7 * weight);
+        BOOST_TEST(std::abs(g[2 * i]) <= 0.5 * weight);
+    }
+    BOOST_TEST(g[0] != g[6]); // equal disks, different loads
+    // Lengths in another unit: the loads scale by the square of a power of two, bit for bit.
+    const auto scaled = generic_infinitesimal<2>({4, 8, 2, 4}, 7);
+    for (std::size_t k = 0; k < g.size(); ++k) {
+        BOOST_TEST(scaled[k] == 16 * g[k]);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,241 @@
+#include "oracle/packings.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/packing/packing.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <gmpxx.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace isostat;
+using namespace isostat::oracle;
+
+namespace {
+
+Packing<2> random_box(int n, double low, double high, Random& random) {
+    Packing<2> packing;
+    for (int i = 0; i < n; ++i) {
+        packing.radius.push_back(random.real(0.01, 0.05) * high);
+        packing.q.push_back(random.real(low, high));
+        packing.q.push_back(random.real(low, high));
+    }
+    packing.q.insert(packing.q.end(), {high, random.real(0.5, 1) * high});
+    return packing;
+}
+
+/// The message of the error that `validate` throws, empty when it throws none.
+std::string complaint(const Packing<2>& packing) {
+    try {
+        validate(packing, "scene.toml");
+    } catch (const Error& error) {
+        BOOST_TEST(error.exit_status() == 65);
+        return error.what();
+    }
+    return {};
+}
+
+bool says(const std::string& message, std::initializer_list<const char*> words) {
+    return std::all_of(words.begin(), words.end(),
+                       [&](const char* word) { return message.find(word) != std::string::npos; });
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(packing)
+
+BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_were) {
+    Random random(41);
+    for (int repeat = 0; repeat < 400; ++repeat) {
+        const double unit = std::ldexp(1 + random.real(), random.integer(1800) - 900);
+        const double low = repeat % 3 == 0 ? -unit : repeat % 3 == 1 ? 0 : 0.9 * unit;
+        const Packing<2> before = random_box(20, low, unit, random);
+        Packing<2> after = before;
+        snap_to_grid(after);
+        const double step = grid_step(before);
+        // 2^52 steps cover the largest coordinate, 2^51 do not.
+        double largest = 0;
+        for (const double x : before.q) {
+            largest = std::max(largest, std::abs(x));
+        }
+        BOOST_TEST(std::ldexp(step, 52) >= largest);
+        BOOST_TEST(std::ldexp(step, 51) < largest);
+        for (std::size_t k = 0; k < before.q.size(); ++k) {
+            const double multiple = after.q[k] / step;
+            BOOST_TEST(multiple == std::nearbyint(multiple));
+            BOOST_TEST(std::abs(after.q[k] - before.q[k]) <= step / 2);
+        }
+        BOOST_TEST(grid_step(after) == step);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(differences_of_snapped_coordinates_are_exact) {
+    Random random(42);
+    for (int repeat = 0; repeat < 60; ++repeat) {
+        Packing<2> packing = random_box(12, repeat % 2 == 0 ? -1 : 0, 1, random);
+        if (repeat % 3 == 0) { // tiny coordinates have bits far below the step
+            packing.q[0] *= 1e-12;
+            packing.q[3] *= -1e-20;
+        }
+        snap_to_grid(packing);
+        for (const double x : packing.q) {
+            for (const double y : packing.q) {
+                BOOST_TEST((mpq_class(x - y) == mpq_class(x) - mpq_class(y)));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
+    Random random(43);
+    for (int repeat = 0; repeat < 200; ++repeat) {
+        const Packing<2> before = random_box(10, repeat % 2 == 0 ? -1 : 0, 1, random);
+        Packing<2> once = before;
+        snap_to_grid(once);
+        Packing<2> twice = once;
+        snap_to_grid(twice);
+        BOOST_TEST(twice.q == once.q);
+        const int exponent = random.integer(1600) - 800;
+        Packing<2> scaled = before;
+        for (double& x : scaled.q) {
+            x = std::ldexp(x, exponent);
+        }
+        snap_to_grid(scaled);
+        for (std::size_t k = 0; k < once.q.size(); ++k) {
+            BOOST_TEST(scaled.q[k] == std::ldexp(once.q[k], exponent));
+        }
+        // Mirrored: the grid is symmetric.
+        Packing<2> mirrored = before;
+        for (double& x : mirrored.q) {
+            x = -x;
+        }
+        snap_to_grid(mirrored);
+        for (std::size_t k = 0; k < once.q.size(); ++k) {
+            BOOST_TEST(mirrored.q[k] == -once.q[k]);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(snapping_survives_the_ends_of_the_range_of_doubles) {
+    for (const double unit : {std::numeric_limits<double>::max(), 0x1p1023, 0x1p-1000, 0x1p-1060,
+                              std::numeric_limits<double>::denorm_min(), 0.0}) {
+        Packing<2> packing;
+        packing.radius = {1};
+        packing.q = {unit, -unit / 3, unit, unit / 7};
+        Packing<2> snapped = packing;
+        snap_to_grid(snapped);
+        for (std::size_t k = 0; k < packing.q.size(); ++k) {
+            BOOST_TEST(std::isfinite(snapped.q[k]));
+            BOOST_TEST(std::abs(snapped.q[k] - packing.q[k]) <= std::ldexp(unit, -52));
+        }
+        if (unit < 0x1p1023) { // beyond, rounding up could overflow: nothing is snapped
+            BOOST_TEST((mpq_class(snapped.q[0] - snapped.q[3]) == mpq_class(snapped.q[0]) - mpq_class(snapped.q[3])));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(valid_packings_pass) {
+    Packing<2> packing = square_lattice(3, 2);
+    BOOST_TEST(complaint(packing).empty());
+    enclose(packing, 0);
+    BOOST_TEST(complaint(packing).empty());
+    packing.fixed.assign(9, 0);
+    BOOST_TEST(complaint(packing).empty());
+    Packing<2> tight;
+    tight.radius = {1};
+    tight.q = {1, 1, 2, 2};
+    BOOST_TEST(complaint(tight).empty());
+}
+
+BOOST_AUTO_TEST_CASE(each_defect_is_named_with_its_place_and_value) {
+    Packing<2> good = square_lattice(3, 2);
+    enclose(good, 0);
+    Packing<2> bad;
+    BOOST_TEST(says(complaint(bad), {"scene.toml", "no disks"}));
+    for (const double r :
+         {0.0, -1.5, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        bad = good;
+        bad.radius[4] = r;
+        BOOST_TEST(says(complaint(bad), {"scene.toml", "radius of disk 4", "positive"}));
+    }
+    bad = good;
+    bad.radius[4] = -1.5;
+    BOOST_TEST(says(complaint(bad), {"-1.5"}));
+    bad = good;
+    bad.q[7] = std::numeric_limits<double>::quiet_NaN();
+    BOOST_TEST(says(complaint(bad), {"y of disk 3", "finite"}));
+    bad = good;
+    bad.q[6] = std::numeric_limits<double>::infinity();
+    BOOST_TEST(says(complaint(bad), {"x of disk 3", "inf"}));
+    bad = good;
+    bad.q.pop_back();
+    BOOST_TEST(says(complaint(bad), {"19 coordinates", "9 disks", "20"}));
+    bad = good;
+    bad.fixed = {1, 0};
+    BOOST_TEST(says(complaint(bad), {"2 flags", "9 disks"}));
+    for (const double length : {-6.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+        bad = good;
+        bad.length(1) = length;
+        BOOST_TEST(says(complaint(bad), {"top wall", "positive"}));
+    }
+    bad = good;
+    bad.radius[8] = 3.25;
+    BOOST_TEST(says(complaint(bad), {"disk 8", "6.5", "larger than the box", "6"}));
+    bad.walls = Walls<2>::none(); // without walls there is no box to be larger than
+    BOOST_TEST(complaint(bad).empty());
+}
+
+BOOST_AUTO_TEST_CASE(degrees_of_freedom_of_the_box_are_all_coordinates) {
+    Packing<2> packing = square_lattice(2, 2);
+    enclose(packing, 0);
+    const DofMap<2> dofs(packing);
+    BOOST_TEST(dofs.dof_count() == 10);
+    for (int k = 0; k < 10; ++k) {
+        BOOST_TEST(dofs.dof_of(static_cast<std::size_t>(k)) == k);
+        BOOST_TEST(dofs.coordinate_of(k) == k);
+    }
+    BOOST_TEST(dofs.name(0) == "x of disk 0");
+    BOOST_TEST(dofs.name(7) == "y of disk 3");
+    BOOST_TEST(dofs.name(8) == "right wall");
+    BOOST_TEST(dofs.name(9) == "top wall");
+}
+
+BOOST_AUTO_TEST_CASE(fixed_disks_and_walls_that_cannot_move_have_no_degree_of_freedom) {
+    Packing<2> packing = square_lattice(2, 2);
+    enclose(packing, 0);
+    packing.fixed = {0, 1, 0, 1};
+    packing.walls.upper[0] = WallKind::fixed;
+    const DofMap<2> dofs(packing);
+    BOOST_TEST(dofs.dof_count() == 5);
+    const std::vector<int> expected = {0, 1, -1, -1, 2, 3, -1, -1, -1, 4};
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        BOOST_TEST(dofs.dof_of(k) == expected[k]);
+        if (expected[k] >= 0) {
+            BOOST_TEST(dofs.coordinate_of(expected[k]) == static_cast<int>(k));
+        }
+    }
+    BOOST_TEST(dofs.name(2) == "x of disk 2");
+    BOOST_TEST(dofs.name(4) == "top wall");
+    packing.walls = Walls<2>::none();
+    BOOST_TEST(DofMap<2>(packing).dof_count() == 4);
+    packing.fixed = {1, 1, 1, 1};
+    BOOST_TEST(DofMap<2>(packing).dof_count() == 0);
+}
+
+BOOST_AUTO_TEST_CASE(solid_fraction_of_a_square_lattice) {
+    Packing<2> packing = square_lattice(5, 2);
+    enclose(packing, 0);
+    BOOST_TEST(packing.solid_fraction() == std::numbers::pi / 4, boost::test_tools::tolerance(1e-15));
+    BOOST_TEST(packing.min_radius() == 1);
+    packing.radius[3] = 0.5;
+    BOOST_TEST(packing.min_radius() == 0.5);
+    BOOST_TEST(packing.max_radius() == 1);
+    BOOST_TEST(!packing.is_fixed(DiskId(3)));
+    packing.fixed.assign(25, 0);
+    packing.fixed[3] = 1;
+    BOOST_TEST(packing.is_fixed(DiskId(3)));
+    BOOST_TEST(!packing.is_fixed(DiskId(4)));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

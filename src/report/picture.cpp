@@ -94,7 +94,7 @@ void draw_walls(Canvas& canvas, const State<2>& state) {
 }
 
 void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
-    constexpr double width_at_mean = 0.25; // of the mean radius
+    constexpr double width_at_mean = 0.16; // of the mean radius
     constexpr double hairline = 0.4;
     double radius = 0;
     for (const double r : state.packing.radius) {
@@ -165,7 +165,8 @@ std::string force_picture(const State<2>& state, std::span<const double> forces,
     text +=
         "<style>.disk{fill:#e9e6df;stroke:#a9a59b;stroke-width:0.5}.rattler{fill:#9fb8cf;stroke:#6f89a3;stroke-width:0."
         "5}"
-        ".force{stroke:#8c1c13;stroke-linecap:round}.traction{stroke:#1b5fbf;stroke-linecap:round}.contact{stroke:#777}"
+        ".force{stroke:#8c1c13;stroke-linecap:round}.wall{stroke-linecap:butt}.traction{stroke:#1b5fbf;stroke-linecap:"
+        "round}.contact{stroke:#777}"
         ".fixed{stroke:#222;stroke-linecap:square}.movable{stroke:#8f8f8f;stroke-linecap:square}"
         "text{font-family:sans-serif;font-size:20px;fill:#222}</style>\n";
     text += fmt::format(

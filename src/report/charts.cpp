@@ -95,7 +95,7 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves) {
                         quoted(name + ".dat"), k, quoted(colours[k % colours.size()]), quoted(curves[k].title));
     }
     chart.script = script_of(name, 800, 560,
-                             "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key bottom right\n"
+                             "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key top left reverse Left\n"
                              "set format x \"%g\"\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
                                  plot + "\n");
     return chart;

@@ -112,8 +112,9 @@ void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double
         const double force = forces.empty() ? 0 : forces[l];
         const Point end =
             foot(state, contact).value_or(contact.kind == ContactKind::disk_disk ? centre(state, contact.j) : Point{});
+        const char* const style = contact.kind == ContactKind::disk_disk ? "force" : "force wall";
         canvas.line(centre(state, contact.i), end, force == 0 ? hairline : std::abs(force) * unit,
-                    force > 0   ? "force"
+                    force > 0   ? style
                     : force < 0 ? "traction"
                                 : "contact");
     }

@@ -59,7 +59,7 @@ struct RunDirectory::Files {
 };
 
 RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, const RunCounters& counters)
-    : directory_(std::move(directory)), header_(std::move(header)), counters_(counters),
+    : directory_(std::move(directory)), header_(std::move(header)), counters_(counters), resumed_(mode == Mode::resume),
       files_(std::make_unique<Files>()) {
     make_directory(directory_);
     files_->lock = Descriptor::open(directory_ / "lock", O_RDWR | O_CREAT);
@@ -190,7 +190,7 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     last_record_ = record;
     const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
     const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
-    if (first || every || kept) {
+    if (first || every || kept || segment_done()) {
         write_state<2>(state_path(directory_, record.number), last_, last_forces_);
     }
     if (!first) { // the start is made again from start.json: run_segment reports number 0 itself
@@ -198,16 +198,20 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     }
 }
 
+bool RunDirectory::segment_done() const {
+    const bool reached = goal_.to_stress && last_record_.stress == *goal_.to_stress;
+    return reached || (goal_.equilibria && made_ >= *goal_.equilibria);
+}
+
 void RunDirectory::write_checkpoint() {
     files_->events.sync();
     files_->equilibria.sync();
-    const bool reached = goal_.to_stress && last_record_.stress == *goal_.to_stress;
     Json object;
     object["format"] = "isostat-checkpoint";
     object["version"] = 1;
     object["segment"] = segment_;
     object["made"] = made_;
-    object["segment_done"] = reached || (goal_.equilibria && made_ >= *goal_.equilibria);
+    object["segment_done"] = segment_done();
     object["counters"] = counters_json(counters_);
     object["bytes"] = {{"events.jsonl", files_->events.size()}, {"equilibria.csv", files_->equilibria.size()}};
     std::string text = object.dump();

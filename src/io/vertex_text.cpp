@@ -61,7 +61,6 @@ State<2> parse_vertex_text(const std::string& text, const std::string& source) {
             box.fail(a, name, "a positive number");
         }
         state.packing.q.push_back(length);
-        state.load.reference_length[a] = length;
         state.load.stress[a] = 1;
     }
     validate(state.packing, source);
@@ -75,6 +74,7 @@ State<2> parse_vertex_text(const std::string& text, const std::string& source) {
     json::refuse_duplicates<2>(state.contacts, source, "contacts");
     std::sort(state.contacts.begin(), state.contacts.end());
     snap_to_grid(state.packing);
+    state.load.reference_length = {state.packing.length(0), state.packing.length(1)};
     state.provenance = json::Json{{"converted_from", source}}.dump();
     return state;
 }

@@ -34,8 +34,8 @@ std::string script_of(const std::string& name, int width, int height, const std:
           fmt::format("set terminal svg size {},{} dynamic font \"sans,14\" background \"#ffffff\"", width, height)},
          {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}}};
     for (const auto& [suffix, terminal] : terminals) {
-        script +=
-            fmt::format("reset\n{}\nset output {}\n{}unset output\n", terminal, quoted(name + "." + suffix), body);
+        script += fmt::format("reset\nset encoding utf8\n{}\nset output {}\n{}unset output\n", terminal,
+                              quoted(name + "." + suffix), body);
     }
     return script;
 }
@@ -94,11 +94,10 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves) {
             fmt::format("{} {} index {} with lines lw 1.5 lc rgb {} title {} noenhanced", k == 0 ? "plot" : ",\\\n    ",
                         quoted(name + ".dat"), k, quoted(colours[k % colours.size()]), quoted(curves[k].title));
     }
-    chart.script =
-        script_of(name, 800, 560,
-                  "set xlabel \"{/Symbol e}_2\"\nset ylabel \"{/Symbol s}_2 / {/Symbol s}_1\"\nset key bottom right\n"
-                  "set format x \"%g\"\nset grid lc rgb \"#dddddd\"\n" +
-                      plot + "\n");
+    chart.script = script_of(name, 800, 560,
+                             "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key top left reverse Left\n"
+                             "set format x \"%g\"\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
+                                 plot + "\n");
     return chart;
 }
 
@@ -143,7 +142,6 @@ void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& r
 void add_distribution(std::vector<Chart>& charts, const std::string& name, const std::string& label,
                       const Increments& increments, bool power_law) {
     constexpr std::size_t fewest = 3;
-    constexpr int bins = 20;
     Chart chart;
     chart.name = name;
     std::string left;
@@ -166,6 +164,7 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
             continue;
         }
         const double average = mean(values);
+        const int bins = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(values.size()))), 4, 30);
         append_points(chart.data, fmt::format("{}, {}: centre density", label, kinds[k].first),
                       histogram(shown, from, *high, bins));
         std::vector<std::pair<double, double>> tail = complementary_distribution(values);
@@ -178,7 +177,7 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
                                 quoted(name + ".dat"), block, style, quoted(colours[k]), quoted(title));
         };
         curve(left, index, "histeps");
-        curve(right, index + 1, "steps");
+        curve(right, index + 1, "fsteps");
         if (!power_law) {
             right += fmt::format(",\\\n     exp(-x/{}) dt 2 lc rgb {} title \"exponential of the same mean\"", average,
                                  quoted(colours[k]));
@@ -190,10 +189,11 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
     }
     const std::string x = quoted(label);
     const std::string x_left = power_law ? quoted("log_{10} " + label) : x;
-    std::string body = "set multiplot layout 1,2\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
-                       "\"#dddddd\"\nset yrange [0:*]\n";
+    std::string body =
+        "set multiplot layout 1,2\nset xtics rotate by -30\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
+        "\"#dddddd\"\nset yrange [0:*]\n";
     body += fmt::format("set xlabel {}\nset ylabel \"density\"\n{}\n", x_left, left);
-    body += fmt::format("set xlabel {}\nset ylabel \"share of the values {{/Symbol \\263}} x\"\nset logscale y\nset "
+    body += fmt::format("set xlabel {}\nset ylabel \"share of the values ≥ x\"\nset logscale y\nset "
                         "yrange [*:1.5]\nset format y "
                         "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
                         x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
@@ -206,8 +206,8 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
 std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
     std::vector<Chart> charts;
     add_stairs(charts, rows, names);
-    add_distribution(charts, "stress_increments", "{/Symbol Ds}_2 / {/Symbol s}_1", stress_increments(rows), false);
-    add_distribution(charts, "strain_increments", "{/Symbol De}_2", strain_increments(rows), true);
+    add_distribution(charts, "stress_increments", "Δσ_2 / σ_1", stress_increments(rows), false);
+    add_distribution(charts, "strain_increments", "Δε_2", strain_increments(rows), true);
     return charts;
 }
 

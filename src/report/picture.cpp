@@ -78,23 +78,26 @@ class Canvas {
     std::string text_;
 };
 
+/// Outside the box, so that no disk and no force is hidden.
 void draw_walls(Canvas& canvas, const State<2>& state) {
+    constexpr double thickness = 8; // picture units
+    const double out = thickness / 2 / canvas.scale();
     const auto& walls = state.packing.walls;
     const double lx = state.packing.length(0);
     const double ly = state.packing.length(1);
     const auto draw = [&](WallKind kind, Point from, Point to) {
         if (kind != WallKind::absent) {
-            canvas.line(from, to, 8, kind == WallKind::fixed ? "fixed" : "movable");
+            canvas.line(from, to, thickness, kind == WallKind::fixed ? "fixed" : "movable");
         }
     };
-    draw(walls.lower[0], {0, 0}, {0, ly});
-    draw(walls.lower[1], {0, 0}, {lx, 0});
-    draw(walls.upper[0], {lx, 0}, {lx, ly});
-    draw(walls.upper[1], {0, ly}, {lx, ly});
+    draw(walls.lower[0], {-out, 0}, {-out, ly});
+    draw(walls.lower[1], {0, -out}, {lx, -out});
+    draw(walls.upper[0], {lx + out, 0}, {lx + out, ly});
+    draw(walls.upper[1], {0, ly + out}, {lx, ly + out});
 }
 
 void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
-    constexpr double width_at_mean = 0.25; // of the mean radius
+    constexpr double width_at_mean = 0.2; // of the mean radius
     constexpr double hairline = 0.4;
     double radius = 0;
     for (const double r : state.packing.radius) {
@@ -109,8 +112,9 @@ void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double
         const double force = forces.empty() ? 0 : forces[l];
         const Point end =
             foot(state, contact).value_or(contact.kind == ContactKind::disk_disk ? centre(state, contact.j) : Point{});
+        const char* const style = contact.kind == ContactKind::disk_disk ? "force" : "force wall";
         canvas.line(centre(state, contact.i), end, force == 0 ? hairline : std::abs(force) * unit,
-                    force > 0   ? "force"
+                    force > 0   ? style
                     : force < 0 ? "traction"
                                 : "contact");
     }
@@ -165,7 +169,8 @@ std::string force_picture(const State<2>& state, std::span<const double> forces,
     text +=
         "<style>.disk{fill:#e9e6df;stroke:#a9a59b;stroke-width:0.5}.rattler{fill:#9fb8cf;stroke:#6f89a3;stroke-width:0."
         "5}"
-        ".force{stroke:#8c1c13;stroke-linecap:round}.traction{stroke:#1b5fbf;stroke-linecap:round}.contact{stroke:#777}"
+        ".force{stroke:#8c1c13;stroke-linecap:round}.wall{stroke-linecap:butt}.traction{stroke:#1b5fbf;stroke-linecap:"
+        "round}.contact{stroke:#777}"
         ".fixed{stroke:#222;stroke-linecap:square}.movable{stroke:#8f8f8f;stroke-linecap:square}"
         "text{font-family:sans-serif;font-size:20px;fill:#222}</style>\n";
     text += fmt::format(

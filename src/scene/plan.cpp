@@ -69,7 +69,7 @@ void add_outputs(Plan& plan, const Scene& scene) {
     const std::vector<int> needed = needed_equilibria(scene);
     plan.add("output", "states/eq_*.json", runs,
              !runs ? none
-                   : fmt::format("number 0{}{}{}",
+                   : fmt::format("number 0; the last of each segment{}{}{}",
                                  needed.empty()
                                      ? ""
                                      : fmt::format("; those that segments start from: {}", fmt::join(needed, ", ")),

@@ -97,7 +97,11 @@ std::string describe(const ProgrammeStep& step) {
         text += fmt::format(": {} equilibria", *step.equilibria);
     }
     if (step.to) {
-        text += fmt::format("{} sigma2/sigma1 = {}", step.equilibria ? " or to" : ": to", *step.to);
+        text += fmt::format("{} sigma2/sigma1 = {}",
+                            step.equilibria             ? " or to"
+                            : step.action == Action::to ? ""
+                                                        : ": to",
+                            *step.to);
     }
     return text;
 }

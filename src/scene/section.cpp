@@ -32,9 +32,20 @@ std::string toml_text(double value) {
 }
 
 std::string toml_text(const std::string& value) {
-    std::ostringstream text;
-    text << toml::value<std::string>(value);
-    return text.str();
+    // A basic string, with those escapes that JSON has as well: records of a run take it over.
+    std::string text = "\"";
+    for (const char c : value) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\') {
+            text += '\\';
+            text += c;
+        } else if (code < 0x20 || code == 0x7f) {
+            text += fmt::format("\\u{:04X}", code);
+        } else {
+            text += c;
+        }
+    }
+    return text + "\"";
 }
 
 void Section::fail(const std::string& key, const std::string& expected) const {

@@ -93,11 +93,13 @@ class RunDirectory final : public RunObserver<2> {
     struct Files;
     void write_header(const std::string& status) const;
     void write_checkpoint();
+    /// The last equilibrium completed its segment.
+    [[nodiscard]] bool segment_done() const;
     void open_for_resume();
     std::filesystem::path directory_;
     RunHeader header_;
     const RunCounters& counters_;
-    bool resumed_;
+    bool resumed_ = false;
     std::unique_ptr<Files> files_;
     std::optional<Checkpoint> checkpoint_;
     std::string previous_status_, provenance_, summary_;

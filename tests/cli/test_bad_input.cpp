@@ -1,0 +1,154 @@
+// Every bad input: the exit status, a message with file, line or field, value and expectation, and nothing left that
+// looks complete.
+#include "cli/program.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+using namespace program;
+using isostat::state_text;
+using scratch::replaced;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A scene whose start file has a given content; `run` must refuse it before it makes a folder.
+void run_refuses(const std::string& start, const std::vector<std::string>& words) {
+    const scratch::Folder folder;
+    scratch::write(folder / "start.json", start);
+    scratch::write(folder / "s.toml", scene_from("start.json", up_6));
+    const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"});
+    expect(outcome, 65, {"start.json"});
+    expect(outcome, 65, words);
+    BOOST_TEST(!fs::exists(folder / "run"));
+    BOOST_TEST(outcome.out.empty());
+}
+
+/// A scene that every command must refuse.
+void scene_refused(const std::string& scene, const std::vector<std::string>& words) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", scene);
+    for (const std::string command : {"run", "prepare"}) {
+        const Outcome outcome = run({command, (folder / "s.toml").string(), "-o", (folder / "out").string()});
+        expect(outcome, 65, {"s.toml"});
+        expect(outcome, 65, words);
+        BOOST_TEST(!fs::exists(folder / "out"));
+    }
+    expect(run({"plan", (folder / "s.toml").string()}), 65, words);
+}
+
+const std::string two = state_text(crafted::two_disks(1, 2, 1, 1));
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(overlapping_disks) {
+    isostat::State<2> state = crafted::two_disks(1, 2, 1, 1);
+    state.packing.q[2] -= 0.5;
+    run_refuses(state_text(state), {"overlap", "0-1", "-0.4659", "expected every gap >= 0"});
+    const scratch::Folder folder;
+    scratch::write(folder / "s.json", state_text(state));
+    expect(run({"inspect", (folder / "s.json").string()}),
+           2); // no true configuration has these contacts near: nothing is proved
+}
+
+BOOST_AUTO_TEST_CASE(radii_that_are_not_positive_numbers) {
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[0.0,1.0,1.0]"), {"disks[0][0]", "0.0", "positive"});
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[-1.0,1.0,1.0]"), {"disks[0][0]", "-1.0", "positive"});
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[NaN,1.0,1.0]"), {"start.json:", "JSON"});
+    run_refuses("1\nnan 1 1 0 0\n", {":2:", "radius of disk 0", "nan", "finite"});
+    run_refuses("1\n-3 1 1 0 0\n", {":2:", "radius of disk 0", "-3", "positive"});
+    scene_refused("[packing]\nradii = [1.0, nan]\n", {":2:", "radii[1]", "nan", "finite"});
+    scene_refused("[packing]\nradii = [1.0, 0.0]\n", {":2:", "radii[1]", "0", "positive"});
+}
+
+BOOST_AUTO_TEST_CASE(unknown_keys) {
+    scene_refused("[packing]\ndisks = 4\nsede = 1\n" + up_6, {":3:", "unknown key 'sede'", "seed"});
+    scene_refused("[packing]\ndisks = 4\n[lode]\n", {":3:", "'lode'", "load"});
+    run_refuses(replaced(two, "\"length\"", "\"lenght\""), {"unknown field 'lenght'", "length"});
+}
+
+BOOST_AUTO_TEST_CASE(empty_files) {
+    run_refuses("", {"empty"});
+    scene_refused("", {"empty"});
+    const scratch::Folder folder;
+    scratch::write(folder / "e.json", "");
+    expect(run({"inspect", (folder / "e.json").string()}), 65, {"e.json", "empty"});
+    expect(run({"convert", (folder / "e.json").string(), "-o", (folder / "o.json").string()}), 65, {"e.json", "empty"});
+    expect(run({"report", (folder / "e.json").string()}), 65, {"e.json", "empty"});
+    BOOST_TEST(!fs::exists(folder / "o.json"));
+    expect(run({"inspect", (folder / "absent.json").string()}), 65, {"absent.json", "No such file"});
+    expect(run({"report", folder.path().string()}), 65, {"run.json", "folder of a run"});
+}
+
+BOOST_AUTO_TEST_CASE(truncated_states) {
+    run_refuses(two.substr(0, two.size() / 2), {"start.json:", "truncated"});
+    const std::string sample = scratch::read(scratch::data("vertex100.txt"));
+    run_refuses(sample.substr(0, sample.find('\n', sample.size() / 2)), {"start.json:", "ends here", "expected"});
+}
+
+BOOST_AUTO_TEST_CASE(a_start_with_self_stresses) {
+    run_refuses(state_text(crafted::square_lattice(3)), {"N_f = 20", "N = 24", "rank 20", "h = 4", "k = 0", "N = N_f"});
+}
+
+BOOST_AUTO_TEST_CASE(disks_larger_than_the_box) {
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[50.0,1.0,1.0]"), {"disk 0", "100", "larger than the box"});
+}
+
+BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
+    const scratch::Folder folder;
+    scratch::write(folder / "plain", "a file");
+    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write(folder / "p.toml", "[packing]\ndisks = 2000\n"); // would take a while: it must be refused before
+    const std::string below = (folder / "plain/below").string();
+    expect(run({"run", (folder / "s.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
+    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "plain").string(), "-q"}), 74,
+           {"plain", "cannot write"});
+    expect(run({"prepare", (folder / "p.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
+    expect(run({"prepare", (folder / "p.toml").string(), "-o", (folder / "no/p.json").string(), "-q"}), 74,
+           {"no/p.json", "cannot write"});
+    expect(run({"convert", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
+    expect(run({"report", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
+    BOOST_TEST(scratch::read(folder / "plain") == "a file");
+    BOOST_TEST(!fs::exists(folder / "no"));
+}
+
+BOOST_AUTO_TEST_CASE(contradictory_programmes) {
+    const std::string packing = "[packing]\ndisks = 4\n";
+    scene_refused(packing + "[[programme]]\ndo = \"up\"\n", {":3:", "no end"});
+    scene_refused(packing + "[[programme]]\ndo = \"up\"\nto = 0.5\n",
+                  {":3:", "0.5", "ratio at its start is 1", "larger"});
+    scene_refused(packing + up_6 + "[[programme]]\ndo = \"down\"\nfrom = 7\nto = 1.0\n",
+                  {":6:", "equilibrium 7", "number 6"});
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", packing);
+    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "out").string()}), 65,
+           {"s.toml", "no [[programme]]"});
+    // Only the start file tells that 1.5 is behind.
+    isostat::State<2> state = crafted::two_disks(1, 2, 1, 2);
+    scratch::write(folder / "start.json", state_text(state));
+    scratch::write(folder / "f.toml", scene_from("start.json", "[[programme]]\ndo = \"up\"\nto = 1.5\n"));
+    expect(run({"run", (folder / "f.toml").string(), "-o", (folder / "out").string()}), 65,
+           {"f.toml:3", "start is 2", "larger"});
+    expect(run({"prepare", (folder / "f.toml").string(), "-o", (folder / "o.json").string()}), 65,
+           {"f.toml", "nothing to prepare"});
+    BOOST_TEST(!fs::exists(folder / "out"));
+}
+
+BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "run").string();
+    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    expect(run({"run", (folder / "s.toml").string(), "-o", out, "--resume", "-q"}), 65,
+           {"run.json", "no run to resume"});
+    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
+    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 64,
+           {"holds a run already", "--resume", "--force"});
+    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q", "--force"}), 0);
+    scratch::write(folder / "t.toml", scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"steepest\"\n"));
+    expect(run({"run", (folder / "t.toml").string(), "-o", out, "-q", "--resume"}), 65,
+           {"run.json", "another scene", "t.toml"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,273 @@
+#include "cli/program.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <nlohmann/json.hpp>
+
+using namespace program;
+using isostat::state_text;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
+    for (const char* name : {"prepare", "run", "inspect", "plan", "report", "convert"}) {
+        const Outcome outcome = run({name, "--help"});
+        expect(outcome, 0);
+        BOOST_TEST(contains(outcome.out, "isostat " + std::string(name) + " "), name);
+        BOOST_TEST(contains(outcome.out, "Example"), name);
+        BOOST_TEST(contains(run({"--help"}).out, name));
+    }
+    BOOST_TEST(run({"--version"}).out.starts_with("isostat "));
+}
+
+BOOST_AUTO_TEST_CASE(wrong_use_is_64) {
+    expect(run({}), 64);
+    expect(run({"fly"}), 64, {"subcommand"});
+    expect(run({"run"}), 64, {"scene"});
+    expect(run({"run", "scene.toml"}), 64, {"--output"});
+    expect(run({"inspect", "a", "b"}), 64);
+    expect(run({"run", "scene.toml", "-o", "x", "--resume", "--force"}), 64);
+    expect(run({"plan", "scene.toml", "--fast"}), 64, {"--fast"});
+}
+
+BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
+    const scratch::Folder folder;
+    scratch::write(folder / "two.json", state_text(crafted::two_disks(1, 2, 1, 1)));
+    const Outcome outcome = run({"inspect", (folder / "two.json").string(), "--json"});
+    expect(outcome, 0);
+    const json j = json::parse(outcome.out);
+    BOOST_TEST(j["N_f"] == 6);
+    BOOST_TEST(j["N"] == 6);
+    BOOST_TEST(j["rank"] == 6);
+    BOOST_TEST(j["h"] == 0);
+    BOOST_TEST(j["k"] == 0);
+    BOOST_TEST(j["rattlers"].empty());
+    BOOST_TEST(j["verdict"] == "proved");
+    const double t = 1 / (2 * std::sqrt(2.0));
+    BOOST_TEST(j["supported_interval"][0].get<double>() == t, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(j["supported_interval"][1].is_null()); // unbounded
+    BOOST_TEST(j["opens"][0] == "1-bottom");
+    BOOST_TEST(j["min_force"].get<double>() == t, boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(j["min_force_contact"] == "0-bottom");
+    const Outcome words = run({"inspect", (folder / "two.json").string()});
+    for (const char* line : {"degrees of freedom N_f   6", "self-stresses h          0", "opens 1-bottom", "unbounded",
+                             "equilibrium    proved"}) {
+        BOOST_TEST(contains(words.out, line), line);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
+    const scratch::Folder folder;
+    const auto status = [&](const isostat::State<2>& state) {
+        scratch::write(folder / "s.json", state_text(state));
+        return run({"inspect", (folder / "s.json").string(), "--json"});
+    };
+    const Outcome lattice = status(crafted::square_lattice(3));
+    expect(lattice, 1);
+    BOOST_TEST(json::parse(lattice.out)["h"] == 4);
+    BOOST_TEST(json::parse(lattice.out)["verdict"] == "refuted");
+    isostat::State<2> open = crafted::two_disks(1, 2, 1, 1);
+    open.contacts.pop_back();
+    const Outcome mechanism = status(open);
+    expect(mechanism, 1);
+    BOOST_TEST(json::parse(mechanism.out)["k"] == 1);
+    const Outcome tension = status(crafted::two_disks(1, 2, 1, 0.3)); // below the limit 0.3535: 1-bottom pulls
+    expect(tension, 1);
+    BOOST_TEST(contains(tension.out, "1-bottom"));
+}
+
+BOOST_AUTO_TEST_CASE(convert_keeps_every_number) {
+    const scratch::Folder folder;
+    const std::string target = (folder / "state.json").string();
+    expect(run({"convert", scratch::data("vertex100.txt"), "-o", target}), 0);
+    const isostat::State<2> a = isostat::read_state<2>(scratch::data("vertex100.txt")).state;
+    const isostat::State<2> b = isostat::read_state<2>(target).state;
+    BOOST_TEST((a.packing.q == b.packing.q));
+    BOOST_TEST((a.packing.radius == b.packing.radius));
+    BOOST_TEST((a.load.infinitesimal == b.load.infinitesimal));
+    BOOST_TEST((a.contacts == b.contacts));
+    BOOST_TEST(json::parse(b.provenance)["command"].get<std::string>().find("convert") != std::string::npos);
+    expect(run({"inspect", target}), 0);
+}
+
+BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", "[packing]\ndisks = 25\nseed = 5\n");
+    const std::string first = (folder / "1.json").string();
+    const std::string second = (folder / "2.json").string();
+    expect(run({"prepare", (folder / "s.toml").string(), "-o", first}), 0);
+    const Outcome quiet = run({"prepare", (folder / "s.toml").string(), "-o", second, "--quiet"});
+    expect(quiet, 0);
+    BOOST_TEST(quiet.out.empty());
+    BOOST_TEST(quiet.err.empty());
+    const isostat::State<2> a = isostat::read_state<2>(first).state;
+    const isostat::State<2> b = isostat::read_state<2>(second).state;
+    BOOST_TEST((a.packing.q == b.packing.q));
+    BOOST_TEST((a.contacts == b.contacts));
+    BOOST_TEST(a.contacts.size() == 52U);
+    const json provenance = json::parse(a.provenance);
+    BOOST_TEST(provenance["settings"]["packing"]["seed"] == 5);
+    BOOST_TEST(provenance["settings"]["load"]["kind"] == "nominal");
+    BOOST_TEST(provenance.contains("infinitesimal_seed"));
+    BOOST_TEST(provenance["program"].get<std::string>().starts_with("isostat "));
+    expect(run({"inspect", first}), 0);
+}
+
+BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
+    const scratch::Folder folder;
+    for (const char* name : {"biaxial-400.toml", "biaxial-1936.toml", "biaxial-4900.toml"}) {
+        const Outcome plan = run({"plan", std::string(ISOSTAT_EXAMPLES) + "/" + name});
+        expect(plan, 0);
+        BOOST_TEST(contains(plan.out, "max_arcs = 20000"));
+        BOOST_TEST(contains(plan.out, "# default"));
+        scratch::write(folder / "again.toml", plan.out);
+        const Outcome again = run({"plan", (folder / "again.toml").string()});
+        expect(again, 0);
+        const auto settings = [](const std::string& text) { // without the remarks on lines
+            std::istringstream in(text.substr(text.find("\n[packing]")));
+            std::string line;
+            std::string kept;
+            while (std::getline(in, line)) {
+                kept += line.substr(0, line.find(" #")) + "\n";
+            }
+            return kept;
+        };
+        BOOST_TEST(settings(again.out) == settings(plan.out));
+    }
+    const json j = json::parse(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/biaxial-400.toml", "--json"}).out);
+    BOOST_TEST(j["plan"].size() > 10U);
+    BOOST_TEST(j["programme"].size() == 5U);
+}
+
+BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "run").string();
+    scratch::write(folder / "s.toml",
+                   scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n" +
+                                                                  "[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
+    const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", out});
+    expect(outcome, 0);
+    for (const char* word :
+         {"sigma2/sigma1", "eps2", "arcs", "margin", "precision", "elapsed", "rest", "completed", "segment 3 of 3"}) {
+        BOOST_TEST(contains(outcome.out, word), word);
+    }
+    const auto rows = isostat::read_equilibria(out + "/equilibria.csv");
+    BOOST_REQUIRE(rows.size() > 9U);
+    for (const auto& row : rows) {
+        BOOST_TEST(row.proved);
+        BOOST_TEST(row.hyperstaticity == 0);
+        BOOST_TEST(row.backbone == 2 * (100 - row.rattlers) + 2);
+    }
+    BOOST_TEST(rows.back().ratio == 1.0);
+    const auto branch = std::find_if(rows.begin(), rows.end(), [](const auto& r) { return r.segment == 2; });
+    BOOST_REQUIRE((branch != rows.end()));
+    BOOST_TEST(branch->previous == 3);
+    for (const char* name : {"eq_000000", "eq_000003", "eq_000006", "last"}) {
+        BOOST_TEST(fs::exists(out + "/states/" + name + ".json"), name);
+        expect(run({"inspect", out + "/states/" + name + ".json"}), 0);
+    }
+    const json run_json = json::parse(scratch::read(out + "/run.json"));
+    BOOST_TEST(run_json["status"] == "completed");
+    BOOST_TEST(contains(run_json["scene"].get<std::string>(), "equilibria = 6"));
+    BOOST_TEST(run_json["settings"]["run"]["rule"] == "most_negative");
+    std::istringstream events(scratch::read(out + "/events.jsonl"));
+    std::string line;
+    long step = 0;
+    while (std::getline(events, line)) {
+        const json event = json::parse(line);
+        BOOST_TEST(event["step"] == ++step);
+        BOOST_TEST(event["margin"].get<double>() > 1);
+        BOOST_TEST(event["decided_by"].get<std::string>() != "none");
+    }
+    BOOST_TEST(json::parse(scratch::read(out + "/summary.json"))["counters"]["arcs"] == step);
+}
+
+BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "--json"});
+    expect(outcome, 0);
+    const json j = json::parse(outcome.out);
+    BOOST_TEST(j["status"] == "completed");
+    BOOST_TEST(j["counters"]["equilibria"] == 6);
+    BOOST_TEST(j["counters"]["decisions"]["undecided"] == 0);
+    BOOST_TEST(outcome.err.empty());
+    scratch::write(folder / "p.toml", "[packing]\ndisks = 9\n");
+    const Outcome prepared =
+        run({"prepare", (folder / "p.toml").string(), "-o", (folder / "p.json").string(), "--json"});
+    expect(prepared, 0);
+    BOOST_TEST(json::parse(prepared.out)["contacts"] == 20);
+    BOOST_TEST(json::parse(run({"convert", (folder / "p.json").string(), "-o", (folder / "q.json").string(), "--json"})
+                               .out)["disks"] == 9);
+    const Outcome report = run({"report", (folder / "run").string(), "--json", "--no-charts"});
+    BOOST_TEST(json::parse(report.out)["files"].size() > 3U);
+}
+
+BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
+    const scratch::Folder folder;
+    scratch::write(folder / "cap.toml", scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nmax_arcs = 3\n"));
+    const Outcome cap = run({"run", (folder / "cap.toml").string(), "-o", (folder / "cap").string(), "-q"});
+    expect(cap, 1, {"failed", "max_arcs"});
+    BOOST_TEST(contains(scratch::read(folder / "cap/run.json"), "\"status\": \"failed: "));
+    BOOST_TEST(fs::exists(folder / "cap/summary.json"));
+
+    scratch::write(folder / "three.json", state_text(crafted::three_disks(1, 1, 1, 1, 1)));
+    scratch::write(folder / "tie.toml", scene_from("three.json", "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    const Outcome tie = run({"run", (folder / "tie.toml").string(), "-o", (folder / "tie").string(), "-q"});
+    expect(tie, 2, {"undecided", "tie"});
+    BOOST_TEST(isostat::read_equilibria(folder / "tie/equilibria.csv").size() == 1U);
+    BOOST_TEST(contains(scratch::read(folder / "tie/summary.json"), "\"status\": \"undecided\""));
+}
+
+BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml",
+                   scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"up\"\nto = 1.01\n"));
+    const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"});
+    expect(outcome, 1, {"s.toml:6", "larger ratio than 1.01"});
+    BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "failed"));
+}
+
+BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_remain) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "run").string();
+    scratch::write(
+        folder / "s.toml",
+        scene_from(scratch::data("vertex100.txt"),
+                   up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
+    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
+    BOOST_TEST(!fs::exists(out + "/figures"));
+    const Outcome without = run({"report", out}, "PATH= ");
+    expect(without, 0, {"gnuplot", "cannot be started", "gnuplot-nox"});
+    for (const char* name : {"staircase", "cycles", "stress_increments", "strain_increments"}) {
+        BOOST_TEST(fs::exists(out + "/figures/" + name + ".dat"), name);
+        BOOST_TEST(fs::exists(out + "/figures/" + name + ".gp"), name);
+        BOOST_TEST(!fs::exists(out + "/figures/" + name + ".svg"), name);
+    }
+    const Outcome with = run({"report", out, "--vtk"});
+    expect(with, 0);
+    BOOST_TEST(with.err.empty(), with.err);
+    for (const char* name : {"staircase", "cycles", "stress_increments", "strain_increments"}) {
+        BOOST_TEST(contains(scratch::read(out + "/figures/" + name + ".svg"), "</svg>"), name);
+        BOOST_TEST(scratch::read(out + "/figures/" + name + ".png").starts_with("\x89PNG"), name);
+        BOOST_TEST(!fs::exists(out + "/figures/" + name + ".gp.log"), name);
+    }
+    BOOST_TEST(contains(scratch::read(out + "/figures/forces_last.svg"), "class=\"force\""));
+    BOOST_TEST(scratch::read(out + "/figures/forces_last.vtk").starts_with("# vtk DataFile"));
+    BOOST_TEST(contains(with.out, "left of peak strain"));
+    BOOST_TEST(contains(scratch::read(out + "/figures/report.txt"), "equilibria proved"));
+}
+
+BOOST_AUTO_TEST_CASE(a_state_without_forces_gets_them_for_its_picture) {
+    const scratch::Folder folder;
+    expect(run({"report", scratch::data("vertex100.txt"), "-o", folder.path().string(), "--vtk"}), 0);
+    BOOST_TEST(contains(scratch::read(folder / "forces_vertex100.svg"), "class=\"force\""));
+    BOOST_TEST(contains(scratch::read(folder / "forces_vertex100.svg"), "class=\"rattler\""));
+    BOOST_TEST(fs::exists(folder / "forces_vertex100.vtk"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

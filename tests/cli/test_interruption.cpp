@@ -1,0 +1,163 @@
+// Kill, Ctrl-C and --resume.
+#include "cli/program.hpp"
+
+#include <isostat/io/run_directory.hpp>
+
+#include <fcntl.h>
+#include <spawn.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+extern char** environ; // NOLINT(readability-redundant-declaration)
+
+using namespace program;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A program that runs by itself.
+class Background {
+  public:
+    explicit Background(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), ISOSTAT_PROGRAM);
+        std::vector<char*> pointers;
+        for (std::string& argument : arguments) {
+            pointers.push_back(argument.data());
+        }
+        pointers.push_back(nullptr);
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        for (const int fd : {1, 2}) {
+            posix_spawn_file_actions_addopen(&actions, fd, "/dev/null", O_WRONLY, 0);
+        }
+        BOOST_REQUIRE(::posix_spawn(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ) == 0);
+        posix_spawn_file_actions_destroy(&actions);
+    }
+    /// Sends a signal as soon as the file has so many lines; false when the program ended before.
+    bool signal_at(const fs::path& file, long lines, int signal) {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        while (std::chrono::steady_clock::now() < deadline) {
+            const std::string text = scratch::read(file);
+            if (std::count(text.begin(), text.end(), '\n') >= lines) {
+                return ::kill(pid_, signal) == 0;
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        ::kill(pid_, SIGKILL);
+        return false;
+    }
+    int wait() {
+        int status = 0;
+        ::waitpid(pid_, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    }
+
+  private:
+    pid_t pid_ = 0;
+};
+
+/// Two segments, so that a kill can come in either; vertex400 keeps it going long enough to be hit.
+const std::string programme =
+    "[[programme]]\ndo = \"up\"\nequilibria = 12\n[[programme]]\ndo = \"down\"\nfrom = 4\nequilibria = 6\n";
+
+void same_files(const fs::path& a, const fs::path& b) {
+    BOOST_TEST((scratch::read(a / "events.jsonl") == scratch::read(b / "events.jsonl")));
+    BOOST_TEST(scratch::without_times(scratch::read(a / "equilibria.csv")) ==
+               scratch::without_times(scratch::read(b / "equilibria.csv")));
+    for (const char* name : {"eq_000000.json", "eq_000004.json", "eq_000012.json", "eq_000018.json"}) {
+        // The command line in a state differs by the name of the folder.
+        const auto body = [&](const fs::path& run) {
+            const std::string text = scratch::read(run / "states" / name);
+            return text.substr(std::min(text.find("\"load\""), text.size()));
+        };
+        BOOST_TEST(!body(a).empty(), name);
+        BOOST_TEST((body(a) == body(b)), name);
+    }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "s.toml").string();
+    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme));
+    expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
+    const std::string events = scratch::read(folder / "whole/events.jsonl");
+    const auto arcs = std::count(events.begin(), events.end(), '\n');
+    // In the first rearrangement, in the middle, and near the end (second segment).
+    for (const long at : {1L, arcs / 2, arcs - 3}) {
+        BOOST_TEST_CONTEXT("killed at arc " << at << " of " << arcs) {
+            const fs::path out = folder / ("cut" + std::to_string(at));
+            Background background({"run", scene, "-o", out.string(), "-q"});
+            BOOST_TEST(background.signal_at(out / "events.jsonl", at, SIGKILL));
+            const int status = background.wait();
+            BOOST_TEST((status == 128 + SIGKILL || status == 0)); // 0: it was faster than the signal
+            if (status != 0) {
+                BOOST_TEST(contains(scratch::read(out / "run.json"), "\"status\": \"running\""));
+                BOOST_TEST(!fs::exists(out / "summary.json"));
+            }
+            expect(run({"run", scene, "-o", out.string(), "-q", "--resume"}), 0);
+            same_files(out, folder / "whole");
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "s.toml").string();
+    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme));
+    expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const fs::path out = folder / ("cut" + std::to_string(signal));
+        Background background({"run", scene, "-o", out.string(), "-q"});
+        BOOST_TEST(background.signal_at(out / "equilibria.csv", 4, signal));
+        const int status = background.wait();
+        BOOST_TEST((status == 130 || status == 0));
+        if (status == 130) {
+            BOOST_TEST(contains(scratch::read(out / "run.json"), "\"status\": \"interrupted"));
+            BOOST_TEST(contains(scratch::read(out / "summary.json"), "\"status\": \"interrupted\""));
+            BOOST_TEST(isostat::read_equilibria(out / "equilibria.csv").size() >= 3U);
+        }
+        expect(run({"run", scene, "-o", out.string(), "-q", "--resume"}), 0);
+        same_files(out, folder / "whole");
+    }
+}
+
+BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "s.toml").string();
+    const fs::path out = folder / "run";
+    scratch::write(scene, scene_from(scratch::data("vertex100.txt"), up_6));
+    expect(run({"run", scene, "-o", out.string(), "-q"}), 0);
+    std::vector<std::string> before;
+    for (const char* name : {"events.jsonl", "equilibria.csv", "summary.json", "run.json", "states/last.json"}) {
+        before.push_back(scratch::read(out / name));
+    }
+    expect(run({"run", scene, "-o", out.string(), "-q", "--resume"}), 0);
+    std::size_t k = 0;
+    for (const char* name : {"events.jsonl", "equilibria.csv", "summary.json", "run.json", "states/last.json"}) {
+        BOOST_TEST(scratch::read(out / name) == before[k++], name);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what_it_reached) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "s.toml").string();
+    scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
+    Background background({"run", scene, "-o", (folder / "run").string(), "-q"});
+    BOOST_TEST(
+        background.signal_at(folder / "run/equilibria.csv", 1, SIGINT)); // the header is there before the preparation
+    BOOST_TEST(background.wait() == 130);
+    BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "interrupted: "));
+    BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "preparation failed at "));
+    BOOST_TEST(contains(scratch::read(folder / "run/preparation_failed.json"), "isostat-packing"));
+    BOOST_TEST(!fs::exists(folder / "run/start.json"));
+    BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,29 @@
+// Links something of every room, so that a missing library shows.
+#include <isostat/io/state_file.hpp>
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/report/picture.hpp>
+#include <isostat/scene/scene.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <cstdio>
+
+int main() {
+    using namespace isostat;
+    const Scene scene = parse_scene("[packing]\ndisks = 16\n", "inline", "");
+    PreparationReport<2> report;
+    const auto prepared = prepare<2>(scene.preparation, report);
+    if (!prepared.ok()) {
+        std::printf("%s\n", prepared.failure().message.c_str());
+        return 1;
+    }
+    const State<2> state = parse_state<2>(state_text(prepared.value()), "text").state;
+    const auto inspection = inspect_vertex(state);
+    if (!inspection.ok() || !inspection.value().equilibrium) {
+        return 1;
+    }
+    std::printf("%d contacts, isostatic equilibrium: %s, picture of %zu bytes\n",
+                inspection.value().record.contact_count,
+                std::string(to_string(inspection.value().record.verdict)).c_str(),
+                force_picture(state, inspection.value().forces, "").size());
+    return 0;
+}

@@ -1,0 +1,220 @@
+#include "io/bad_input.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <atomic>
+
+using namespace isostat;
+namespace fs = std::filesystem;
+
+namespace {
+
+RunHeader header() {
+    RunHeader h;
+    h.program = "isostat test";
+    h.command = "isostat run";
+    h.scene_name = "test.toml";
+    h.scene_text = "text";
+    h.programme = {"up"};
+    h.keep = {2};
+    return h;
+}
+
+Segment up(int equilibria) {
+    Segment segment;
+    segment.equilibria = equilibria;
+    return segment;
+}
+
+/// Writes the records, and raises a flag during some rearrangement.
+class Stopper final : public RunObserver<2> {
+  public:
+    Stopper(RunDirectory& directory, std::atomic<bool>& stop, long at_step)
+        : directory_(directory), stop_(stop), at_step_(at_step) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        directory_.on_arc(arc);
+        stop_ = stop_ || arc.step == at_step_;
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& r, const State<2>& s, const std::vector<double>& f) override {
+        directory_.on_equilibrium(r, s, f);
+    }
+
+  private:
+    RunDirectory& directory_;
+    std::atomic<bool>& stop_;
+    long at_step_;
+};
+
+/// Runs from the sample, or from the checkpoint of the folder; stops during arc `stop_at` (-1: never). Returns whether
+/// it completed.
+bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool finish) {
+    RunCounters counters;
+    RunDirectory directory(path, header(), mode, counters);
+    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    int made = 0;
+    if (const auto& point = directory.checkpoint()) {
+        state = point->state;
+        counters = point->counters;
+        made = point->made;
+    }
+    std::atomic<bool> stop{false};
+    RunOptions options;
+    options.stop = &stop;
+    Stopper stopper(directory, stop, stop_at);
+    directory.begin_segment(0, up(6), made, state.equilibrium);
+    const SegmentOutcome outcome = run_segment<2>(state, up(6 - made), 0, options, counters, stopper);
+    if (finish) {
+        directory.finish(outcome.completed ? RunStatus::completed : RunStatus::interrupted, "");
+    }
+    return outcome.completed;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(io)
+
+BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
+    const scratch::Folder folder;
+    BOOST_TEST(play(folder / "run", RunDirectory::Mode::fresh, -1, true));
+    const std::vector<EquilibriumRow> rows = read_equilibria(folder / "run/equilibria.csv");
+    BOOST_REQUIRE_EQUAL(rows.size(), 7U);
+    BOOST_TEST(rows[0].previous == -1);
+    BOOST_TEST(rows[6].previous == 5);
+    BOOST_TEST(rows[6].proved);
+    for (const char* name : {"eq_000000", "eq_000002", "eq_000006", "last"}) {
+        BOOST_TEST(fs::exists(folder / ("run/states/" + std::string(name) + ".json")), name);
+    }
+    BOOST_TEST(!fs::exists(folder / "run/states/eq_000001.json"));
+    const StateFile<2> last = read_state<2>(folder / "run/states/last.json");
+    BOOST_TEST(last.state.equilibrium == 6);
+    BOOST_TEST(last.forces.size() == last.state.contacts.size());
+    BOOST_TEST(last.state.load.stress[1] == rows[6].stress);
+    BOOST_TEST(scratch::read(folder / "run/run.json").find("\"status\": \"completed\"") != std::string::npos);
+    BOOST_TEST(scratch::read(folder / "run/summary.json").find("\"equilibria\": 6") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
+    const scratch::Folder folder;
+    play(folder / "run", RunDirectory::Mode::fresh, -1, true);
+    std::istringstream csv(scratch::read(folder / "run/equilibria.csv"));
+    std::string line;
+    std::getline(csv, line);
+    BOOST_TEST(line.starts_with("# number,previous,"));
+    const auto columns = std::count(line.begin(), line.end(), ',');
+    BOOST_TEST(static_cast<std::size_t>(columns + 1) == equilibria_columns().size());
+    while (std::getline(csv, line)) {
+        BOOST_TEST(std::count(line.begin(), line.end(), ',') == columns);
+        std::istringstream fields(line);
+        std::string field;
+        while (std::getline(fields, field, ',')) {
+            std::size_t used = 0;
+            BOOST_CHECK_NO_THROW((void)std::stod(field, &used));
+            BOOST_TEST(used == field.size(), field);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
+    const scratch::Folder folder;
+    BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
+    // Arc 9 is inside the rearrangement of 7 arcs that leads to equilibrium 3; 1 is before the first equilibrium after
+    // the start.
+    for (const long stop_at : {1L, 9L, 14L}) {
+        for (const bool finish : {true, false}) {
+            BOOST_TEST_CONTEXT("stopped at arc " << stop_at << (finish ? "" : ", killed")) {
+                const fs::path path = folder / ("cut" + std::to_string(stop_at) + (finish ? "f" : "k"));
+                BOOST_TEST(!play(path, RunDirectory::Mode::fresh, stop_at, finish));
+                BOOST_TEST(scratch::read(path / "events.jsonl") != scratch::read(folder / "whole/events.jsonl"));
+                BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
+                BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
+                BOOST_TEST(scratch::without_times(scratch::read(path / "equilibria.csv")) ==
+                           scratch::without_times(scratch::read(folder / "whole/equilibria.csv")));
+                for (const char* name : {"eq_000000.json", "eq_000002.json", "eq_000006.json", "last.json"}) {
+                    BOOST_TEST((scratch::read(path / "states" / name) == scratch::read(folder / "whole/states" / name)),
+                               name);
+                }
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_record_cut_in_the_middle_by_a_kill_is_dropped) {
+    const scratch::Folder folder;
+    BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
+    BOOST_REQUIRE(!play(folder / "cut", RunDirectory::Mode::fresh, 9, false));
+    std::ofstream(folder / "cut/events.jsonl", std::ios::app) << "{\"step\":10,\"equili";
+    std::ofstream(folder / "cut/equilibria.csv", std::ios::app) << "3,2,0,1.05";
+    BOOST_TEST(read_equilibria(folder / "cut/equilibria.csv").size() == 3U);
+    BOOST_TEST(play(folder / "cut", RunDirectory::Mode::resume, -1, true));
+    BOOST_TEST(scratch::read(folder / "cut/events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
+}
+
+BOOST_AUTO_TEST_CASE(two_runs_in_one_folder_are_refused) {
+    const scratch::Folder folder;
+    const RunCounters counters;
+    const RunDirectory first(folder / "run", header(), RunDirectory::Mode::fresh, counters);
+    for (const auto mode : {RunDirectory::Mode::fresh, RunDirectory::Mode::force, RunDirectory::Mode::resume}) {
+        expect_error([&] { const RunDirectory second(folder / "run", header(), mode, counters); },
+                     ErrorKind::cannot_write, {"run", "another running program"});
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
+    const scratch::Folder folder;
+    play(folder / "run", RunDirectory::Mode::fresh, -1, true);
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    const RunCounters counters;
+    expect_error([&] { const RunDirectory again(folder / "run", header(), RunDirectory::Mode::fresh, counters); },
+                 ErrorKind::usage, {"holds a run already", "--resume", "--force"});
+    BOOST_TEST(scratch::read(folder / "run/events.jsonl") == events);
+    const RunDirectory forced(folder / "run", header(), RunDirectory::Mode::force, counters);
+    BOOST_TEST(scratch::read(folder / "run/events.jsonl").empty());
+    BOOST_TEST(!fs::exists(folder / "run/summary.json"));
+    BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
+}
+
+BOOST_AUTO_TEST_CASE(files_of_others_in_a_new_folder_are_not_touched) {
+    const scratch::Folder folder;
+    fs::create_directories(folder / "run/states");
+    scratch::write(folder / "run/states/mine.txt", "mine");
+    scratch::write(folder / "run/start.json", "mine");
+    const RunCounters counters;
+    const RunDirectory directory(folder / "run", header(), RunDirectory::Mode::fresh, counters);
+    BOOST_TEST(scratch::read(folder / "run/states/mine.txt") == "mine");
+    BOOST_TEST(!directory.start().has_value());
+}
+
+BOOST_AUTO_TEST_CASE(resuming_something_else_is_refused) {
+    const scratch::Folder folder;
+    const RunCounters counters;
+    expect_bad_input([&] { const RunDirectory none(folder / "none", header(), RunDirectory::Mode::resume, counters); },
+                     {"run.json", "no run to resume"});
+    BOOST_REQUIRE(!play(folder / "run", RunDirectory::Mode::fresh, 9, false));
+    RunHeader other = header();
+    other.scene_text = "another";
+    expect_bad_input([&] { const RunDirectory changed(folder / "run", other, RunDirectory::Mode::resume, counters); },
+                     {"run.json", "another scene"});
+    other = header();
+    other.program = "isostat 99";
+    expect_bad_input([&] { const RunDirectory newer(folder / "run", other, RunDirectory::Mode::resume, counters); },
+                     {"isostat test", "isostat 99"});
+    const std::string checkpoint = scratch::read(folder / "run/checkpoint.json");
+    scratch::write(folder / "run/checkpoint.json", checkpoint.substr(0, checkpoint.size() / 2));
+    expect_bad_input([&] { const RunDirectory cut(folder / "run", header(), RunDirectory::Mode::resume, counters); },
+                     {"checkpoint.json", "truncated"});
+    scratch::write(folder / "run/checkpoint.json", checkpoint);
+    scratch::write(folder / "run/events.jsonl", "");
+    expect_bad_input([&] { const RunDirectory lost(folder / "run", header(), RunDirectory::Mode::resume, counters); },
+                     {"events.jsonl", "0 bytes"});
+}
+
+BOOST_AUTO_TEST_CASE(a_killed_run_has_no_summary_and_says_running) {
+    const scratch::Folder folder;
+    BOOST_REQUIRE(!play(folder / "run", RunDirectory::Mode::fresh, 9, false));
+    BOOST_TEST(!fs::exists(folder / "run/summary.json"));
+    BOOST_TEST(scratch::read(folder / "run/run.json").find("\"status\": \"running\"") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

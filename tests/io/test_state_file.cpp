@@ -1,0 +1,231 @@
+#include "io/bad_input.hpp"
+#include "support/crafted.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+using namespace isostat;
+using scratch::replaced;
+
+namespace {
+
+void check_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    BOOST_REQUIRE_EQUAL(a.size(), b.size());
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        BOOST_TEST((std::bit_cast<std::uint64_t>(a[k]) == std::bit_cast<std::uint64_t>(b[k])),
+                   a[k] << " became " << b[k]);
+    }
+}
+
+void check_same(const State<2>& a, const State<2>& b) {
+    check_bits(a.packing.radius, b.packing.radius);
+    check_bits(a.packing.q, b.packing.q);
+    check_bits(a.load.infinitesimal, b.load.infinitesimal);
+    check_bits(a.load.disk_force, b.load.disk_force);
+    check_bits({a.load.stress.begin(), a.load.stress.end()}, {b.load.stress.begin(), b.load.stress.end()});
+    check_bits({a.load.reference_length.begin(), a.load.reference_length.end()},
+               {b.load.reference_length.begin(), b.load.reference_length.end()});
+    BOOST_TEST((a.load.kind == b.load.kind));
+    BOOST_TEST(a.load.loaded_axis == b.load.loaded_axis);
+    BOOST_TEST((a.packing.walls == b.packing.walls));
+    BOOST_TEST((a.packing.fixed == b.packing.fixed));
+    BOOST_TEST((a.contacts == b.contacts));
+    BOOST_TEST(a.equilibrium == b.equilibrium);
+    BOOST_TEST(a.provenance == b.provenance);
+}
+
+/// Text of the two-disk case, to be spoilt.
+std::string two_disk_text() {
+    return state_text(crafted::two_disks(1, 2, 1, 1));
+}
+
+void refuses(const std::string& text, const std::vector<std::string>& words) {
+    BOOST_TEST_CONTEXT(text) {
+        expect_bad_input([&] { (void)parse_state<2>(text, "crafted.json"); }, words);
+    }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(io)
+
+BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
+    State<2> state = crafted::two_disks(1, 2, 0.1, 1.0 / 3);
+    state.load.infinitesimal = {5e-324, -0.0, 1e308, std::nextafter(0.3, 1.0)};
+    state.load.disk_force = {1e-300, 0.1 + 0.2, -7, 2.5};
+    state.load.kind = LoadKind::true_stress;
+    state.load.loaded_axis = 0;
+    state.packing.fixed = {0, 1};
+    state.packing.walls.upper[0] = WallKind::fixed;
+    state.contacts.push_back({ContactKind::held, 3, 0});
+    state.equilibrium = 12;
+    state.provenance = R"({"command":"isostat run \"a b\"","seed":18446744073709551615})";
+    const std::vector<double> forces{1, 1e-17, 3, 0, -0.0, 0.1, 7};
+    const StateFile<2> back = parse_state<2>(state_text<2>(state, forces), "text");
+    check_same(state, back.state);
+    check_bits(forces, back.forces);
+}
+
+BOOST_AUTO_TEST_CASE(every_bit_pattern_of_a_finite_number_comes_back) {
+    State<2> state = crafted::one_disk(1, 1);
+    std::uint64_t bits = 88172645463325252ULL;
+    for (int k = 0; k < 2000; ++k) {
+        bits ^= bits << 13U;
+        bits ^= bits >> 7U;
+        bits ^= bits << 17U;
+        const auto g = std::bit_cast<double>(bits);
+        if (std::isfinite(g)) {
+            state.load.infinitesimal = {g, -g};
+            check_bits(state.load.infinitesimal, parse_state<2>(state_text(state), "text").state.load.infinitesimal);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_sample_survives_the_way_through_a_file) {
+    const scratch::Folder folder;
+    const State<2> sample = read_state<2>(scratch::data("vertex100.txt")).state;
+    write_state(folder / "state.json", sample);
+    check_same(sample, read_state<2>(folder / "state.json").state);
+}
+
+BOOST_AUTO_TEST_CASE(hexadecimal_floats_are_numbers) {
+    const std::string text =
+        R"({"format": "isostat-state", "version": 1, "length": ["0x1p+1", 2], "disks": [["0x1p0", 1, "0x1.0p-0"]],
+        "contacts": [[0, "left"], [0, "right"], [0, "bottom"], [0, "top"]], "infinitesimal": [["-0x1.8p-3", 1]]})";
+    const State<2> state = parse_state<2>(text, "text").state;
+    BOOST_TEST(state.packing.q[0] == 1.0);
+    BOOST_TEST(state.packing.length(0) == 2.0);
+    BOOST_TEST(state.load.infinitesimal[0] == -0.1875);
+    BOOST_TEST(state.load.reference_length[0] == 2.0);
+    refuses(replaced(text, "0x1p+1", "0x1p+1 "), {"length[0]", "finite number"});
+    refuses(replaced(text, "0x1p+1", "two"), {"length[0]", "two", "finite number"});
+}
+
+BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
+    const std::string text = two_disk_text();
+    const std::size_t end = text.rfind('}');
+    for (std::size_t length = 0; length <= end; ++length) {
+        BOOST_CHECK_THROW((void)parse_state<2>(text.substr(0, length), "cut.json"), Error);
+    }
+    BOOST_CHECK_NO_THROW((void)parse_state<2>(text.substr(0, end + 1), "whole.json"));
+    refuses(text.substr(0, text.size() / 2), {"crafted.json:", "truncated"});
+    refuses(text + "}", {"crafted.json:", "JSON"});
+}
+
+BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected) {
+    const std::string text = two_disk_text();
+    refuses("[1]", {"isostat-state"});
+    refuses(replaced(text, "isostat-state", "isostat-run"), {"format", "isostat-run"});
+    refuses(replaced(text, "\"version\": 1", "\"version\": 2"), {"version", "2"});
+    refuses(replaced(text, "\"contacts\"", "\"contcts\""), {"unknown field 'contcts'"});
+    refuses(replaced(text, "\"disks\"", "\"disk_force\""), {"'disks' is missing"});
+    refuses(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"dimension", "3"});
+    refuses(replaced(text, "\"nominal\"", "\"dead\""), {"load.kind", "dead", "nominal"});
+    refuses(replaced(text, "[1.0,1.0]", "[1.0]"), {"load.stress", "2 values"});
+    refuses(replaced(text, "\"loaded_axis\":1", "\"loaded_axis\":2"), {"load.loaded_axis", "2"});
+    refuses(replaced(text, "\"fixed\"", "\"frozen\""), {"walls.lower[0]", "frozen"});
+    refuses(replaced(text, "\"equilibrium\": 0", "\"equilibrium\": -1"), {"equilibrium", "-1"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[0.0,1.0,1.0]"), {"disks[0][0]", "0.0", "positive radius"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[-1.0,1.0,1.0]"), {"disks[0][0]", "-1.0", "positive radius"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[1e999,1.0,1.0]"), {"out of"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[NaN,1.0,1.0]"), {"crafted.json:", "not valid JSON"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[null,1.0,1.0]"), {"disks[0][0]", "null", "finite number"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0]"), {"disks[0]", "3 values"});
+    refuses(replaced(text, "[1.0,1.0,1.0]", "[100.0,1.0,1.0]"), {"disk 0", "200", "larger than the box"});
+}
+
+BOOST_AUTO_TEST_CASE(bad_contacts_are_named) {
+    const std::string text = two_disk_text();
+    refuses(replaced(text, "[0,1]", "[0,2]"), {"contacts[2][1]", "2", "from 0 to 1"});
+    refuses(replaced(text, "[0,1]", "[-1,1]"), {"contacts[2][0]", "-1"});
+    refuses(replaced(text, "[0,1]", "[1,1]"), {"contacts[2]", "two different disks"});
+    refuses(replaced(text, "[0,1]", "[0,0.5]"), {"contacts[2][1]", "integer"});
+    refuses(replaced(text, "[0,1]", "[0,\"ceiling\"]"), {"contacts[2][1]", "ceiling", "left"});
+    refuses(replaced(text, "[0,1]", "[0,\"left\"]"), {"contacts[2]", "0-left", "contacts[0]", "once"});
+    refuses(replaced(text, "[0,1]", "[\"held\",6]"), {"contacts[2]", "from 0 to 5"});
+    // The order of two disks means nothing: the same contact twice.
+    refuses(replaced(text, "[0,1]", "[0,1], [1,0]"), {"contacts[3]", "0-1", "contacts[2]"});
+}
+
+BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {
+    const scratch::Folder folder;
+    for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        State<2> state = crafted::two_disks(1, 2, 1, 1);
+        state.packing.q[2] = value;
+        expect_bad_input([&] { write_state(folder / "state.json", state); }, {"position", "finite"});
+        state = crafted::two_disks(1, 2, 1, 1);
+        state.load.stress[1] = value;
+        expect_bad_input([&] { write_state(folder / "state.json", state); }, {"load.stress", "finite"});
+    }
+    BOOST_TEST(std::filesystem::is_empty(folder.path()));
+}
+
+BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) {
+    const scratch::Folder folder;
+    scratch::write(folder / "plain", "old");
+    expect_error([&] { write_atomically(folder / "plain/state.json", "new"); }, ErrorKind::cannot_write,
+                 {"plain/state.json", "cannot write"});
+    expect_error([&] { write_atomically(folder / "missing/state.json", "new"); }, ErrorKind::cannot_write,
+                 {"missing/state.json"});
+    expect_error([&] { write_atomically(folder.path(), "new"); }, ErrorKind::cannot_write, {folder.path().string()});
+    expect_error([&] { make_directory(folder / "plain/below"); }, ErrorKind::cannot_write, {"plain/below"});
+    expect_error([&] { make_directory(folder / "plain"); }, ErrorKind::cannot_write, {"plain"});
+    // A name that is free for the file but not for its ".part": the old content must survive.
+    scratch::write(folder / "state.json", "old");
+    std::filesystem::create_directory(folder / "state.json.part");
+    expect_error([&] { write_atomically(folder / "state.json", "new"); }, ErrorKind::cannot_write, {"state.json.part"});
+    BOOST_TEST(scratch::read(folder / "state.json") == "old");
+    BOOST_TEST(scratch::read(folder / "plain") == "old");
+    std::filesystem::remove(folder / "state.json.part");
+    write_atomically(folder / "state.json", "new");
+    BOOST_TEST(scratch::read(folder / "state.json") == "new");
+    BOOST_TEST(!std::filesystem::exists(folder / "state.json.part"));
+}
+
+BOOST_AUTO_TEST_CASE(links_are_kept_and_pipes_are_not_replaced) {
+    const scratch::Folder folder;
+    scratch::write(folder / "target", "old");
+    std::filesystem::create_symlink(folder / "target", folder / "link");
+    write_atomically(folder / "link", "new");
+    BOOST_TEST(std::filesystem::is_symlink(folder / "link"));
+    BOOST_TEST(scratch::read(folder / "target") == "new");
+
+    const std::string pipe = (folder / "pipe").string();
+    BOOST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    BOOST_REQUIRE(reader >= 0);
+    write_atomically(pipe, "through");
+    std::array<char, 16> buffer{};
+    const auto got = ::read(reader, buffer.data(), buffer.size());
+    ::close(reader);
+    BOOST_TEST(std::string(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))) == "through");
+    BOOST_TEST(std::filesystem::is_fifo(pipe));
+}
+
+BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {
+    const scratch::Folder folder;
+    expect_bad_input([&] { (void)read_state<2>(folder / "absent.json"); }, {"absent.json", "No such file"});
+    expect_bad_input([&] { (void)read_state<2>(folder.path()); }, {folder.path().string(), "directory"});
+    scratch::write(folder / "empty.json", "");
+    expect_bad_input([&] { (void)read_state<2>(folder / "empty.json"); }, {"empty.json", "empty"});
+    scratch::write(folder / "blank.json", " \n\n");
+    expect_bad_input([&] { (void)read_state<2>(folder / "blank.json"); }, {"blank.json", "empty"});
+}
+
+BOOST_AUTO_TEST_CASE(what_a_failed_preparation_leaves_is_no_state) {
+    const scratch::Folder folder;
+    write_packing(folder / "left.json", crafted::two_disks(1, 2, 1, 1).packing, "stopped");
+    expect_bad_input([&] { (void)read_state<2>(folder / "left.json"); }, {"left.json", "isostat-packing"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,84 @@
+#include "io/bad_input.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/io/state_file.hpp>
+#include <isostat/io/vertex_text.hpp>
+
+#include <algorithm>
+
+using namespace isostat;
+using scratch::replaced;
+
+namespace {
+
+/// Line 3 is disk 0, line 6 the box, line 7 the number of contacts, lines 8 to 13 the contacts.
+const std::string two_disks = "# two disks\n2\n1 1 1 0.1 -1\n\n2 3.8284271247461903 2 0.2 -4\n5.8284271247461903 4\n6\n"
+                              "0 1 0\n1 0 -1\n2 0 -1\n2 1 -1\n3 1 -1\n4 1 -1\n";
+
+void refuses(const std::string& text, const std::vector<std::string>& words) {
+    BOOST_TEST_CONTEXT(text) {
+        expect_bad_input([&] { (void)parse_vertex_text(text, "v.txt"); }, words);
+    }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(io)
+
+BOOST_AUTO_TEST_CASE(the_samples_have_as_many_contacts_as_degrees_of_freedom) {
+    for (const int n : {100, 400, 1936}) {
+        const State<2> state = read_state<2>(scratch::data("vertex" + std::to_string(n) + ".txt")).state;
+        BOOST_TEST(state.packing.disk_count() == n);
+        BOOST_TEST(state.contacts.size() == static_cast<std::size_t>(2 * n + 2));
+        BOOST_TEST(state.load.infinitesimal.size() == static_cast<std::size_t>(2 * n));
+        BOOST_TEST((state.load.kind == LoadKind::nominal));
+        BOOST_TEST(state.load.stress[0] == 1.0);
+        BOOST_TEST(state.load.stress[1] == 1.0);
+        BOOST_TEST(state.load.reference_length[1] == state.packing.length(1));
+        BOOST_TEST(std::is_sorted(state.contacts.begin(), state.contacts.end()));
+        for (const Contact& contact : state.contacts) {
+            BOOST_TEST(std::abs(gap(state.packing, contact)) < 1e-13, to_string<2>(contact));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rows_mean_what_the_format_says) {
+    const State<2> state = parse_vertex_text(two_disks, "v.txt");
+    BOOST_TEST(state.packing.radius[1] == 2.0);
+    BOOST_TEST(state.packing.q[3] == 2.0);
+    BOOST_TEST(state.packing.length(1) == 4.0);
+    BOOST_TEST(state.load.infinitesimal[3] == -4.0);
+    const std::vector<Contact> expected{{ContactKind::disk_disk, 0, 1},  {ContactKind::lower_wall, 0, 0},
+                                        {ContactKind::lower_wall, 0, 1}, {ContactKind::lower_wall, 1, 1},
+                                        {ContactKind::upper_wall, 1, 0}, {ContactKind::upper_wall, 1, 1}};
+    BOOST_TEST((state.contacts == expected));
+}
+
+BOOST_AUTO_TEST_CASE(bad_rows_are_named_with_their_line) {
+    refuses(replaced(two_disks, "2\n1 1", "two\n1 1"), {"v.txt:2:", "number of disks", "'two'", "integer"});
+    refuses(replaced(two_disks, "2\n1 1", "0\n1 1"), {"v.txt:2:", "'0'"});
+    refuses(replaced(two_disks, "1 1 1 0.1", "0 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'0'", "positive"});
+    refuses(replaced(two_disks, "1 1 1 0.1", "-1 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'-1'", "positive"});
+    refuses(replaced(two_disks, "1 1 1 0.1", "nan 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'nan'", "finite"});
+    refuses(replaced(two_disks, "1 1 1 0.1", "1 inf 1 0.1"), {"v.txt:3:", "x of disk 0", "'inf'", "finite"});
+    refuses(replaced(two_disks, "1 1 1 0.1", "1 1 1x 0.1"), {"v.txt:3:", "y of disk 0", "'1x'"});
+    refuses(replaced(two_disks, "1 1 1 0.1 -1", "1 1 1 0.1"), {"v.txt:3:", "4 values", "5 values", "disk 0 of 2"});
+    refuses(replaced(two_disks, " 4\n6", " 0\n6"), {"v.txt:6:", "Ly", "positive"});
+    refuses(replaced(two_disks, "5.8284271247461903 4", "5.8284271247461903 3"),
+            {"v.txt", "disk 1", "larger than the box"});
+    refuses(replaced(two_disks, "2 1 -1", "5 1 -1"), {"v.txt:11:", "type of the contact", "'5'", "from 0 to 4"});
+    refuses(replaced(two_disks, "2 1 -1", "2 2 -1"), {"v.txt:11:", "first disk", "'2'", "from 0 to 1"});
+    refuses(replaced(two_disks, "0 1 0\n", "0 1 1\n"), {"v.txt:8:", "second disk", "another disk"});
+    refuses(replaced(two_disks, "2 1 -1", "2 0 -1"), {"0-bottom", "contacts[3]", "contacts[2]", "once"});
+}
+
+BOOST_AUTO_TEST_CASE(files_that_end_too_early_or_too_late_are_refused) {
+    refuses("# nothing\n", {"v.txt:1:", "ends here", "number of disks"});
+    refuses(replaced(two_disks, "4 1 -1\n", ""), {"ends here", "contact 5 of 6"});
+    refuses(replaced(two_disks, "\n6\n", "\n5\n"), {"v.txt:13:", "more rows than announced"});
+    for (std::size_t cut = 0; cut + 7 < two_disks.size(); ++cut) { // the last row is 7 characters long
+        BOOST_CHECK_THROW((void)parse_vertex_text(two_disks.substr(0, cut), "v.txt"), Error);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

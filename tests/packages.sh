@@ -1,0 +1,40 @@
+# shellcheck shell=bash
+# The Debian packages that building, testing and drawing need. Sourced by tests/run and examples/run.
+# Nothing is installed, and no network is used, when all of them are there.
+
+isostat_packages=(
+  g++ cmake ninja-build pkg-config
+  libcgal-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev
+  libsuitesparse-dev libqd-dev coinor-libclp-dev
+  libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
+  gnuplot-nox
+)
+
+# Installs what is missing; a message with the list when it cannot.
+isostat_install_packages() {
+  local missing=() package status
+  for package in "${isostat_packages[@]}"; do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [ "$status" = installed ] || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  echo "Debian packages to install: ${missing[*]}"
+  local sudo=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "Not root, and sudo is not there. Ask an administrator for:" >&2
+      echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+      return 1
+    fi
+    sudo=(sudo)
+  fi
+  if ! command -v apt-get >/dev/null; then
+    echo "apt-get is not there: this is not Debian. Install what corresponds to: ${missing[*]}" >&2
+    return 1
+  fi
+  if ! { "${sudo[@]}" apt-get update -q &&
+         "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"; }; then
+    echo "The packages could not be installed. They are needed: ${missing[*]}" >&2
+    return 1
+  fi
+}

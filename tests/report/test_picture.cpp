@@ -1,0 +1,120 @@
+#include "support/crafted.hpp"
+
+#include <isostat/report/picture.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <sstream>
+
+using namespace isostat;
+
+namespace {
+
+int count(const std::string& text, const std::string& what) {
+    int n = 0;
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+        ++n;
+    }
+    return n;
+}
+
+/// Widths of the lines of a class, in order.
+std::vector<double> widths(const std::string& svg, const std::string& style) {
+    std::vector<double> list;
+    std::istringstream lines(svg);
+    std::string line;
+    while (std::getline(lines, line)) {
+        if (line.starts_with("<line") && line.find("class=\"" + style + "\"") != std::string::npos) {
+            list.push_back(std::stod(line.substr(line.find("stroke-width=\"") + 14)));
+        }
+    }
+    return list;
+}
+
+/// Contacts: left(0), bottom(0), 0-1, right(1), top(1), bottom(1).
+const State<2> state = crafted::two_disks(1, 2, 1, 1);
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(report)
+
+BOOST_AUTO_TEST_CASE(a_picture_has_every_disk_wall_and_contact_once) {
+    const std::string svg = force_picture(state, std::vector<double>{1, 2, 3, 4, 5, 6}, "a < b & c");
+    BOOST_TEST(count(svg, "<circle") == 2);
+    BOOST_TEST(count(svg, "class=\"fixed\"") == 2);
+    BOOST_TEST(count(svg, "class=\"movable\"") == 2);
+    BOOST_TEST(widths(svg, "force").size() == 1U);
+    BOOST_TEST(widths(svg, "force wall").size() == 5U);
+    BOOST_TEST(count(svg, "a &lt; b &amp; c") == 2);
+    BOOST_TEST(count(svg, "<svg") == 1);
+    BOOST_TEST(count(svg, "</svg>") == 1);
+}
+
+BOOST_AUTO_TEST_CASE(line_widths_are_proportional_to_forces) {
+    const std::string svg = force_picture(state, std::vector<double>{1, 2, 3, 4, 5, 6}, "");
+    const std::vector<double> wall = widths(svg, "force wall");
+    const double unit = widths(svg, "force")[0] / 3;
+    for (const auto& [k, f] : {std::pair{0, 1}, {1, 2}, {2, 4}, {3, 5}, {4, 6}}) {
+        BOOST_TEST(std::abs(wall[static_cast<std::size_t>(k)] - f * unit) < 2e-3);
+    }
+    // 0.2 of the mean radius 1.5 at the mean force 3.5, 1000 units across the box.
+    BOOST_TEST(std::abs(unit * 3.5 - 0.2 * 1.5 * 1000 / state.packing.length(0)) < 1e-2);
+}
+
+BOOST_AUTO_TEST_CASE(disks_without_force_are_rattlers_and_traction_is_marked) {
+    const std::vector<double> forces{0, 0, 0, 4, -5, 6};
+    const std::string svg = force_picture(state, forces, "");
+    BOOST_TEST(count(svg, "class=\"rattler\"") == 1);
+    BOOST_TEST(count(svg, "class=\"disk\"") == 1);
+    BOOST_TEST(count(svg, "class=\"contact\"") == 3);
+    BOOST_TEST(count(svg, "class=\"traction\"") == 1);
+    BOOST_TEST((rattler_flags(state, forces) == std::vector<unsigned char>{1, 0}));
+    BOOST_TEST(count(force_picture(state, {}, ""), "class=\"rattler\"") == 0);
+}
+
+BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
+    const std::string vtk = vtk_text(state, std::vector<double>{0, 0, 0, 4, 5, 6}, "title");
+    std::istringstream in(vtk);
+    std::string word;
+    std::string line;
+    std::getline(in, line);
+    BOOST_TEST(line == "# vtk DataFile Version 3.0");
+    std::getline(in, line);
+    BOOST_TEST(line == "title");
+    int points = 0;
+    in >> word >> word >> word >> word >> points >> word; // ASCII DATASET POLYDATA POINTS 7 double
+    BOOST_TEST(points == 2 + 5);                          // five wall contacts end in a point of their own
+    for (int k = 0; k < 3 * points; ++k) {
+        double c = 0;
+        BOOST_REQUIRE(in >> c);
+        if (k == 3) {
+            BOOST_TEST(c == state.packing.q[2]); // 17 digits: the same bits
+        }
+    }
+    int cells = 0;
+    int size = 0;
+    in >> word >> cells >> size;
+    BOOST_TEST(word == "VERTICES");
+    BOOST_TEST(cells == 2);
+    for (int k = 0; k < size; ++k) {
+        in >> word;
+    }
+    in >> word >> cells >> size;
+    BOOST_TEST(word == "LINES");
+    BOOST_TEST(cells == 6);
+    for (int l = 0; l < cells; ++l) {
+        int two = 0;
+        int a = 0;
+        int b = 0;
+        in >> two >> a >> b;
+        BOOST_TEST(two == 2);
+        BOOST_TEST((a >= 0 && a < 2 && b > a && b < points));
+    }
+    const std::string rest = vtk.substr(vtk.find("POINT_DATA"));
+    BOOST_TEST(rest.starts_with("POINT_DATA 7\nSCALARS radius double 1\nLOOKUP_TABLE default\n1\n2\n0\n"));
+    BOOST_TEST(rest.find("SCALARS rattler int 1\nLOOKUP_TABLE default\n1\n0\n0\n") != std::string::npos);
+    BOOST_TEST(rest.ends_with("CELL_DATA 8\nSCALARS force double 1\nLOOKUP_TABLE default\n0\n0\n0\n0\n0\n4\n5\n6\n"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,74 @@
+#include <isostat/report/statistics.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+using namespace isostat;
+
+namespace {
+
+EquilibriumRow row(int number, int previous, int segment, double ratio, double strain, int arcs) {
+    EquilibriumRow r;
+    r.number = number;
+    r.previous = previous;
+    r.segment = segment;
+    r.ratio = ratio;
+    r.strain2 = strain;
+    r.arcs = arcs;
+    return r;
+}
+
+/// Up twice, then back to 1 (one rearrangement and a stop inside an interval), then a branch down from 1.
+const std::vector<EquilibriumRow> rows{row(0, -1, 0, 1.0, 0.0, 0),    row(1, 0, 0, 1.25, 0.5, 1),
+                                       row(2, 1, 0, 1.75, 0.625, 3),  row(3, 2, 1, 1.5, 0.375, 2),
+                                       row(4, 3, 1, 1.0, 0.375, 0),   row(5, 1, 2, 1.125, 0.25, 4),
+                                       row(6, 5, 2, 1.0625, 0.125, 1)};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(report)
+
+BOOST_AUTO_TEST_CASE(stress_increments_are_between_two_rearrangements_of_one_segment) {
+    const Increments increments = stress_increments(rows);
+    BOOST_TEST((increments.loading == std::vector<double>{0.5}));
+    BOOST_TEST((increments.unloading == std::vector<double>{0.0625}));
+}
+
+BOOST_AUTO_TEST_CASE(strain_increments_are_those_of_every_rearrangement) {
+    const Increments increments = strain_increments(rows);
+    BOOST_TEST((increments.loading == std::vector<double>{0.5, 0.125}));
+    BOOST_TEST((increments.unloading == std::vector<double>{0.25, 0.25, 0.125}));
+}
+
+BOOST_AUTO_TEST_CASE(the_path_to_an_equilibrium_leaves_branches_out) {
+    const auto numbers = [](int to) {
+        std::vector<int> list;
+        for (const EquilibriumRow& r : path_to(rows, to)) {
+            list.push_back(r.number);
+        }
+        return list;
+    };
+    BOOST_TEST((numbers(4) == std::vector<int>{0, 1, 2, 3, 4}));
+    BOOST_TEST((numbers(6) == std::vector<int>{0, 1, 5, 6}));
+    BOOST_TEST((numbers(9).empty()));
+}
+
+BOOST_AUTO_TEST_CASE(the_complementary_distribution_counts_ties_once) {
+    using Points = std::vector<std::pair<double, double>>;
+    BOOST_TEST((complementary_distribution({3, 1, 2, 2}) == Points{{1, 1}, {2, 0.75}, {3, 0.25}}));
+    BOOST_TEST((complementary_distribution({}) == Points{}));
+}
+
+BOOST_AUTO_TEST_CASE(a_histogram_integrates_to_the_share_inside) {
+    const std::vector<double> values{0, 0.1, 0.5, 0.9, 1.0, 7};
+    double sum = 0;
+    for (const auto& [centre, density] : histogram(values, 0, 1, 4)) {
+        sum += density * 0.25;
+    }
+    BOOST_TEST(sum == 5.0 / 6, boost::test_tools::tolerance(1e-15));
+    BOOST_TEST(histogram(values, 0, 1, 4).front().first == 0.125);
+    BOOST_TEST(histogram(values, 0, 1, 4).back().second == 2 / (6 * 0.25), boost::test_tools::tolerance(1e-15));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

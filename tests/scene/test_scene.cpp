@@ -1,0 +1,200 @@
+#include "io/bad_input.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/scene/scene.hpp>
+
+#include <algorithm>
+#include <string>
+
+using namespace isostat;
+
+namespace {
+
+Scene parse(const std::string& text) {
+    return parse_scene(text, "s.toml", "/folder");
+}
+
+void refuses(const std::string& text, const std::vector<std::string>& words) {
+    BOOST_TEST_CONTEXT(text) {
+        expect_bad_input([&] { (void)parse(text); }, words);
+    }
+}
+
+const std::string head = "[packing]\ndisks = 10\n"; // lines 1 and 2
+
+std::string value_of(const Scene& scene, const std::string& section, const std::string& key) {
+    const auto found = std::find_if(scene.settings.begin(), scene.settings.end(),
+                                    [&](const Setting& s) { return s.section == section && s.key == key; });
+    return found == scene.settings.end() ? "absent" : found->value;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(scene)
+
+BOOST_AUTO_TEST_CASE(a_small_scene_gets_the_defaults_of_the_library) {
+    const Scene scene = parse(head);
+    const PreparationOptions preparation;
+    const RunOptions run;
+    BOOST_TEST(scene.preparation.disks == 10);
+    BOOST_TEST(scene.preparation.diameters.smallest == 1.0);
+    BOOST_TEST(scene.preparation.diameters.largest == 2.0);
+    BOOST_TEST(scene.preparation.stress == preparation.stress);
+    BOOST_TEST(scene.preparation.softness == preparation.softness);
+    BOOST_TEST(scene.preparation.max_steps == preparation.max_steps);
+    BOOST_TEST((scene.run.rule == run.rule));
+    BOOST_TEST(scene.run.max_arcs == run.max_arcs);
+    BOOST_TEST(scene.run.max_strain == run.max_strain);
+    BOOST_TEST(scene.run.step_fraction == run.step_fraction);
+    BOOST_TEST(scene.pictures);
+    BOOST_TEST(!scene.vtk);
+    BOOST_TEST(scene.programme.empty());
+    BOOST_TEST(value_of(scene, "run", "max_arcs") == "20000");
+}
+
+BOOST_AUTO_TEST_CASE(every_setting_arrives) {
+    const Scene scene = parse(R"(
+[packing]
+disks = 20
+diameters = [0.5, 3]
+seed = 9
+aspect = 2
+[preparation]
+loose_fraction = 0.5
+softness = 1e-6
+relaxation = 1e-5
+max_steps = 1000
+infinitesimal_weight = 1e-8
+max_programmes = 7
+[load]
+kind = "true"
+sigma1 = 2.5
+[[programme]]
+do = "up"
+equilibria = 5
+to = 1.5
+name = "first"
+[[programme]]
+do = "to"
+to = 1
+[[programme]]
+do = "down"
+from = 3
+equilibria = 2
+[run]
+rule = "steepest"
+rule_seed = 4
+max_arcs = 11
+max_strain = 0.25
+step_fraction = 0.5
+[output]
+states_every = 10
+pictures = false
+vtk = true
+)");
+    BOOST_TEST(scene.preparation.diameters.largest == 3.0);
+    BOOST_TEST(scene.preparation.seed == 9U);
+    BOOST_TEST(scene.preparation.aspect == 2.0);
+    BOOST_TEST(scene.preparation.loose_fraction == 0.5);
+    BOOST_TEST(scene.preparation.softness == 1e-6);
+    BOOST_TEST(scene.preparation.relaxation == 1e-5);
+    BOOST_TEST(scene.preparation.max_steps == 1000);
+    BOOST_TEST(scene.preparation.infinitesimal_weight == 1e-8);
+    BOOST_TEST(scene.preparation.max_programmes == 7);
+    BOOST_TEST((scene.preparation.load == LoadKind::true_stress));
+    BOOST_TEST((scene.load_kind == LoadKind::true_stress));
+    BOOST_TEST(scene.preparation.stress == 2.5);
+    BOOST_REQUIRE(scene.programme.size() == 3U);
+    BOOST_TEST((scene.programme[0].action == Action::up));
+    BOOST_TEST(*scene.programme[0].equilibria == 5);
+    BOOST_TEST(*scene.programme[0].to == 1.5);
+    BOOST_TEST(scene.programme[0].name == "first");
+    BOOST_TEST((scene.programme[1].action == Action::to));
+    BOOST_TEST(scene.programme[1].name == "to sigma2/sigma1 = 1");
+    BOOST_TEST(*scene.programme[2].from == 3);
+    BOOST_TEST((needed_equilibria(scene) == std::vector<int>{3}));
+    BOOST_TEST((scene.run.rule == OpeningRule::steepest));
+    BOOST_TEST(scene.run.rule_seed == 4U);
+    BOOST_TEST(scene.run.max_arcs == 11);
+    BOOST_TEST(scene.run.max_strain == 0.25);
+    BOOST_TEST(scene.run.step_fraction == 0.5);
+    BOOST_TEST(scene.states_every == 10);
+    BOOST_TEST(!scene.pictures);
+    BOOST_TEST(scene.vtk);
+    // Nothing of this scene is a default: a key that was read but not recorded would be missing here.
+    BOOST_TEST(scene.settings.size() == 31U);
+    for (const Setting& setting : scene.settings) {
+        BOOST_TEST((setting.line > 0 || setting.key == "name"), setting.section << "." << setting.key);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(radii_come_from_a_list_or_a_file) {
+    const scratch::Folder folder;
+    scratch::write(folder / "r.txt", "# radii\n1\n\n0x2\n");
+    BOOST_TEST((parse("[packing]\nradii = [1, 2.5]\n").preparation.radii == std::vector<double>{1, 2.5}));
+    const std::string text = "[packing]\nradii_file = \"r.txt\"\n";
+    expect_bad_input([&] { (void)parse_scene(text, "s.toml", folder.path()); },
+                     {"r.txt:4:", "radius of disk 1", "'0x2'"});
+    scratch::write(folder / "r.txt", "# radii\n1\n\n2\n");
+    BOOST_TEST((parse_scene(text, "s.toml", folder.path()).preparation.radii == std::vector<double>{1, 2}));
+    scratch::write(folder / "r.txt", "1\n-2\n");
+    expect_bad_input([&] { (void)parse_scene(text, "s.toml", folder.path()); }, {"r.txt:2:", "'-2'", "positive"});
+    scratch::write(folder / "r.txt", "1\nnan\n");
+    expect_bad_input([&] { (void)parse_scene(text, "s.toml", folder.path()); }, {"r.txt:2:", "'nan'", "finite"});
+    refuses("[packing]\nradii = [1, -2]\n", {"s.toml:2:", "radii[1]", "-2", "positive"});
+    refuses("[packing]\nradii = [1, nan]\n", {"s.toml:2:", "radii[1]", "nan", "finite"});
+    refuses("[packing]\nradii = []\n", {"s.toml:2:", "radii", "at least one"});
+}
+
+BOOST_AUTO_TEST_CASE(unknown_keys_and_sections_are_named_with_their_line) {
+    refuses(head + "dsks = 3\n", {"s.toml:3:", "unknown key 'dsks'", "[packing]", "disks, "});
+    refuses(head + "[ouput]\n", {"s.toml:3:", "'ouput'", "[output]"});
+    refuses(head + "[run]\n\nrules = \"random\"\n", {"s.toml:5:", "unknown key 'rules'", "[run]"});
+    refuses(head + "[[programme]]\ndo = \"up\"\nequilibria = 1\nsteps = 3\n",
+            {"s.toml:6:", "unknown key 'steps'", "[[programme]]"});
+    refuses("seed = 1\n" + head, {"s.toml:1:", "'seed'"});
+}
+
+BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
+    refuses("[packing]\ndisks = 0\n", {"s.toml:2:", "disks", "is 0", "from 1"});
+    refuses("[packing]\ndisks = 2.5\n", {"s.toml:2:", "disks", "2.5", "integer"});
+    refuses("[packing]\ndisks = \"many\"\n", {"s.toml:2:", "disks", "many", "integer"});
+    refuses(head + "diameters = [2, 1]\n", {"s.toml:3:", "diameters", "smallest <= largest"});
+    refuses(head + "diameters = [0, 1]\n", {"s.toml:3:", "diameters", "0 < smallest"});
+    refuses(head + "diameters = [1]\n", {"s.toml:3:", "diameters"});
+    refuses(head + "diameters = 1\n", {"s.toml:3:", "diameters", "array"});
+    refuses(head + "seed = -1\n", {"s.toml:3:", "seed", "-1"});
+    refuses(head + "aspect = nan\n", {"s.toml:3:", "aspect", "nan", "finite"});
+    refuses(head + "aspect = inf\n", {"s.toml:3:", "aspect", "inf", "finite"});
+    refuses(head + "[load]\nkind = \"dead\"\n", {"s.toml:4:", "kind", "dead", "nominal"});
+    refuses(head + "[load]\nsigma1 = 0\n", {"s.toml:4:", "sigma1", "positive"});
+    refuses(head + "[run]\nrule = \"best\"\n", {"s.toml:4:", "rule", "best", "most_negative"});
+    refuses(head + "[run]\nmax_arcs = 0\n", {"s.toml:4:", "max_arcs", "0"});
+    refuses(head + "[run]\nstep_fraction = -0.1\n", {"s.toml:4:", "step_fraction", "-0.1"});
+    refuses(head + "[output]\npictures = 1\n", {"s.toml:4:", "pictures", "true or false"});
+    refuses(head + "[output\n", {"s.toml:3:", "TOML"});
+    refuses(head + "disks = 11\n", {"s.toml:3:", "TOML"});
+    refuses("packing = 3\n", {"s.toml:1:", "packing", "table"});
+    refuses(head + "[programme]\ndo = \"up\"\n", {"s.toml:3:", "[[programme]]"});
+}
+
+BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
+    refuses("[run]\nmax_arcs = 3\n", {"s.toml", "[packing]"});
+    refuses("[packing]\nseed = 3\n", {"s.toml:1:", "file, disks, radii or radii_file"});
+    refuses(head + "file = \"v.txt\"\n", {"s.toml:2:", "'file' and 'disks'", "exclude each other"});
+    refuses(head + "radii = [1]\n", {"s.toml:3:", "'disks' and 'radii'"});
+    refuses("[packing]\nradii = [1]\ndiameters = [1, 2]\n", {"s.toml:3:", "diameters", "radii"});
+    refuses("[packing]\nfile = \"v.txt\"\nseed = 2\n", {"s.toml:3:", "seed", "file"});
+    refuses("[packing]\nfile = \"v.txt\"\n[preparation]\nsoftness = 1e-6\n", {"s.toml:3:", "[preparation]"});
+    refuses("[packing]\nfile = \"v.txt\"\n[load]\nsigma1 = 2\n", {"s.toml:4:", "sigma1"});
+    refuses(head + "[load]\ninfinitesimal_seed = 2\n", {"s.toml:4:", "infinitesimal_seed"});
+}
+
+BOOST_AUTO_TEST_CASE(a_start_file_is_relative_to_the_scene) {
+    const Scene scene = parse("[packing]\nfile = \"v.txt\"\n[load]\ninfinitesimal_seed = 3\n");
+    BOOST_TEST(scene.start.string() == "/folder/v.txt");
+    BOOST_TEST(*scene.infinitesimal_seed == 3U);
+    BOOST_TEST(!scene.load_kind.has_value());
+}
+
+BOOST_AUTO_TEST_SUITE_END()

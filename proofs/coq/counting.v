@@ -91,5 +91,6 @@ Qed.
 Print Assumptions counting.
 Print Assumptions compatible_iff_orthogonal_to_self_stresses.
 Print Assumptions supported_iff_orthogonal_to_mechanisms.
+Print Assumptions virtual_power.
 Print Assumptions virtual_power_forces_transpose.
 Print Assumptions self_stresses_meet_compatible_in_zero.

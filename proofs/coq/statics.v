@@ -120,6 +120,8 @@ Print Assumptions regular_iff_no_self_stress_no_mechanism.
 Print Assumptions forces_exist_and_are_unique.
 Print Assumptions forces_are_affine_in_the_load.
 Print Assumptions opening_direction_is_unique.
+Print Assumptions opening_has_unit_rate.
+Print Assumptions power_identity.
 Print Assumptions power_of_opening.
 Print Assumptions reciprocity.
 Print Assumptions affine_positive_between.

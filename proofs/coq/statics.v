@@ -114,6 +114,21 @@ have /eqP := sum0; rewrite psumr_eq0; last by move=> i _; rewrite oppr_ge0.
 move=> /allP/(_ l (mem_index_enum _)); rewrite /= oppr_eq0 mulf_eq0.
 by rewrite (gt_eqF (pos l nl)) => /eqP.
 Qed.
+(** T8, first order: with all forces positive every motion that closes no contact works against the load (W increases). *)
+Theorem every_admissible_motion_works_against_the_load (n : nat) (G : 'M[F]_n) (load : 'rV[F]_n) (v : 'cV[F]_n) :
+  G \in unitmx -> (forall l, 0 < forces G load 0 l) -> (forall l, (G *m v) l 0 <= 0) -> v != 0 -> (load *m v) 0 0 < 0.
+Proof.
+move=> regular pos sep nz; rewrite (power_identity regular).
+have nonpos : (forces G load *m (G *m v)) 0 0 <= 0.
+  by rewrite mxE -oppr_ge0 -sumrN; apply: sumr_ge0 => l _; rewrite oppr_ge0 pmulr_rle0.
+rewrite lt_neqAle nonpos andbT; apply: contraNneq nz => zero.
+have rest : G *m v = 0.
+  apply/colP=> l; rewrite [RHS]mxE.
+  have : \sum_i - (forces G load 0 i * (G *m v) i 0) = 0 by rewrite sumrN; move: zero; rewrite mxE => ->; rewrite oppr0.
+  move/eqP; rewrite psumr_eq0 => [|i _]; last by rewrite oppr_ge0 pmulr_rle0.
+  by move=> /allP/(_ l (mem_index_enum _)); rewrite /= oppr_eq0 mulf_eq0 (gt_eqF (pos l)) => /eqP.
+by rewrite -(mulKmx regular v) rest mulmx0.
+Qed.
 End Interval.
 
 Print Assumptions regular_iff_no_self_stress_no_mechanism.
@@ -127,3 +142,4 @@ Print Assumptions reciprocity.
 Print Assumptions affine_positive_between.
 Print Assumptions supported_interval_ends_at_the_smallest_ratio.
 Print Assumptions only_the_unloaded_contact_opens.
+Print Assumptions every_admissible_motion_works_against_the_load.

@@ -10,6 +10,12 @@ isostat_packages=(
   gnuplot-nox
 )
 
+# For the machine-checked part of proofs/: optional, installed by continuous integration.
+isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify)
+if [ "${CI:-}" = true ]; then
+  isostat_packages+=("${isostat_proof_packages[@]}")
+fi
+
 # Installs what is missing; a message with the list when it cannot.
 isostat_install_packages() {
   local missing=() package status

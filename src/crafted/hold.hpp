@@ -1,0 +1,12 @@
+#pragma once
+// Which disks and contacts can carry a force, from the positions of the normals.
+
+#include <isostat/crafted/inspection.hpp>
+
+namespace isostat::crafted {
+
+/// Fills `hold` and `carrying` of an inspection whose contacts are set.
+void judge_holds(Inspection& inspection, const ExactPacking& packing, const DofMap<2>& dofs,
+                 const exact::NumberMatrix& matrix);
+
+} // namespace isostat::crafted

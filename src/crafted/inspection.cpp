@@ -1,0 +1,232 @@
+#include "crafted/hold.hpp"
+#include "crafted/second_order.hpp"
+
+#include <isostat/crafted/inspection.hpp>
+
+#include <algorithm>
+#include <numeric>
+
+namespace isostat::crafted {
+
+namespace {
+
+/// Common rigid motions that neither a fixed grain nor a wall takes away.
+int rigid_motions(const ExactPacking& packing) {
+    const auto fixed = std::count(packing.fixed.begin(), packing.fixed.end(), 1);
+    const int n = packing.disk_count();
+    const auto wall = [&](std::size_t a, WallKind kind) {
+        return packing.walls.lower[a] == kind || packing.walls.upper[a] == kind;
+    };
+    const bool no_walls = [&] { return packing.walls == Walls<2>::none(); }();
+    if (fixed > 0) {
+        return fixed == 1 && no_walls && n > 1 ? 1 : 0; // turning about the fixed centre
+    }
+    int out = no_walls && n > 1 ? 1 : 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+        out += wall(a, WallKind::fixed) ? 0 : 1; // a movable wall goes along
+    }
+    return out;
+}
+
+/// The contact matrix of the same contact graph with the disks at random integer points, columns scaled by the
+/// distance.
+exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
+                                   const std::vector<Contact>& contacts) {
+    ExactPacking random = packing;
+    std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64: the same points at every call
+    const auto next = [&] {
+        std::uint64_t z = state += 0x9e3779b97f4a7c15u;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return Number(static_cast<long long>((z ^ (z >> 31)) >> 3)); // 61 bits
+    };
+    for (std::size_t i = 0; i < random.radius.size(); ++i) {
+        random.centre[i] = {next(), next()};
+        random.radius[i] = Number(1) / Number(2);
+    }
+    return exact_contact_matrix(random, dofs, contacts);
+}
+
+class Inspector {
+  public:
+    Inspector(const ExactPacking& packing, const InspectionLimits& limits, std::vector<Contact> contacts)
+        : packing_(packing), limits_(limits), dofs_(approximate(packing)) {
+        out_.contacts = std::move(contacts);
+        matrix_ = exact_contact_matrix(packing_, dofs_, out_.contacts);
+        out_.dof_count = dofs_.dof_count();
+        out_.rigid_motions = rigid_motions(packing_);
+    }
+
+    Inspection run() {
+        count();
+        judge_holds(out_, packing_, dofs_, matrix_);
+        judge_self_stresses();
+        judge_load();
+        if (out_.bases_exact == Verdict::proved) {
+            out_.second_order = second_order_test(out_, packing_, dofs_);
+        } else if (out_.rank_exact == Verdict::proved && out_.internal_mechanisms() == 0) {
+            out_.second_order = SecondOrder::no_mechanism;
+        }
+        judge_stability();
+        return std::move(out_);
+    }
+
+  private:
+    [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); }
+
+    void count() {
+        exact::NumberMatrix augmented = matrix_;
+        if (packing_.load) {
+            std::vector<std::pair<int, Number>> column;
+            const std::vector<Number> force = external_force(packing_, dofs_);
+            for (std::size_t d = 0; d < force.size(); ++d) {
+                if (!force[d].is_zero()) {
+                    column.emplace_back(static_cast<int>(d), -force[d]);
+                }
+            }
+            augmented.column.push_back(std::move(column));
+        }
+        const int n = static_cast<int>(contact_count());
+        const exact::Kernel stresses = exact::kernel(augmented, limits_.kernel);
+        const exact::Kernel motions = exact::kernel(exact::transposed(matrix_), limits_.kernel);
+        const bool load_is_pivot =
+            packing_.load && std::binary_search(stresses.pivots.begin(), stresses.pivots.end(), n);
+        const bool dense = stresses.exact == Verdict::proved;
+        out_.rank = std::max(dense ? stresses.rank - (load_is_pivot ? 1 : 0) : 0, motions.rank);
+        const int most = std::min(n, out_.dof_count - out_.rigid_motions);
+        const bool exact = dense || motions.exact == Verdict::proved || out_.rank == most;
+        out_.rank_exact = exact ? Verdict::proved : Verdict::undecided;
+        out_.hyperstaticity = n - out_.rank;
+        out_.mechanisms = out_.dof_count - out_.rank;
+        if (dense && motions.exact == Verdict::proved) {
+            out_.bases_exact = Verdict::proved;
+            out_.motions = motions.basis;
+            for (const auto& vector : stresses.basis) {
+                std::vector<Number> forces(vector.begin(), vector.begin() + n);
+                if (packing_.load && !vector.back().is_zero()) {
+                    out_.forces = std::move(forces); // the vector whose free column is the load
+                } else {
+                    out_.self_stresses.push_back(std::move(forces));
+                }
+            }
+            out_.support =
+                !packing_.load ? Support::no_load : (load_is_pivot ? Support::unbalanced : Support::undecided);
+        } else if (packing_.load) {
+            out_.support = Support::undecided;
+        }
+        out_.generic_rank = exact::rank_bound(generic_matrix(packing_, dofs_, out_.contacts)).rank;
+        if (exact) {
+            out_.special_position = out_.rank < out_.generic_rank
+                                        ? Verdict::proved
+                                        : (out_.rank == most ? Verdict::refuted : Verdict::undecided);
+        }
+    }
+
+    [[nodiscard]] bool affordable(std::size_t rows, std::size_t cols) const {
+        return static_cast<long long>((rows + 1) * cols) <= limits_.programme_cells;
+    }
+
+    void judge_self_stresses() {
+        if (out_.rank_exact == Verdict::proved && out_.hyperstaticity == 0) {
+            out_.one_sign_decided = true;
+        } else if (out_.bases_exact == Verdict::proved && affordable(out_.self_stresses.size(), contact_count())) {
+            out_.one_sign = exact::one_sign(out_.self_stresses, static_cast<int>(contact_count()));
+            out_.one_sign_decided = true;
+        }
+    }
+
+    void judge_load() {
+        if (out_.forces.empty()) {
+            return;
+        }
+        out_.forces_unique = out_.self_stresses.empty();
+        if (out_.forces_unique) {
+            int least = 1;
+            for (const Number& f : out_.forces) {
+                least = std::min(least, f.sign());
+            }
+            out_.support = least > 0 ? Support::positive : (least == 0 ? Support::with_zeros : Support::none);
+            return;
+        }
+        if (!affordable(out_.self_stresses.size() + 1, contact_count() + 1)) {
+            return;
+        }
+        // f = f0 + S c > 0 is t f0 + S c > 0 with t > 0: one more component for t.
+        std::vector<std::vector<Number>> span = out_.self_stresses;
+        for (auto& vector : span) {
+            vector.emplace_back(0);
+        }
+        span.push_back(out_.forces);
+        span.back().emplace_back(1);
+        const exact::OneSignAnswer answer = exact::one_sign(span, static_cast<int>(contact_count()) + 1);
+        if (answer.kind == exact::OneSign::none) {
+            out_.support = Support::none;
+        } else if (answer.combination.back().sign() > 0) {
+            take(answer.combination);
+            out_.support = answer.kind == exact::OneSign::strict ? Support::positive : Support::with_zeros;
+        } else if (affordable(static_cast<std::size_t>(out_.dof_count), contact_count())) {
+            std::vector<std::vector<Number>> rows(static_cast<std::size_t>(out_.dof_count),
+                                                  std::vector<Number>(contact_count()));
+            for (std::size_t l = 0; l < contact_count(); ++l) {
+                for (const auto& [d, value] : matrix_.column[l]) {
+                    rows[static_cast<std::size_t>(d)][l] = value;
+                }
+            }
+            const auto point =
+                exact::feasible_point(rows, external_force(packing_, dofs_), static_cast<int>(contact_count()));
+            out_.support = point.feasible ? Support::with_zeros : Support::none;
+            if (point.feasible) {
+                out_.forces = point.solution;
+            }
+        }
+    }
+
+    void take(const std::vector<Number>& combination) {
+        const Number scale = combination.back().inverse();
+        for (std::size_t l = 0; l < contact_count(); ++l) {
+            out_.forces[l] = combination[l] * scale;
+        }
+    }
+
+    void judge_stability() {
+        if (out_.support == Support::none || out_.support == Support::unbalanced) {
+            out_.stable = Verdict::refuted;
+            return;
+        }
+        if (out_.forces.empty() || out_.support == Support::undecided) {
+            return;
+        }
+        const Inertia work = inertia(stress_form(packing_, dofs_, out_.contacts, out_.forces, out_.motions));
+        if (work.positive > 0) {
+            out_.stable = out_.forces_unique ? Verdict::refuted : Verdict::undecided;
+        } else if (out_.support == Support::positive && out_.internal_mechanisms() == 0) {
+            out_.stable = Verdict::proved;
+        }
+    }
+
+    const ExactPacking& packing_;
+    const InspectionLimits& limits_;
+    DofMap<2> dofs_;
+    exact::NumberMatrix matrix_;
+    Inspection out_;
+};
+
+} // namespace
+
+std::string Inspection::verdict() const {
+    if (rank_exact != Verdict::proved) {
+        return "undecided";
+    }
+    const bool over = hyperstaticity > 0, under = internal_mechanisms() > 0;
+    return over && under ? "hyperstatic and hypostatic" : (over ? "hyperstatic" : (under ? "hypostatic" : "isostatic"));
+}
+
+Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& limits) {
+    auto contacts = exact_contacts(packing);
+    if (!contacts.ok()) {
+        return contacts.failure();
+    }
+    return Inspector(packing, limits, std::move(contacts.value())).run();
+}
+
+} // namespace isostat::crafted

@@ -17,7 +17,7 @@ int rigid_motions(const ExactPacking& packing) {
     const auto wall = [&](std::size_t a, WallKind kind) {
         return packing.walls.lower[a] == kind || packing.walls.upper[a] == kind;
     };
-    const bool no_walls = [&] { return packing.walls == Walls<2>::none(); }();
+    const bool no_walls = packing.walls == Walls<2>::none();
     if (fixed > 0) {
         return fixed == 1 && no_walls && n > 1 ? 1 : 0; // turning about the fixed centre
     }
@@ -74,17 +74,21 @@ class Inspector {
   private:
     [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); }
 
+    [[nodiscard]] std::vector<std::pair<int, Number>> load_column() const {
+        std::vector<std::pair<int, Number>> column;
+        const std::vector<Number> force = external_force(packing_, dofs_);
+        for (std::size_t d = 0; d < force.size(); ++d) {
+            if (!force[d].is_zero()) {
+                column.emplace_back(static_cast<int>(d), -force[d]);
+            }
+        }
+        return column;
+    }
+
     void count() {
         exact::NumberMatrix augmented = matrix_;
         if (packing_.load) {
-            std::vector<std::pair<int, Number>> column;
-            const std::vector<Number> force = external_force(packing_, dofs_);
-            for (std::size_t d = 0; d < force.size(); ++d) {
-                if (!force[d].is_zero()) {
-                    column.emplace_back(static_cast<int>(d), -force[d]);
-                }
-            }
-            augmented.column.push_back(std::move(column));
+            augmented.column.push_back(load_column());
         }
         const int n = static_cast<int>(contact_count());
         const exact::Kernel stresses = exact::kernel(augmented, limits_.kernel);
@@ -145,6 +149,7 @@ class Inspector {
             for (const Number& f : out_.forces) {
                 least = std::min(least, f.sign());
             }
+            judge_zeros();
             out_.support = least > 0 ? Support::positive : (least == 0 ? Support::with_zeros : Support::none);
             return;
         }
@@ -177,6 +182,24 @@ class Inspector {
             out_.support = point.feasible ? Support::with_zeros : Support::none;
             if (point.feasible) {
                 out_.forces = point.solution;
+            }
+        }
+    }
+
+    /// f_l vanishes for given columns exactly when the load lies in the span of the others.
+    void judge_zeros() {
+        exact::NumberMatrix generic = generic_matrix(packing_, dofs_, out_.contacts);
+        generic.column.push_back(load_column());
+        const int n = static_cast<int>(contact_count());
+        if (out_.generic_rank < n || exact::rank_bound(generic).rank > n) {
+            return; // generic coordinates do not balance this load: nothing to compare with
+        }
+        out_.structural_zero.assign(contact_count(), 0);
+        for (std::size_t l = 0; l < contact_count(); ++l) {
+            if (out_.forces[l].is_zero()) {
+                exact::NumberMatrix others = generic;
+                others.column.erase(others.column.begin() + static_cast<std::ptrdiff_t>(l));
+                out_.structural_zero[l] = exact::rank_bound(others).rank < n ? 1 : 0;
             }
         }
     }

@@ -136,6 +136,18 @@ std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
     if (!inspection.forces.empty()) {
         line(inspection.forces_unique ? "forces" : "forces, one choice", vector_text(inspection.forces, contact_names));
     }
+    std::vector<std::string> structural, special;
+    for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
+        if (inspection.forces[l].is_zero()) {
+            (inspection.structural_zero[l] != 0 ? structural : special).push_back(contact_names[l]);
+        }
+    }
+    if (!structural.empty()) {
+        line("zero for any position", joined(structural, [](const std::string& s) { return s; }));
+    }
+    if (!special.empty()) {
+        line("zero by position", joined(special, [](const std::string& s) { return s; }));
+    }
     line("second order (bars)", to_string(inspection.second_order));
     line("stable", packing.load ? std::string(to_string(inspection.stable)) : "no load");
     if (inspection.bases_exact == Verdict::proved) {
@@ -152,7 +164,6 @@ std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source) {
     std::vector<std::string> out;
-    const std::string special = std::string(to_string(inspection.special_position));
     const bool exact = inspection.rank_exact == Verdict::proved;
     // A count that is only a bound matches nothing.
     const auto count = [&](int value) { return exact ? std::to_string(value) : "undecided"; };
@@ -164,7 +175,7 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
         {"k", count(inspection.mechanisms)},
         {"rigid_motions", std::to_string(inspection.rigid_motions)},
         {"generic_rank", std::to_string(inspection.generic_rank)},
-        {"special", special},
+        {"special", std::string(to_string(inspection.special_position))},
         {"verdict", inspection.verdict()},
         {"one_sign", inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided"},
         {"support", to_string(inspection.support)},
@@ -187,7 +198,8 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
             if (entry.values[0][0] != word->second) {
                 mismatch(entry, entry.values[0][0], word->second);
             }
-        } else if (entry.key == "contacts" || entry.key == "rattlers" || entry.key == "bridges") {
+        } else if (entry.key == "contacts" || entry.key == "rattlers" || entry.key == "bridges" ||
+                   entry.key == "structural_zeros") {
             std::vector<std::string> wanted, found;
             for (const auto& row : entry.values) {
                 wanted.insert(wanted.end(), row.begin(), row.end());
@@ -195,6 +207,12 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
             if (entry.key == "contacts") {
                 for (const Contact& contact : inspection.contacts) {
                     found.push_back(to_string<2>(contact));
+                }
+            } else if (entry.key == "structural_zeros") {
+                for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
+                    if (inspection.structural_zero[l] != 0) {
+                        found.push_back(to_string<2>(inspection.contacts[l]));
+                    }
                 }
             } else {
                 for (const int i :
@@ -213,7 +231,14 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
                 if (row.size() != 2) {
                     bad(entry, "pairs [contact, force]");
                 }
-                const Number wanted = Number::parse(row[1]);
+                const Number wanted = [&] {
+                    try {
+                        return Number::parse(row[1]);
+                    } catch (const Error& error) {
+                        throw Error(ErrorKind::bad_input,
+                                    fmt::format("{}, line {}: expected.forces: {}", source, entry.line, error.what()));
+                    }
+                }();
                 std::string found = inspection.forces_unique ? "no such contact" : "forces that are not unique";
                 bool holds = false;
                 for (std::size_t l = 0; l < inspection.contacts.size() && inspection.forces_unique; ++l) {
@@ -228,7 +253,7 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
             }
         } else {
             bad(entry, "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
-                       "forces, rattlers, bridges, "
+                       "forces, rattlers, bridges, structural_zeros, "
                        "one_sign, support, second_order or stable");
         }
     }

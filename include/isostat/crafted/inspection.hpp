@@ -74,6 +74,10 @@ struct Inspection {
     Support support = Support::no_load;
     bool forces_unique = false; ///< h = 0 and the load is balanced
     std::vector<Number> forces; ///< one equilibrium (the only one when unique); may have both signs
+    /// Per contact, when the forces are unique and generic coordinates balance the load too (else empty): 1 = the force
+    /// is 0 here and, under the same load, for random coordinates of the same contact graph too (wrong with a chance of
+    /// about N / 2^61). A force 0 without this mark is 0 by position: generic coordinates, proved, give it a value.
+    std::vector<unsigned char> structural_zero;
     SecondOrder second_order = SecondOrder::undecided;
     /// Local minimum of the potential of the dead load, strict up to common rigid motions. `proved`: some equilibrium
     /// has all forces > 0 and there is no internal mechanism. `refuted`: no equilibrium with forces >= 0; or h = 0, and

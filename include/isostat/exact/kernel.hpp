@@ -34,8 +34,8 @@ struct RankBound {
 RankBound rank_bound(const NumberMatrix& matrix);
 
 struct KernelLimits {
-    long long cells = 40000; ///< rows x cols beyond which no kernel is sought (dense elimination)
-    int primes = 512;        ///< how many primes of 61 bits the reconstruction may use
+    long long cells = 100000; ///< rows x cols beyond which no kernel is sought (dense elimination)
+    int primes = 512;         ///< how many primes of 61 bits the reconstruction may use
 };
 
 /// Kernel of a matrix, by elimination mod p, reconstruction of the rationals, and an exact check.

@@ -22,9 +22,10 @@ struct Terms; // sorted pairs (square-free positive integer d, non-zero rational
 /// exponential in the number of independent radicands (2 for Q(sqrt 3), 4 for Q(sqrt 2, sqrt 3)).
 class Number {
   public:
-    Number() = default;                                              ///< 0
-    Number(long long integer);                                       // NOLINT(google-explicit-constructor)
-    Number(int integer) : Number(static_cast<long long>(integer)) {} // NOLINT(google-explicit-constructor)
+    Number() = default;                                               ///< 0
+    Number(long long integer);                                        // NOLINT(google-explicit-constructor)
+    Number(long integer) : Number(static_cast<long long>(integer)) {} // NOLINT(google-explicit-constructor)
+    Number(int integer) : Number(static_cast<long long>(integer)) {}  // NOLINT(google-explicit-constructor)
     explicit Number(std::shared_ptr<const Terms> terms) : terms_(std::move(terms)) {} ///< canonical terms; null = 0
 
     /// The dyadic rational that a finite double is. \pre finite

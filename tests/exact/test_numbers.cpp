@@ -155,6 +155,23 @@ BOOST_AUTO_TEST_CASE(random_text_never_crashes_and_reads_back) {
     BOOST_TEST(accepted > 500);
 }
 
+BOOST_AUTO_TEST_CASE(square_roots_are_brought_to_square_free_radicands) {
+    std::mt19937_64 random(8);
+    for (int k = 0; k < 2000; ++k) {
+        const Number q =
+            Number(1 + static_cast<long>(random() % 100000)) / Number(1 + static_cast<long>(random() % 1000));
+        const Number root = sqrt(q);
+        BOOST_REQUIRE((root * root == q));
+        BOOST_REQUIRE_EQUAL(root.sign(), 1);
+        // Square-free by trial division, and the root of a square is rational.
+        const long radicand = std::stol(root.radicands().front());
+        for (long d = 2; d * d <= radicand; ++d) {
+            BOOST_REQUIRE(radicand % (d * d) != 0);
+        }
+        BOOST_REQUIRE((sqrt(q * q) == q));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(field_laws_hold_for_random_numbers) {
     std::mt19937_64 random(1);
     for (int k = 0; k < 3000; ++k) {

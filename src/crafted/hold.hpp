@@ -6,7 +6,6 @@
 namespace isostat::crafted {
 
 /// Fills `hold` and `carrying` of an inspection whose contacts are set.
-void judge_holds(Inspection& inspection, const ExactPacking& packing, const DofMap<2>& dofs,
-                 const exact::NumberMatrix& matrix);
+void judge_holds(Inspection& inspection, const ExactPacking& packing);
 
 } // namespace isostat::crafted

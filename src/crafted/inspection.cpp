@@ -1,32 +1,14 @@
 #include "crafted/hold.hpp"
+#include "crafted/rigid_motions.hpp"
 #include "crafted/second_order.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 
 #include <algorithm>
-#include <numeric>
 
 namespace isostat::crafted {
 
 namespace {
-
-/// Common rigid motions that neither a fixed grain nor a wall takes away.
-int rigid_motions(const ExactPacking& packing) {
-    const auto fixed = std::count(packing.fixed.begin(), packing.fixed.end(), 1);
-    const int n = packing.disk_count();
-    const auto wall = [&](std::size_t a, WallKind kind) {
-        return packing.walls.lower[a] == kind || packing.walls.upper[a] == kind;
-    };
-    const bool no_walls = packing.walls == Walls<2>::none();
-    if (fixed > 0) {
-        return fixed == 1 && no_walls && n > 1 ? 1 : 0; // turning about the fixed centre
-    }
-    int out = no_walls && n > 1 ? 1 : 0;
-    for (std::size_t a = 0; a < 2; ++a) {
-        out += wall(a, WallKind::fixed) ? 0 : 1; // a movable wall goes along
-    }
-    return out;
-}
 
 /// The contact matrix of the same contact graph with the disks at random integer points, columns scaled by the
 /// distance.
@@ -54,12 +36,12 @@ class Inspector {
         out_.contacts = std::move(contacts);
         matrix_ = exact_contact_matrix(packing_, dofs_, out_.contacts);
         out_.dof_count = dofs_.dof_count();
-        out_.rigid_motions = rigid_motions(packing_);
+        out_.rigid_motions = rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count());
     }
 
     Inspection run() {
         count();
-        judge_holds(out_, packing_, dofs_, matrix_);
+        judge_holds(out_, packing_);
         judge_self_stresses();
         judge_load();
         if (out_.bases_exact == Verdict::proved) {

@@ -99,6 +99,11 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
 /// Lines for a terminal.
 std::string to_text(const Inspection& inspection, const ExactPacking& packing);
 
+/// One JSON object, format "isostat-inspection 1", keys named as those of `check_expected`; exact numbers as strings
+/// that `Number::parse` reads, vectors as [name, number] pairs of their non-zero entries. `h`, `k` are upper bounds and
+/// `rank` a lower one unless `rank_exact` is "proved".
+std::string to_json(const Inspection& inspection, const ExactPacking& packing);
+
 /// Compares with `[expected]`; one message per entry that does not hold, empty = all hold. Keys: N_f, N, rank, h, k,
 /// rigid_motions, generic_rank, special, verdict, contacts = ["0-1", "0-left", ..], forces = [["0-1", "1/2"], ..] (any
 /// subset; they must be unique), rattlers = [3], bridges, one_sign, support, second_order, stable. Throws

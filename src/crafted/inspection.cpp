@@ -90,6 +90,7 @@ class Inspector {
             for (const auto& vector : stresses.basis) {
                 std::vector<Number> forces(vector.begin(), vector.begin() + n);
                 if (packing_.load && !vector.back().is_zero()) {
+                    balanced_ = true;
                     out_.forces = std::move(forces); // the vector whose free column is the load
                 } else {
                     out_.self_stresses.push_back(std::move(forces));
@@ -122,7 +123,7 @@ class Inspector {
     }
 
     void judge_load() {
-        if (out_.forces.empty()) {
+        if (!balanced_) {
             return;
         }
         out_.forces_unique = out_.self_stresses.empty();
@@ -198,7 +199,7 @@ class Inspector {
             out_.stable = Verdict::refuted;
             return;
         }
-        if (out_.forces.empty() || out_.support == Support::undecided) {
+        if (!balanced_ || out_.support == Support::undecided) {
             return;
         }
         const Inertia work = inertia(stress_form(packing_, dofs_, out_.contacts, out_.forces, out_.motions));
@@ -214,6 +215,7 @@ class Inspector {
     DofMap<2> dofs_;
     exact::NumberMatrix matrix_;
     Inspection out_;
+    bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)
 };
 
 } // namespace

@@ -236,4 +236,9 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
     return Inspector(packing, limits, std::move(contacts.value())).run();
 }
 
+Inspection inspect_contacts(const ExactPacking& packing, std::vector<Contact> contacts,
+                            const InspectionLimits& limits) {
+    return Inspector(packing, limits, std::move(contacts)).run();
+}
+
 } // namespace isostat::crafted

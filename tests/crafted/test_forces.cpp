@@ -1,9 +1,12 @@
 // Forces, rattlers and degenerate scenes against answers found by other means.
 
 #include <isostat/crafted/inspection.hpp>
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/rigidity/isostatic.hpp>
 
 #include <boost/test/unit_test.hpp>
 
+#include <cmath>
 #include <random>
 
 namespace {
@@ -184,6 +187,44 @@ BOOST_AUTO_TEST_CASE(a_disk_between_fixed_ones_is_held_exactly_when_its_normals_
     BOOST_TEST(held > 50);
     BOOST_TEST(bridges > 50);
     BOOST_TEST(rattlers > 50);
+}
+
+BOOST_AUTO_TEST_CASE(a_stored_vertex_is_isostatic_and_its_exact_forces_solve_the_double_system) {
+    isostat::PreparationOptions options;
+    options.disks = 12;
+    options.seed = 3;
+    isostat::PreparationReport<2> report;
+    const auto state = isostat::prepare<2>(options, report);
+    BOOST_REQUIRE(state.ok());
+    const auto& packing = state.value().packing;
+    ExactPacking exact = exact_copy(packing);
+    const auto force = state.value().load.external_force(packing);
+    exact.load = ExactLoad{{Number::from_double(-force[24]), Number::from_double(-force[25])}, {}};
+    const Inspection inspection = inspect_contacts(exact, state.value().contacts);
+    BOOST_TEST(inspection.verdict() == "isostatic");
+    BOOST_TEST((inspection.special_position == Verdict::refuted));
+    BOOST_REQUIRE(inspection.forces_unique);
+    const isostat::DofMap<2> dofs(packing);
+    const auto matrix = isostat::contact_matrix(packing, dofs, inspection.contacts);
+    std::vector<double> residual(26);
+    for (std::size_t c = 0; c < 26; ++c) {
+        residual[c] = force[c];
+    }
+    int zeros = 0;
+    for (std::size_t l = 0; l < 26; ++l) {
+        for (int e = matrix.start[l]; e < matrix.start[l + 1]; ++e) {
+            const auto entry = static_cast<std::size_t>(e);
+            residual[static_cast<std::size_t>(matrix.row[entry])] -=
+                matrix.value[entry] * inspection.forces[l].to_double();
+        }
+        zeros += inspection.forces[l].is_zero() ? 1 : 0;
+        BOOST_TEST(inspection.forces[l].sign() >= 0);
+        BOOST_TEST((inspection.forces[l].is_zero() == (inspection.structural_zero[l] != 0)));
+    }
+    BOOST_TEST(zeros == 2 * report.rattlers);
+    for (const double r : residual) {
+        BOOST_TEST(std::abs(r) < 1e-12 * 10);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(scenes_with_hardly_anything_in_them) {

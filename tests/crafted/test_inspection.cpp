@@ -1,5 +1,7 @@
 // Inspection of exact packings: what must be refused, invariances, agreement with independent counts, large lattices.
 
+#include "examples.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -8,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -224,10 +225,9 @@ BOOST_AUTO_TEST_CASE(contacts_agree_with_every_pair_decided_in_the_field) {
 
 BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
     std::mt19937_64 random(29);
-    namespace fs = std::filesystem;
     int cases = 0;
-    for (const auto& entry : fs::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/packings")) {
-        const ExactPacking packing = read_packing(entry.path().string()).packing;
+    for (const std::string& path : packing_files()) {
+        const ExactPacking packing = read_packing(path).packing;
         const Inspection before = inspected(packing);
         ExactPacking other = packing;
         std::vector<std::size_t> label(packing.radius.size());
@@ -256,7 +256,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
         }
         other.length = {scale * packing.length[0], scale * packing.length[1]};
         const Inspection after = inspected(other);
-        BOOST_TEST_CONTEXT(entry.path().string()) {
+        BOOST_TEST_CONTEXT(path) {
             BOOST_TEST(after.dof_count == before.dof_count);
             BOOST_TEST(after.contacts.size() == before.contacts.size());
             BOOST_TEST(after.rank == before.rank);

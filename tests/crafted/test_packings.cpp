@@ -1,26 +1,19 @@
 // Every file of examples/packings is read, inspected and held against the answers it carries.
 
+#include "examples.hpp"
+
 #include <isostat/crafted/inspection.hpp>
 
 #include <boost/test/unit_test.hpp>
 
-#include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 BOOST_AUTO_TEST_SUITE(crafted_packings)
 
 BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
-    namespace fs = std::filesystem;
     using namespace isostat::crafted;
-    std::vector<std::string> paths;
-    for (const auto& entry : fs::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/packings")) {
-        if (entry.path().extension() == ".toml") {
-            paths.push_back(entry.path().string());
-        }
-    }
-    std::sort(paths.begin(), paths.end());
+    const std::vector<std::string> paths = packing_files();
     BOOST_TEST(paths.size() >= 25u);
     for (const std::string& path : paths) {
         BOOST_TEST_CONTEXT(path) {

@@ -96,6 +96,14 @@ struct Inspection {
 /// beyond that rank and verdicts that need no kernel. \pre none: any walls, fixed disks, or neither
 Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& limits = {});
 
+/// The same for a given contact list, whose gaps need not be 0: stored doubles (`exact_copy`), whose contacts are part
+/// of the state. It speaks of the *stored* matrix, with columns (x_j - x_i) / (R_i + R_j) in place of unit normals (a
+/// force differs from the true one by the factor 1 + gap / (R_i + R_j)), and says nothing of a true configuration near
+/// it; gaps and overlaps are not looked at. Without a load, full rank costs one elimination; forces of generic 53-bit
+/// coordinates have thousands of digits (some 10 s at 100 disks).
+Inspection inspect_contacts(const ExactPacking& packing, std::vector<Contact> contacts,
+                            const InspectionLimits& limits = {});
+
 /// Lines for a terminal.
 std::string to_text(const Inspection& inspection, const ExactPacking& packing);
 

@@ -111,6 +111,9 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
 } // namespace
 
 int inspect(const InspectArguments& arguments) {
+    if (arguments.file.ends_with(".toml")) {
+        return inspect_packing(arguments);
+    }
     State<2> state = read_state<2>(arguments.file).state;
     snap_to_grid(state.packing);
     const Result<Inspection<2>> result = inspect_vertex(state);

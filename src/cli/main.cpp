@@ -112,7 +112,11 @@ struct Program {
             add("inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
                 "Nothing moves. Exit status 0: proved to be an isostatic equilibrium; 1: proved not to be one; 2: "
                 "undecided.\n"
-                "Example: isostat inspect start.json");
+                "A TOML file is a crafted packing with exact numbers (examples/packings): exact contacts, rank, bases, "
+                "stability;\n"
+                "its [expected] entries are checked. A scene is not a packing: see plan.\n"
+                "Examples: isostat inspect start.json\n"
+                "          isostat inspect examples/packings/triangular_patch_3x3.toml");
         command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
         add_common(command, a.common, false);
         command.callback([&a, line, this] {

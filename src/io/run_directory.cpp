@@ -193,8 +193,15 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     if (first || every || kept || segment_done()) {
         write_state<2>(state_path(directory_, record.number), last_, last_forces_);
     }
-    if (!first) { // the start is made again from start.json: run_segment reports number 0 itself
+    if (first) {
+        return; // the start is made again from start.json: run_segment reports number 0 itself
+    }
+    pending_ = Point{segment_, made_, segment_done(), counters_, files_->events.size(), files_->equilibria.size()};
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> interval(header_.checkpoint_seconds);
+    if (pending_->segment_done || !last_checkpoint_ || now - *last_checkpoint_ >= interval) {
         write_checkpoint();
+        last_checkpoint_ = now;
     }
 }
 
@@ -204,24 +211,29 @@ bool RunDirectory::segment_done() const {
 }
 
 void RunDirectory::write_checkpoint() {
+    if (!pending_) {
+        return;
+    }
     files_->events.sync();
     files_->equilibria.sync();
     Json object;
     object["format"] = "isostat-checkpoint";
     object["version"] = 1;
-    object["segment"] = segment_;
-    object["made"] = made_;
-    object["segment_done"] = segment_done();
-    object["counters"] = counters_json(counters_);
-    object["bytes"] = {{"events.jsonl", files_->events.size()}, {"equilibria.csv", files_->equilibria.size()}};
+    object["segment"] = pending_->segment;
+    object["made"] = pending_->made;
+    object["segment_done"] = pending_->segment_done;
+    object["counters"] = counters_json(pending_->counters);
+    object["bytes"] = {{"events.jsonl", pending_->events_bytes}, {"equilibria.csv", pending_->equilibria_bytes}};
     std::string text = object.dump();
     text.pop_back();
     write_atomically(directory_ / "checkpoint.json",
                      text + ",\n\"state\": " + state_text<2>(last_, last_forces_) + "}\n");
+    pending_.reset();
 }
 
 void RunDirectory::finish(RunStatus status, const std::string& reason) {
     const std::string words = reason.empty() ? to_string(status) : fmt::format("{}: {}", to_string(status), reason);
+    write_checkpoint();
     if (!last_.packing.radius.empty()) {
         write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);
     }

@@ -175,6 +175,8 @@ void read_run(Section& section, Scene& scene) {
 
 void read_output(Section& section, Scene& scene) {
     scene.states_every = static_cast<int>(section.integer("states_every", scene.states_every, 0, 1'000'000'000));
+    scene.checkpoint_seconds = section.number("checkpoint_seconds", scene.checkpoint_seconds, 0, 1e9,
+                                              "a time in seconds that is not negative");
     scene.pictures = section.boolean("pictures", scene.pictures);
     scene.vtk = section.boolean("vtk", scene.vtk);
 }

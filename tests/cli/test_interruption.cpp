@@ -85,7 +85,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme));
+    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     const std::string events = scratch::read(folder / "whole/events.jsonl");
     const auto arcs = std::count(events.begin(), events.end(), '\n');
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
 BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme));
+    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     for (const int signal : {SIGINT, SIGTERM}) {
         const fs::path out = folder / ("cut" + std::to_string(signal));

@@ -19,6 +19,7 @@ RunHeader header() {
     h.scene_text = "text";
     h.programme = {"up"};
     h.keep = {2};
+    h.checkpoint_seconds = 0;
     return h;
 }
 
@@ -49,9 +50,11 @@ class Stopper final : public RunObserver<2> {
 
 /// Runs from the sample, or from the checkpoint of the folder; stops during arc `stop_at` (-1: never). Returns whether
 /// it completed.
-bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool finish) {
+bool play(const fs::path& path, RunDirectory::Mode mode, long stop_at, bool finish, double checkpoint_seconds = 0) {
     RunCounters counters;
-    RunDirectory directory(path, header(), mode, counters);
+    RunHeader head = header();
+    head.checkpoint_seconds = checkpoint_seconds;
+    RunDirectory directory(path, head, mode, counters);
     State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
     int made = 0;
     if (const auto& point = directory.checkpoint()) {
@@ -137,6 +140,24 @@ BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
                 }
             }
         }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(checkpoints_that_are_further_apart_lose_time_but_no_record) {
+    const scratch::Folder folder;
+    BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
+    for (const bool finish : {true, false}) {
+        const fs::path path = folder / (finish ? "finished" : "killed");
+        BOOST_TEST(!play(path, RunDirectory::Mode::fresh, 14, finish, 1000));
+        const RunCounters counters;
+        {
+            const RunDirectory directory(path, header(), RunDirectory::Mode::resume, counters);
+            BOOST_REQUIRE(directory.checkpoint().has_value());
+            // The first one comes at once; a run that ends in order writes the last one.
+            BOOST_TEST(directory.checkpoint()->state.equilibrium == (finish ? 5 : 1));
+        }
+        BOOST_TEST(play(path, RunDirectory::Mode::resume, -1, true));
+        BOOST_TEST(scratch::read(path / "events.jsonl") == scratch::read(folder / "whole/events.jsonl"));
     }
 }
 

@@ -6,11 +6,13 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <array>
 #include <bit>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <limits>
 
@@ -189,6 +191,29 @@ BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) 
     std::filesystem::remove(folder / "state.json.part");
     write_atomically(folder / "state.json", "new");
     BOOST_TEST(scratch::read(folder / "state.json") == "new");
+    BOOST_TEST(!std::filesystem::exists(folder / "state.json.part"));
+}
+
+BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_new_one) {
+    const scratch::Folder folder;
+    scratch::write(folder / "state.json", "old");
+    // The system refuses the 101st byte of any file, as it would on a full disk.
+    rlimit before{};
+    BOOST_REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+    rlimit small = before;
+    small.rlim_cur = 100;
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    BOOST_REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+    bool refused = false;
+    try {
+        write_atomically(folder / "state.json", std::string(1000, 'x'));
+    } catch (const Error& error) {
+        refused = error.kind() == ErrorKind::cannot_write;
+    }
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    BOOST_TEST(refused);
+    BOOST_TEST(scratch::read(folder / "state.json") == "old");
     BOOST_TEST(!std::filesystem::exists(folder / "state.json.part"));
 }
 

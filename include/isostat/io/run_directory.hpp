@@ -4,6 +4,7 @@
 
 #include <isostat/trajectory/trajectory.hpp>
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -21,6 +22,7 @@ struct RunHeader {
     std::string settings = "{}";        ///< JSON object: every setting with its value, defaults included
     std::vector<std::string> programme; ///< one line of text per segment
     std::vector<int> keep;              ///< equilibria that later segments start from: their states are stored
+    double checkpoint_seconds = 1;      ///< shortest time between two checkpoints; 0: one after every equilibrium
     int states_every = 0;               ///< also store every k-th equilibrium; 0: none but those needed
 };
 
@@ -46,7 +48,9 @@ const char* to_string(RunStatus status);
 ///   numpy.genfromtxt(delimiter=",", names=True) read it (columns: `equilibria_columns`);
 /// - states/eq_000012.json: the first equilibrium, those that later segments start from, every k-th; states/last.json:
 /// the last one;
-/// - checkpoint.json: replaced after every equilibrium (atomically, after the records have reached the disk);
+/// - checkpoint.json: replaced (atomically, after the records have reached the disk) after an equilibrium, when the
+/// last one is
+///   `checkpoint_seconds` old, at the end of every segment and by `finish`;
 /// - summary.json: written by `finish` only.
 /// After a kill at any instant, `resume` cuts events and equilibria back to the checkpoint; the run goes on from there.
 /// Every failure to write throws `Error(cannot_write)`, also out of the observer's calls.
@@ -92,6 +96,7 @@ class RunDirectory final : public RunObserver<2> {
   private:
     struct Files;
     void write_header(const std::string& status) const;
+    /// Of the last equilibrium, unless it was written already.
     void write_checkpoint();
     /// The last equilibrium completed its segment.
     [[nodiscard]] bool segment_done() const;
@@ -103,6 +108,17 @@ class RunDirectory final : public RunObserver<2> {
     std::unique_ptr<Files> files_;
     std::optional<Checkpoint> checkpoint_;
     std::string previous_status_, provenance_, summary_;
+    /// What a checkpoint of the last equilibrium says besides the state.
+    struct Point {
+        int segment = 0;
+        int made = 0;
+        bool segment_done = false;
+        RunCounters counters;
+        long events_bytes = 0;
+        long equilibria_bytes = 0;
+    };
+    std::optional<Point> pending_; ///< none: checkpoint.json is up to date
+    std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
     Segment goal_;
     int segment_ = 0;
     int made_ = 0;

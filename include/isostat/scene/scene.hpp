@@ -48,9 +48,10 @@ struct Scene {
     std::vector<ProgrammeStep> programme;
     RunOptions run;
 
-    int states_every = 0; ///< [output] states_every: store every k-th equilibrium, 0 = only those needed
-    bool pictures = true; ///< [output] pictures: figures at the end of the run
-    bool vtk = false;     ///< [output] vtk: also ParaView files
+    int states_every = 0;          ///< [output] states_every: store every k-th equilibrium, 0 = only those needed
+    double checkpoint_seconds = 1; ///< [output] checkpoint_seconds: shortest time between two checkpoints
+    bool pictures = true;          ///< [output] pictures: figures at the end of the run
+    bool vtk = false;              ///< [output] vtk: also ParaView files
 
     std::vector<Setting> settings; ///< every key that this scene uses, in the order of the sections
 };

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/packing_file.hpp>
 

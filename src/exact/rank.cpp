@@ -5,6 +5,7 @@
 #include <colamd.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <limits>
 #include <new>
@@ -48,9 +49,9 @@ std::vector<int> colamd_order(const sparse::Matrix<std::uint64_t>& matrix) {
     }
     std::vector<int> work(length);
     std::copy(matrix.row.begin(), matrix.row.end(), work.begin());
-    int stats[COLAMD_STATS];
+    std::array<int, COLAMD_STATS> stats{};
     [[maybe_unused]] const int done =
-        colamd(matrix.rows, matrix.cols, static_cast<int>(length), work.data(), order.data(), nullptr, stats);
+        colamd(matrix.rows, matrix.cols, static_cast<int>(length), work.data(), order.data(), nullptr, stats.data());
     assert(done != 0);
     order.resize(static_cast<std::size_t>(matrix.cols));
     return order;

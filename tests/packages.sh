@@ -4,11 +4,17 @@
 
 isostat_packages=(
   g++ cmake ninja-build pkg-config
-  libcgal-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev
+  libcgal-dev libeigen3-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev
   libsuitesparse-dev libqd-dev coinor-libclp-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   gnuplot-nox
 )
+
+# For the machine-checked part of proofs/: optional, installed by continuous integration.
+isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify)
+if [ "${CI:-}" = true ]; then
+  isostat_packages+=("${isostat_proof_packages[@]}")
+fi
 
 # Installs what is missing; a message with the list when it cannot.
 isostat_install_packages() {

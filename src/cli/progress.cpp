@@ -64,7 +64,7 @@ void RunTable::begin_segment(int number, int equilibrium, double ratio, int made
 
 double RunTable::remaining(double ratio) const {
     double rest = 0;
-    for (std::size_t s = static_cast<std::size_t>(segment_); s < programme_.size(); ++s) {
+    for (auto s = static_cast<std::size_t>(segment_); s < programme_.size(); ++s) {
         const ProgrammeStep& step = programme_[s];
         const bool current = s == static_cast<std::size_t>(segment_);
         const int done = current ? made_ : 0;

@@ -88,7 +88,7 @@ class Player {
                 }
                 state = directory_.stored(*step.from);
             }
-            const Ending ending = play_segment(state, step, static_cast<int>(s), made);
+            Ending ending = play_segment(state, step, static_cast<int>(s), made);
             if (ending.status != RunStatus::completed) {
                 return ending;
             }

@@ -35,7 +35,7 @@ std::string script_of(const std::string& name, int width, int height, const std:
          {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}}};
     for (const auto& [suffix, terminal] : terminals) {
         script += fmt::format("reset\nset encoding utf8\n{}\nset output {}\n{}unset output\n", terminal,
-                              quoted(name + "." + suffix), body);
+                              quoted(fmt::format("{}.{}", name, suffix)), body);
     }
     return script;
 }

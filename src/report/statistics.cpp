@@ -78,6 +78,7 @@ std::vector<std::pair<double, double>> histogram(const std::vector<double>& valu
         }
     }
     std::vector<std::pair<double, double>> points;
+    points.reserve(count.size());
     for (int b = 0; b < bins; ++b) {
         points.emplace_back(low + (b + 0.5) * width,
                             count[static_cast<std::size_t>(b)] / (static_cast<double>(values.size()) * width));

@@ -73,6 +73,18 @@ Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<do
     return {value / scale, (error + 8 * u * std::abs(value)) / scale * 1.001};
 }
 
+/// Largest number of disk contacts of one disk.
+int most_contacts(int disks, const std::vector<Contact>& contacts) {
+    std::vector<int> count(static_cast<std::size_t>(disks), 0);
+    int most = 1;
+    for (const Contact& c : contacts) {
+        if (c.kind == ContactKind::disk_disk) {
+            most = std::max({most, ++count[static_cast<std::size_t>(c.i)], ++count[static_cast<std::size_t>(c.j)]});
+        }
+    }
+    return most;
+}
+
 /// 2-norm of the forces: what a change of the matrix acts on.
 template <int Dim> double force_norm(const Vertex<Dim>& vertex, double sigma) {
     double sum = 0;
@@ -173,10 +185,13 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
                                                          vertex.statics.infinitesimal(ContactId(l)).positive()));
             } else {
                 ++record.held;
-                // Known only as well as the stored configuration: moving every coordinate by `radius` changes the
-                // matrix by about radius / R.
-                const double uncertain = 4 * vertex.enclosure.radius / state.packing.min_radius() *
-                                         force_norm(vertex, sigma) / vertex.inverse.sigma_min;
+                // Known only as well as the stored configuration: a displacement of 2-norm r changes the matrix by at
+                // most 2 sqrt(z) r / D_min in the 2-norm (V4), the forces by |H^-1| times that times |f|.
+                const double uncertain =
+                    1.01 *
+                    std::sqrt(static_cast<double>(most_contacts(state.packing.disk_count(), inspection.contacts))) *
+                    vertex.enclosure.radius / state.packing.min_radius() * force_norm(vertex, sigma) /
+                    vertex.inverse.sigma_min;
                 at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
                 if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
                     inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",

@@ -100,6 +100,12 @@ template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, 
     record.sigma_min_bound = vertex.inverse.sigma_min;
 
     for (const int direction : {-1, +1}) {
+        if (record.held >
+            0) { // an equilibrium at this load only: the multiplier of the held coordinate vanishes just here
+            (direction > 0 ? record.stress_high : record.stress_low) = sigma;
+            (direction > 0 ? record.opens_high : record.opens_low) = {ContactKind::disk_disk, -1, -1};
+            continue;
+        }
         const auto limit = find_limit(vertex.statics, sigma, direction);
         if (!limit.ok()) {
             return Failure{limit.failure().kind,

@@ -143,15 +143,28 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
                                            const Load<Dim>& load, ArcRecord<Dim>& record) {
     const std::vector<double> force = load.external_force(from.packing);
     double work = 0;
+    double size = 0;
+    double terms = 2;
     double force_norm = 0;
     for (std::size_t k = 0; k < force.size(); ++k) {
-        work += force[k] * (to.packing.q[k] - from.packing.q[k]);
+        const double part = force[k] * (to.packing.q[k] - from.packing.q[k]);
+        work += part;
+        size += std::abs(part);
+        terms += part != 0 ? 1 : 0;
         force_norm += force[k] * force[k];
     }
     record.work = work;
     force_norm = std::sqrt(force_norm);
-    // The stored ends are within `radius` of the true ones: that much of the work is not known.
-    const double unknown = force_norm * (from.enclosure.radius + to.enclosure.radius) + 0x1p-50 * std::abs(work);
+    // The stored ends are within `radius` of the true ones (plus their correction): that much of the work is not known.
+    const auto off = [](const VertexEnclosure& enclosure) {
+        double square = 0;
+        for (const double c : enclosure.correction) {
+            square += c * c;
+        }
+        return enclosure.radius + std::sqrt(square);
+    };
+    const double unknown =
+        (force_norm * (off(from.enclosure) + off(to.enclosure)) + terms * 0x1p-52 * size) * (1 + 1e-10);
     if (load.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided,
                        fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
@@ -351,6 +364,13 @@ template <int Dim> SegmentOutcome Run<Dim>::run(const Segment& segment) {
         if (options_.stop != nullptr && options_.stop->load()) {
             outcome.failure =
                 Failure{FailureKind::interrupted, fmt::format("stopped at equilibrium {}", counters_.equilibria)};
+            return outcome;
+        }
+        if (record_.held > 0) {
+            outcome.failure =
+                Failure{FailureKind::undecided, fmt::format("equilibrium {} still holds {} coordinate(s): it is one at "
+                                                            "this load only, and no contact limits it",
+                                                            counters_.equilibria, record_.held)};
             return outcome;
         }
         auto found = find_limit(vertex_->statics, sigma(), segment.direction);

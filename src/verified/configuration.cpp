@@ -11,6 +11,8 @@ namespace isostat {
 namespace {
 
 constexpr double u = 0x1p-53;
+constexpr double coordinate_unit =
+    0x1p-100;                       // rounding of a difference of corrected coordinates, per unit of the coordinates
 constexpr double dd_unit = 0x1p-98; // granted to one operation of libqd (its own bounds are 2^-104 to 2^-102)
 
 /// Sum of the radii of a contact: the length that scales the rounding of its gap.
@@ -121,6 +123,18 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
     if (inverse.verdict != Verdict::proved) {
         return vertex;
     }
+    double worst_ratio = 0; // |DF^-1| <= |G^-1| max D / |d|: the gaps must be small against D, as on the double rung
+    double largest = 0;
+    for (const Contact& contact : structure.contacts()) {
+        const double d = target(packing, contact);
+        worst_ratio = d > 0 ? std::max(worst_ratio, std::abs(gap(packing, contact)) / d) : worst_ratio;
+    }
+    for (const double x : packing.q) {
+        largest = std::max(largest, std::abs(x));
+    }
+    if (!(worst_ratio < 1e-3)) {
+        return vertex;
+    }
     const DofMap<Dim>& dofs = structure.dofs();
     const double k = lipschitz(packing, structure.contacts());
     const auto n = static_cast<std::size_t>(structure.size());
@@ -133,7 +147,8 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
             const Contact& contact = structure.contacts()[l];
             const dd_real value = quadratic_dd(packing, correction, contact);
             f[l] = value.x[0];
-            const double bound = std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact);
+            const double bound =
+                std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact) + coordinate_unit * largest;
             sum += bound * bound;
         }
         double shift = 0;
@@ -142,7 +157,7 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
         }
         shift = std::sqrt(shift) * (1 + 1e-10);
         // |DF^-1| at the corrected point: |DF^-1(q)| / (1 - |DF^-1(q)| K |correction|).
-        const double at_q = 1 / inverse.sigma_min * (1 + 1e-9);
+        const double at_q = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
         const double lost = at_q * k * shift;
         const double radius = lost < 0.5
                                   ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
@@ -177,8 +192,15 @@ Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vert
     const dd_real h = gap_dd(packing, vertex.correction, contact);
     const double value = h.x[0];
     const double d = target(packing, contact);
-    return {value,
-            (root2 * vertex.radius + 16 * dd_unit * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
+    double size = 0; // of the coordinates whose differences were formed
+    for (int a = 0; a < Dim; ++a) {
+        size += std::abs(packing.coordinate(DiskId(contact.i), a));
+        size += std::abs(contact.kind == ContactKind::disk_disk ? packing.coordinate(DiskId(contact.j), a)
+                                                                : packing.length(a));
+    }
+    return {value, (root2 * vertex.radius + 16 * dd_unit * (std::abs(value) + d) + coordinate_unit * size +
+                    2 * u * std::abs(value)) *
+                       (1 + 4 * u)};
 }
 
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);

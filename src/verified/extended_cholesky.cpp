@@ -10,7 +10,15 @@ template <> struct Eigen::NumTraits<dd_real> : Eigen::GenericNumTraits<dd_real> 
     using Real = dd_real;
     using NonInteger = dd_real;
     using Nested = dd_real;
-    enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 2, AddCost = 20, MulCost = 30 };
+    enum {
+        IsComplex = 0,
+        IsInteger = 0,
+        IsSigned = 1,
+        RequireInitialization = 1,
+        ReadCost = 2,
+        AddCost = 20,
+        MulCost = 30
+    };
 };
 
 namespace isostat {
@@ -48,7 +56,8 @@ double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double sh
             in_factor[static_cast<std::size_t>(entry.row())] += 1;
         }
     }
-    // 2^-96 per term: an addition of libqd errs by at most 2^-103 of the sum of magnitudes, a product by less; 2^7 covers the accumulation.
+    // 2^-96 per term: an addition of libqd errs by at most 2^-103 of the sum of magnitudes, a product by less; 2^7
+    // covers the accumulation.
     double sum = 0;
     for (std::size_t i = 0; i < terms.size(); ++i) {
         const auto row = static_cast<std::size_t>(cholesky.permutationPinv().indices()[static_cast<Eigen::Index>(i)]);

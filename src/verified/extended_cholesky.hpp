@@ -7,8 +7,9 @@
 namespace isostat {
 
 /// Factorises H H^T - shift I (Eigen's simplicial Cholesky over libqd's double-double). Returns a proved lower bound of
-/// lambda_min(H H^T): shift minus the bound of the backward error (statement V1 with the unit of double-double), or 0 when a pivot was not
-/// positive. H is taken as the exact matrix that the doubles are. Cost: about 30 times the double version.
+/// lambda_min(H H^T): shift minus the bound of the backward error (statement V1 with the unit of double-double), or 0
+/// when a pivot was not positive. H is taken as the exact matrix that the doubles are. Cost: about 30 times the double
+/// version.
 double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double shift);
 
 } // namespace isostat

@@ -1,6 +1,6 @@
-#include <isostat/verified/inverse_bound.hpp>
-
 #include "verified/extended_cholesky.hpp"
+
+#include <isostat/verified/inverse_bound.hpp>
 
 #include <cholmod.h>
 

@@ -1,0 +1,60 @@
+#pragma once
+/// \file
+/// Packings whose coordinates are exact numbers, their contacts and their contact matrix.
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/number.hpp>
+#include <isostat/packing/packing.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat::crafted {
+
+using exact::Number;
+
+/// Dead external forces, exact.
+struct ExactLoad {
+    std::array<Number, 2> wall{}; ///< inward force on the upper wall of each axis (0 unless that wall is movable)
+    std::vector<Number> disk;     ///< empty, or 2 n components
+};
+
+/// Disks, walls and coordinates as in `Packing<2>`, with exact numbers. Lengths in the user's unit.
+struct ExactPacking {
+    std::vector<Number> radius;
+    std::vector<std::array<Number, 2>> centre;
+    std::vector<unsigned char> fixed; ///< empty, or n flags
+    Walls<2> walls = Walls<2>::none();
+    std::array<Number, 2> length{}; ///< positions of the upper walls that exist
+    std::optional<ExactLoad> load;
+
+    [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
+    [[nodiscard]] bool is_fixed(int disk) const { return !fixed.empty() && fixed[static_cast<std::size_t>(disk)] != 0; }
+};
+
+/// The stored doubles as exact (dyadic) numbers.
+ExactPacking exact_copy(const Packing<2>& packing);
+
+/// Nearest doubles: for pictures and for `DofMap`. Proves nothing.
+Packing<2> approximate(const ExactPacking& packing);
+
+/// Every pair at gap exactly 0, sorted. The sign of each gap is decided: that of |x_j - x_i|^2 - (R_i + R_j)^2, by
+/// double enclosures where they exclude 0 and in the field otherwise. Pairs without a degree of freedom (two fixed
+/// disks, a fixed disk and a fixed wall) are not looked at. `overlap` names the first overlapping pair with its
+/// squared-distance defect. Cost: sweep along x, O(n sqrt n) pairs for a compact packing.
+Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
+
+/// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres
+/// is R_i + R_j, so the normal needs no root. H f = F_ext as in `contact_matrix`. \pre contacts come from
+/// `exact_contacts`
+exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
+                                         const std::vector<Contact>& contacts);
+
+/// External force on the degrees of freedom. \pre packing.load
+std::vector<Number> external_force(const ExactPacking& packing, const DofMap<2>& dofs);
+
+} // namespace isostat::crafted

@@ -1,0 +1,244 @@
+#include "crafted/hold.hpp"
+#include "crafted/rigid_motions.hpp"
+#include "crafted/second_order.hpp"
+
+#include <isostat/crafted/inspection.hpp>
+
+#include <algorithm>
+
+namespace isostat::crafted {
+
+namespace {
+
+/// The contact matrix of the same contact graph with the disks at random integer points, columns scaled by the
+/// distance.
+exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
+                                   const std::vector<Contact>& contacts) {
+    ExactPacking random = packing;
+    std::uint64_t state = 0x9e3779b97f4a7c15u; // splitmix64: the same points at every call
+    const auto next = [&] {
+        std::uint64_t z = state += 0x9e3779b97f4a7c15u;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return Number(static_cast<long long>((z ^ (z >> 31)) >> 3)); // 61 bits
+    };
+    for (std::size_t i = 0; i < random.radius.size(); ++i) {
+        random.centre[i] = {next(), next()};
+        random.radius[i] = Number(1) / Number(2);
+    }
+    return exact_contact_matrix(random, dofs, contacts);
+}
+
+class Inspector {
+  public:
+    Inspector(const ExactPacking& packing, const InspectionLimits& limits, std::vector<Contact> contacts)
+        : packing_(packing), limits_(limits), dofs_(approximate(packing)) {
+        out_.contacts = std::move(contacts);
+        matrix_ = exact_contact_matrix(packing_, dofs_, out_.contacts);
+        out_.dof_count = dofs_.dof_count();
+        out_.rigid_motions = rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count());
+    }
+
+    Inspection run() {
+        count();
+        judge_holds(out_, packing_);
+        judge_self_stresses();
+        judge_load();
+        if (out_.bases_exact == Verdict::proved) {
+            out_.second_order = second_order_test(out_, packing_, dofs_);
+        } else if (out_.rank_exact == Verdict::proved && out_.internal_mechanisms() == 0) {
+            out_.second_order = SecondOrder::no_mechanism;
+        }
+        judge_stability();
+        return std::move(out_);
+    }
+
+  private:
+    [[nodiscard]] std::size_t contact_count() const { return out_.contacts.size(); }
+
+    [[nodiscard]] std::vector<std::pair<int, Number>> load_column() const {
+        std::vector<std::pair<int, Number>> column;
+        const std::vector<Number> force = external_force(packing_, dofs_);
+        for (std::size_t d = 0; d < force.size(); ++d) {
+            if (!force[d].is_zero()) {
+                column.emplace_back(static_cast<int>(d), -force[d]);
+            }
+        }
+        return column;
+    }
+
+    void count() {
+        exact::NumberMatrix augmented = matrix_;
+        if (packing_.load) {
+            augmented.column.push_back(load_column());
+        }
+        const int n = static_cast<int>(contact_count());
+        const exact::Kernel stresses = exact::kernel(augmented, limits_.kernel);
+        const exact::Kernel motions = exact::kernel(exact::transposed(matrix_), limits_.kernel);
+        const bool load_is_pivot =
+            packing_.load && std::binary_search(stresses.pivots.begin(), stresses.pivots.end(), n);
+        const bool dense = stresses.exact == Verdict::proved;
+        out_.rank = std::max(dense ? stresses.rank - (load_is_pivot ? 1 : 0) : 0, motions.rank);
+        const int most = std::min(n, out_.dof_count - out_.rigid_motions);
+        const bool exact = dense || motions.exact == Verdict::proved || out_.rank == most;
+        out_.rank_exact = exact ? Verdict::proved : Verdict::undecided;
+        out_.hyperstaticity = n - out_.rank;
+        out_.mechanisms = out_.dof_count - out_.rank;
+        if (dense && motions.exact == Verdict::proved) {
+            out_.bases_exact = Verdict::proved;
+            out_.motions = motions.basis;
+            for (const auto& vector : stresses.basis) {
+                std::vector<Number> forces(vector.begin(), vector.begin() + n);
+                if (packing_.load && !vector.back().is_zero()) {
+                    balanced_ = true;
+                    out_.forces = std::move(forces); // the vector whose free column is the load
+                } else {
+                    out_.self_stresses.push_back(std::move(forces));
+                }
+            }
+            out_.support =
+                !packing_.load ? Support::no_load : (load_is_pivot ? Support::unbalanced : Support::undecided);
+        } else if (packing_.load) {
+            out_.support = Support::undecided;
+        }
+        out_.generic_rank = exact::rank_bound(generic_matrix(packing_, dofs_, out_.contacts)).rank;
+        if (exact) {
+            out_.special_position = out_.rank < out_.generic_rank
+                                        ? Verdict::proved
+                                        : (out_.rank == most ? Verdict::refuted : Verdict::undecided);
+        }
+    }
+
+    [[nodiscard]] bool affordable(std::size_t rows, std::size_t cols) const {
+        return static_cast<long long>((rows + 1) * cols) <= limits_.programme_cells;
+    }
+
+    void judge_self_stresses() {
+        if (out_.rank_exact == Verdict::proved && out_.hyperstaticity == 0) {
+            out_.one_sign_decided = true;
+        } else if (out_.bases_exact == Verdict::proved && affordable(out_.self_stresses.size(), contact_count())) {
+            out_.one_sign = exact::one_sign(out_.self_stresses, static_cast<int>(contact_count()));
+            out_.one_sign_decided = true;
+        }
+    }
+
+    void judge_load() {
+        if (!balanced_) {
+            return;
+        }
+        out_.forces_unique = out_.self_stresses.empty();
+        if (out_.forces_unique) {
+            int least = 1;
+            for (const Number& f : out_.forces) {
+                least = std::min(least, f.sign());
+            }
+            judge_zeros();
+            out_.support = least > 0 ? Support::positive : (least == 0 ? Support::with_zeros : Support::none);
+            return;
+        }
+        if (!affordable(out_.self_stresses.size() + 1, contact_count() + 1)) {
+            return;
+        }
+        // f = f0 + S c > 0 is t f0 + S c > 0 with t > 0: one more component for t.
+        std::vector<std::vector<Number>> span = out_.self_stresses;
+        for (auto& vector : span) {
+            vector.emplace_back(0);
+        }
+        span.push_back(out_.forces);
+        span.back().emplace_back(1);
+        const exact::OneSignAnswer answer = exact::one_sign(span, static_cast<int>(contact_count()) + 1);
+        if (answer.kind == exact::OneSign::none) {
+            out_.support = Support::none;
+        } else if (answer.combination.back().sign() > 0) {
+            take(answer.combination);
+            out_.support = answer.kind == exact::OneSign::strict ? Support::positive : Support::with_zeros;
+        } else if (affordable(static_cast<std::size_t>(out_.dof_count), contact_count())) {
+            std::vector<std::vector<Number>> rows(static_cast<std::size_t>(out_.dof_count),
+                                                  std::vector<Number>(contact_count()));
+            for (std::size_t l = 0; l < contact_count(); ++l) {
+                for (const auto& [d, value] : matrix_.column[l]) {
+                    rows[static_cast<std::size_t>(d)][l] = value;
+                }
+            }
+            const auto point =
+                exact::feasible_point(rows, external_force(packing_, dofs_), static_cast<int>(contact_count()));
+            out_.support = point.feasible ? Support::with_zeros : Support::none;
+            if (point.feasible) {
+                out_.forces = point.solution;
+            }
+        }
+    }
+
+    /// f_l vanishes for given columns exactly when the load lies in the span of the others.
+    void judge_zeros() {
+        exact::NumberMatrix generic = generic_matrix(packing_, dofs_, out_.contacts);
+        generic.column.push_back(load_column());
+        const int n = static_cast<int>(contact_count());
+        if (out_.generic_rank < n || exact::rank_bound(generic).rank > n) {
+            return; // generic coordinates do not balance this load: nothing to compare with
+        }
+        out_.structural_zero.assign(contact_count(), 0);
+        for (std::size_t l = 0; l < contact_count(); ++l) {
+            if (out_.forces[l].is_zero()) {
+                exact::NumberMatrix others = generic;
+                others.column.erase(others.column.begin() + static_cast<std::ptrdiff_t>(l));
+                out_.structural_zero[l] = exact::rank_bound(others).rank < n ? 1 : 0;
+            }
+        }
+    }
+
+    void take(const std::vector<Number>& combination) {
+        const Number scale = combination.back().inverse();
+        for (std::size_t l = 0; l < contact_count(); ++l) {
+            out_.forces[l] = combination[l] * scale;
+        }
+    }
+
+    void judge_stability() {
+        if (out_.support == Support::none || out_.support == Support::unbalanced) {
+            out_.stable = Verdict::refuted;
+            return;
+        }
+        if (!balanced_ || out_.support == Support::undecided) {
+            return;
+        }
+        const Inertia work = inertia(stress_form(packing_, dofs_, out_.contacts, out_.forces, out_.motions));
+        if (work.positive > 0) {
+            out_.stable = out_.forces_unique ? Verdict::refuted : Verdict::undecided;
+        } else if (out_.support == Support::positive && out_.internal_mechanisms() == 0) {
+            out_.stable = Verdict::proved;
+        }
+    }
+
+    const ExactPacking& packing_;
+    const InspectionLimits& limits_;
+    DofMap<2> dofs_;
+    exact::NumberMatrix matrix_;
+    Inspection out_;
+    bool balanced_ = false; // some forces balance the load, and `forces` holds them (without contacts it is empty)
+};
+
+} // namespace
+
+std::string Inspection::verdict() const {
+    if (rank_exact != Verdict::proved) {
+        return "undecided";
+    }
+    const bool over = hyperstaticity > 0, under = internal_mechanisms() > 0;
+    return over && under ? "hyperstatic and hypostatic" : (over ? "hyperstatic" : (under ? "hypostatic" : "isostatic"));
+}
+
+Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& limits) {
+    auto contacts = exact_contacts(packing);
+    if (!contacts.ok()) {
+        return contacts.failure();
+    }
+    return Inspector(packing, limits, std::move(contacts.value())).run();
+}
+
+Inspection inspect_contacts(const ExactPacking& packing, std::vector<Contact> contacts,
+                            const InspectionLimits& limits) {
+    return Inspector(packing, limits, std::move(contacts)).run();
+}
+
+} // namespace isostat::crafted

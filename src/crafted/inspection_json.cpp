@@ -1,0 +1,81 @@
+#include <isostat/crafted/inspection.hpp>
+
+#include <nlohmann/json.hpp>
+
+namespace isostat::crafted {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json entries(const std::vector<Number>& vector, const std::vector<std::string>& names) {
+    Json out = Json::array();
+    for (std::size_t k = 0; k < vector.size(); ++k) {
+        if (!vector[k].is_zero()) {
+            out.push_back({names[k], vector[k].text()});
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
+    const DofMap<2> dofs(approximate(packing));
+    std::vector<std::string> contacts, coordinates;
+    for (const Contact& contact : inspection.contacts) {
+        contacts.push_back(to_string<2>(contact));
+    }
+    for (int d = 0; d < dofs.dof_count(); ++d) {
+        coordinates.push_back(dofs.name(d));
+    }
+    Json out;
+    out["format"] = "isostat-inspection 1";
+    out["disks"] = packing.disk_count();
+    out["N_f"] = inspection.dof_count;
+    out["N"] = inspection.contacts.size();
+    out["rank"] = inspection.rank;
+    out["rank_exact"] = to_string(inspection.rank_exact);
+    out["h"] = inspection.hyperstaticity;
+    out["k"] = inspection.mechanisms;
+    out["rigid_motions"] = inspection.rigid_motions;
+    out["verdict"] = inspection.verdict();
+    out["generic_rank"] = inspection.generic_rank;
+    out["special"] = to_string(inspection.special_position);
+    out["contacts"] = contacts;
+    out["hold"] = Json::array();
+    for (const DiskHold hold : inspection.hold) {
+        out["hold"].push_back(to_string(hold));
+    }
+    out["contacts_without_force"] = Json::array();
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (inspection.carrying[l] == 0) {
+            out["contacts_without_force"].push_back(contacts[l]);
+        }
+    }
+    out["one_sign"] = inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided";
+    out["one_sign_stress"] = entries(inspection.one_sign.combination, contacts);
+    out["support"] = to_string(inspection.support);
+    out["forces_unique"] = inspection.forces_unique;
+    out["forces"] = entries(inspection.forces, contacts);
+    out["structural_zeros"] = Json::array();
+    for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
+        if (inspection.structural_zero[l] != 0) {
+            out["structural_zeros"].push_back(contacts[l]);
+        }
+    }
+    out["second_order"] = to_string(inspection.second_order);
+    out["stable"] = to_string(inspection.stable);
+    out["bases_exact"] = to_string(inspection.bases_exact);
+    out["self_stresses"] = Json::array();
+    for (const auto& stress : inspection.self_stresses) {
+        out["self_stresses"].push_back(entries(stress, contacts));
+    }
+    out["motions"] = Json::array();
+    for (const auto& motion : inspection.motions) {
+        out["motions"].push_back(entries(motion, coordinates));
+    }
+    return out.dump(2);
+}
+
+} // namespace isostat::crafted

@@ -1,0 +1,21 @@
+#include "crafted/rigid_motions.hpp"
+
+#include <algorithm>
+
+namespace isostat::crafted {
+
+int rigid_motions(const Walls<2>& walls, const std::vector<unsigned char>& fixed, int disks) {
+    const auto held = std::count(fixed.begin(), fixed.end(), 1);
+    const bool no_walls = walls == Walls<2>::none();
+    if (held > 0) {
+        return held == 1 && no_walls && disks > 1 ? 1 : 0; // turning about the fixed centre
+    }
+    int out = no_walls && disks > 1 ? 1 : 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+        out +=
+            walls.lower[a] == WallKind::fixed || walls.upper[a] == WallKind::fixed ? 0 : 1; // a movable wall goes along
+    }
+    return out;
+}
+
+} // namespace isostat::crafted

@@ -1,0 +1,13 @@
+#pragma once
+// Common rigid motions of a packing.
+
+#include <isostat/packing/packing.hpp>
+
+#include <vector>
+
+namespace isostat::crafted {
+
+/// Dimension of the common rigid motions that neither a fixed disk nor a wall takes away; `disks` of them take part.
+int rigid_motions(const Walls<2>& walls, const std::vector<unsigned char>& fixed, int disks);
+
+} // namespace isostat::crafted

@@ -1,0 +1,110 @@
+#include "crafted/second_order.hpp"
+
+namespace isostat::crafted {
+
+Inertia inertia(std::vector<std::vector<Number>> a) {
+    Inertia out;
+    std::vector<std::size_t> left(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        left[i] = i;
+    }
+    while (!left.empty()) {
+        std::size_t pivot = left.size();
+        for (std::size_t s = 0; s < left.size() && pivot == left.size(); ++s) {
+            pivot = a[left[s]][left[s]].is_zero() ? pivot : s;
+        }
+        if (pivot == left.size()) {
+            // No square on the diagonal: x_i x_j becomes one by adding row and column j to i.
+            std::size_t s = 0, t = 0;
+            bool found = false;
+            for (std::size_t u = 0; u < left.size() && !found; ++u) {
+                for (std::size_t v = u + 1; v < left.size() && !found; ++v) {
+                    found = !a[left[u]][left[v]].is_zero();
+                    s = u;
+                    t = v;
+                }
+            }
+            if (!found) {
+                out.zero += static_cast<int>(left.size());
+                return out;
+            }
+            for (const std::size_t k : left) {
+                a[left[s]][k] += a[left[t]][k];
+            }
+            for (const std::size_t k : left) {
+                a[k][left[s]] += a[k][left[t]];
+            }
+            pivot = s;
+        }
+        const std::size_t p = left[pivot];
+        (a[p][p].sign() > 0 ? out.positive : out.negative) += 1;
+        const Number scale = a[p][p].inverse();
+        left.erase(left.begin() + static_cast<std::ptrdiff_t>(pivot));
+        for (const std::size_t i : left) {
+            const Number factor = a[i][p] * scale;
+            for (const std::size_t j : left) {
+                a[i][j] -= factor * a[p][j];
+            }
+        }
+    }
+    return out;
+}
+
+std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const DofMap<2>& dofs,
+                                             const std::vector<Contact>& contacts, const std::vector<Number>& forces,
+                                             const std::vector<std::vector<Number>>& motions) {
+    const std::size_t k = motions.size();
+    std::vector<std::vector<Number>> out(k, std::vector<Number>(k));
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& contact = contacts[l];
+        if (contact.kind != ContactKind::disk_disk || forces[l].is_zero()) {
+            continue; // a wall's gap is linear
+        }
+        const auto i = static_cast<std::size_t>(contact.i);
+        const auto j = static_cast<std::size_t>(contact.j);
+        std::vector<std::array<Number, 2>> relative(k);
+        for (std::size_t m = 0; m < k; ++m) {
+            for (std::size_t a = 0; a < 2; ++a) {
+                const int di = dofs.dof_of(2 * i + a), dj = dofs.dof_of(2 * j + a);
+                relative[m][a] = (dj < 0 ? Number() : motions[m][static_cast<std::size_t>(dj)]) -
+                                 (di < 0 ? Number() : motions[m][static_cast<std::size_t>(di)]);
+            }
+        }
+        const Number weight = forces[l] / (packing.radius[i] + packing.radius[j]);
+        for (std::size_t a = 0; a < k; ++a) {
+            for (std::size_t b = 0; b < k; ++b) {
+                const Number dot = relative[a][0] * relative[b][0] + relative[a][1] * relative[b][1];
+                if (!dot.is_zero()) {
+                    out[a][b] += weight * dot;
+                }
+            }
+        }
+    }
+    return out;
+}
+
+SecondOrder second_order_test(const Inspection& inspection, const ExactPacking& packing, const DofMap<2>& dofs) {
+    const int internal = inspection.internal_mechanisms();
+    if (internal == 0) {
+        return SecondOrder::no_mechanism;
+    }
+    bool all_vanish = true;
+    for (const auto& stress : inspection.self_stresses) {
+        const Inertia counts = inertia(stress_form(packing, dofs, inspection.contacts, stress, inspection.motions));
+        if (counts.positive == internal || counts.negative == internal) {
+            return SecondOrder::rigid; // definite on the motions modulo rigid ones: this self-stress pairs to non-zero
+                                       // with each of them
+        }
+        all_vanish = all_vanish && counts.positive == 0 && counts.negative == 0;
+    }
+    // A mechanism v extends exactly when every self-stress pairs to zero with its curvature. With one self-stress an
+    // indefinite or degenerate form has such a v; with none, or all forms zero, every v does.
+    if (all_vanish || inspection.self_stresses.size() == 1) {
+        return SecondOrder::flexes;
+    }
+    // One mechanism whose form vanishes for every stress was covered; one whose form does not is definite, hence
+    // covered too.
+    return SecondOrder::undecided;
+}
+
+} // namespace isostat::crafted

@@ -1,0 +1,91 @@
+// Perturbed radii: crystals become isostatic, isostatic packings keep their contacts.
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/genericity.hpp>
+#include <isostat/crafted/inspection.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+namespace {
+
+using namespace isostat::crafted;
+
+ExactPacking example(const std::string& name) {
+    return read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
+}
+
+Genericity perturbed(const std::string& name, int samples, double size) {
+    const ExactPacking exact = example(name);
+    const auto contacts = exact_contacts(exact);
+    BOOST_REQUIRE(contacts.ok());
+    GenericityOptions options;
+    options.samples = samples;
+    options.size = size;
+    return genericity(approximate(exact), contacts.value(), options);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(crafted_genericity)
+
+BOOST_AUTO_TEST_CASE(an_isostatic_packing_keeps_its_contacts) {
+    const Genericity answer = perturbed("two_disks.toml", 20, 1e-4);
+    BOOST_TEST(answer.proved == 20);
+    BOOST_REQUIRE_EQUAL(answer.lists.size(), 1u);
+    BOOST_TEST((answer.lists[0].contacts == exact_contacts(example("two_disks.toml")).value()));
+    for (const GenericitySample& sample : answer.samples) {
+        BOOST_TEST(sample.within_original);
+        BOOST_TEST(sample.carrying == 6);
+        BOOST_TEST(sample.rattlers == 0);
+        BOOST_TEST(sample.min_force > 0);
+        BOOST_TEST(sample.sigma_min_bound > 0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_perturbed_lattice_is_isostatic_on_some_of_its_contacts) {
+    for (const char* name : {"square_lattice_3.toml", "triangular_patch_3x3.toml"}) {
+        const Genericity answer = perturbed(name, 20, 1e-4);
+        BOOST_TEST_CONTEXT(name) {
+            int within = 0;
+            for (const GenericitySample& sample : answer.samples) {
+                BOOST_TEST_MESSAGE(
+                    name << " seed " << sample.seed << ": "
+                         << (sample.failure ? sample.failure->message : std::to_string(sample.carrying) + " carrying"));
+                if (!sample.failure) {
+                    BOOST_TEST(sample.contacts.size() == 20u);
+                    BOOST_TEST(sample.carrying == 2 * (9 - sample.rattlers) + 2);
+                    within += sample.within_original ? 1 : 0;
+                }
+            }
+            BOOST_TEST_MESSAGE(name << ": proved " << answer.proved << ", lists " << answer.lists.size()
+                                    << ", within the lattice " << within);
+            BOOST_TEST(answer.proved >= 15);
+            BOOST_TEST(answer.lists.size() > 1u);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_samples) {
+    const Genericity a = perturbed("triangular_patch_2x3.toml", 5, 1e-3),
+                     b = perturbed("triangular_patch_2x3.toml", 5, 1e-3);
+    for (std::size_t s = 0; s < a.samples.size(); ++s) {
+        BOOST_TEST((a.samples[s].contacts == b.samples[s].contacts));
+        BOOST_TEST(a.samples[s].min_gap == b.samples[s].min_gap);
+        BOOST_TEST(a.samples[s].min_force == b.samples[s].min_force);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
+    const auto box = approximate(example("two_disks.toml"));
+    BOOST_CHECK_THROW((void)genericity(approximate(example("arch.toml")), {}, {}), isostat::Error);
+    for (const double size : {-1.0, 0.5, 1e300}) {
+        GenericityOptions options;
+        options.size = size;
+        BOOST_CHECK_THROW((void)genericity(box, {}, options), isostat::Error);
+    }
+    GenericityOptions none;
+    none.samples = 0;
+    BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

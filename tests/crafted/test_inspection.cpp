@@ -1,0 +1,362 @@
+// Inspection of exact packings: what must be refused, invariances, agreement with independent counts, large lattices.
+
+#include "examples.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/rigidity/counting.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+namespace {
+
+using namespace isostat::crafted;
+using isostat::Contact;
+using isostat::ContactKind;
+using isostat::Error;
+using isostat::Verdict;
+
+Number n(const std::string& text) {
+    return Number::parse(text);
+}
+
+std::string contents(const std::string& name) {
+    std::ifstream stream(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name);
+    std::ostringstream out;
+    out << stream.rdbuf();
+    return out.str();
+}
+
+Inspection inspected(const ExactPacking& packing) {
+    auto result = inspect(packing);
+    BOOST_REQUIRE(result.ok());
+    return result.value();
+}
+
+/// rows x columns triangular lattice of unit disks in its box, odd rows shifted by one radius.
+ExactPacking triangular(int rows, int columns, bool box) {
+    ExactPacking out;
+    const Number root = sqrt(Number(3));
+    for (int r = 0; r < rows; ++r) {
+        for (int c = 0; c < columns; ++c) {
+            out.centre.push_back({Number(1 + 2 * c + r % 2), Number(1) + Number(r) * root});
+            out.radius.emplace_back(1);
+        }
+    }
+    if (box) {
+        out.walls = isostat::Walls<2>::box();
+        out.length = {Number(2 * columns + (rows > 1 ? 1 : 0)), Number(2) + Number(rows - 1) * root};
+    }
+    return out;
+}
+
+bool refused(const std::string& text, int line, const std::string& part) {
+    try {
+        (void)parse_packing(text, "file.toml");
+        BOOST_TEST_MESSAGE("accepted: " << text);
+        return false;
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        BOOST_TEST_MESSAGE(message);
+        return error.exit_status() == 65 && message.find("file.toml, line " + std::to_string(line) + ":") == 0 &&
+               message.find(part) != std::string::npos;
+    }
+}
+
+const std::string head = "format = \"isostat-packing 1\"\n";
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(crafted_inspection)
+
+BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
+    BOOST_TEST(refused("disks = [[0, 0, 1]]\n", 1, "\"format\" is missing"));
+    BOOST_TEST(refused("format = \"isostat-packing 2\"\n", 1, "expected \"isostat-packing 1\""));
+    BOOST_TEST(refused(head, 1, "no disk"));
+    BOOST_TEST(refused(head + "disks = [[0, 0]]\n", 2, "array of 3"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, -1]]\n", 2, "above 0"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 0]]\n", 2, "above 0"));
+    BOOST_TEST(refused(head + "disks = [[nan, 0, 1]]\n", 2, "exact number"));
+    BOOST_TEST(refused(head + "disks = [[0, inf, 1]]\n", 2, "exact number"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1],\n[true, 0, 1]]\n", 3, "boolean"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, \"sin(1)\"]]\n", 2, "position 1"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]\n", 2, "end-of-file"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[boxes]\n", 3, "unknown key \"boxes\""));
+    BOOST_TEST(refused(head + "[[disk]]\nx = 0\ny = 0\nr = 1\nz = 1\n", 6, "unknown key \"disk.z\""));
+    BOOST_TEST(refused(head + "[[disk]]\nx = 0\nr = 1\n", 2, "\"disk.y\" is missing"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[box]\nlength = [1, -1]\n", 4, "above 0"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[box]\nlength = [2, 2]\nlower = [\"movable\", \"fixed\"]\n", 5,
+                       "\"absent\" or \"fixed\""));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[load]\nwall = [1, 0]\n", 4, "not movable"));
+    BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[load]\ndisk = [[1, 0, 0]]\n", 4, "0 to 0"));
+}
+
+BOOST_AUTO_TEST_CASE(floats_are_read_from_their_source_text) {
+    const PackingFile file = parse_packing(head + "disks = [[0.1, 1_000.5, 1e-3], [ -2.5e+1,3.0 , 0.3]]\n", "f");
+    BOOST_TEST((file.packing.centre[0][0] == n("1/10")));
+    BOOST_TEST((file.packing.centre[0][1] == n("2001/2")));
+    BOOST_TEST((file.packing.radius[0] == n("1/1000")));
+    BOOST_TEST((file.packing.centre[1][0] == n("-25")));
+    BOOST_TEST((file.packing.centre[1][1] == n("3")));
+    BOOST_TEST((file.packing.radius[1] == n("3/10")));
+    // The columns of a line with characters of several bytes before the number.
+    const PackingFile inline_table =
+        parse_packing(head + "title = \"d\xC3\xA9j\xC3\xA0\"\ndisk = [{\"x\" = 0.1, \"y\" = 0.2, \"r\" = 0.7}]\n", "f");
+    BOOST_TEST((inline_table.packing.radius[0] == n("7/10")));
+    const PackingFile wide = parse_packing(head + "disks = [[\"1\", 0, 0.1]] # \xE2\x88\x9A\n", "f");
+    BOOST_TEST((wide.packing.radius[0] == n("1/10")));
+}
+
+BOOST_AUTO_TEST_CASE(mutated_files_are_refused_or_inspected_and_never_crash) {
+    std::mt19937_64 random(17);
+    const std::vector<std::string> seeds = {contents("two_disks.toml"), contents("arch.toml"),
+                                            contents("wedged_between_three.toml")};
+    const std::string alphabet = "0123456789.-+*/[]\"=,#\n qrst_e\xC3\xA9\t{}";
+    int accepted = 0;
+    for (int k = 0; k < 3000; ++k) {
+        std::string text = seeds[random() % seeds.size()];
+        for (std::size_t edits = 1 + random() % 3; edits > 0; --edits) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 3) {
+            case 0: text.erase(at, 1 + random() % 4); break;
+            case 1: text.insert(at, 1, alphabet[random() % alphabet.size()]); break;
+            default: text[at] = alphabet[random() % alphabet.size()];
+            }
+        }
+        try {
+            const PackingFile file = parse_packing(text, "mutant");
+            const auto result = inspect(file.packing);
+            if (result.ok()) {
+                (void)check_expected(result.value(), file, "mutant");
+            }
+            ++accepted;
+        } catch (const Error& error) {
+            BOOST_REQUIRE(std::string(error.what()).size() > 10);
+        }
+    }
+    BOOST_TEST(accepted > 300);
+}
+
+BOOST_AUTO_TEST_CASE(each_wrong_expectation_is_reported) {
+    PackingFile file = parse_packing(contents("three_disks_and_a_rattler.toml"), "three");
+    const Inspection inspection = inspected(file.packing);
+    BOOST_REQUIRE(check_expected(inspection, file, "three").empty());
+    for (std::size_t e = 0; e < file.expected.size(); ++e) {
+        PackingFile wrong = file;
+        auto& entry = wrong.expected[e];
+        if (entry.values.empty()) {
+            entry.values.push_back({"0"});
+        } else {
+            entry.values.back().back() = "12345";
+        }
+        const auto messages = check_expected(inspection, wrong, "three");
+        BOOST_TEST(messages.size() == 1u, entry.key);
+    }
+    PackingFile unknown = file;
+    unknown.expected.push_back({"colour", {{"red"}}, 99});
+    BOOST_CHECK_THROW((void)check_expected(inspection, unknown, "three"), Error);
+}
+
+BOOST_AUTO_TEST_CASE(overlap_is_named_however_small) {
+    for (const char* depth : {"1", "1e-16", "1e-200"}) {
+        ExactPacking packing;
+        packing.centre = {
+            {Number(0), Number(0)}, {n("sqrt(2)"), n(std::string("sqrt(2) - ") + depth)}, {Number(50), Number(0)}};
+        packing.radius = {Number(1), Number(1), Number(1)};
+        const auto result = exact_contacts(packing);
+        BOOST_REQUIRE(!result.ok());
+        BOOST_TEST(result.failure().message.find("disk 0") != std::string::npos);
+        BOOST_TEST(result.failure().message.find("disk 1") != std::string::npos);
+        packing.centre[1][1] = n(std::string("sqrt(2) + ") + depth);
+        BOOST_REQUIRE(exact_contacts(packing).ok());
+        BOOST_TEST(exact_contacts(packing).value().empty());
+        packing.centre[1][1] = n("sqrt(2)");
+        BOOST_TEST(exact_contacts(packing).value().size() == 1u);
+    }
+    ExactPacking wall = triangular(2, 2, true);
+    wall.length[0] -= n("1e-100");
+    BOOST_TEST(!exact_contacts(wall).ok());
+}
+
+BOOST_AUTO_TEST_CASE(contacts_agree_with_every_pair_decided_in_the_field) {
+    std::mt19937_64 random(23);
+    int contacts = 0, overlaps = 0;
+    for (int k = 0; k < 400; ++k) {
+        // Points of two lattices with many exact tangencies, at scales down to 1e-150 and up to 1e150.
+        const Number scale = n(fmt::format("1e{}", static_cast<int>(random() % 7) * 50 - 150));
+        ExactPacking packing;
+        for (int i = 0; i < 6; ++i) {
+            const Number u(static_cast<int>(random() % 9)), v(static_cast<int>(random() % 9));
+            const bool hexagonal = random() % 2 == 0;
+            packing.centre.push_back(
+                {(hexagonal ? u + v / Number(2) : u) * scale, (hexagonal ? v * n("1/2*sqrt(3)") : v) * scale});
+            packing.radius.push_back(scale / Number(2));
+        }
+        std::vector<Contact> expected;
+        bool overlap = false;
+        for (std::size_t i = 0; i < 6; ++i) {
+            for (std::size_t j = i + 1; j < 6; ++j) {
+                const Number dx = packing.centre[i][0] - packing.centre[j][0],
+                             dy = packing.centre[i][1] - packing.centre[j][1];
+                const int sign = (dx * dx + dy * dy - scale * scale).sign();
+                overlap = overlap || sign < 0;
+                if (sign == 0) {
+                    expected.push_back({ContactKind::disk_disk, static_cast<int>(i), static_cast<int>(j)});
+                }
+            }
+        }
+        const auto found = exact_contacts(packing);
+        BOOST_REQUIRE_EQUAL(found.ok(), !overlap);
+        overlaps += overlap ? 1 : 0;
+        if (!overlap) {
+            BOOST_REQUIRE(found.value() == expected);
+            contacts += static_cast<int>(expected.size());
+        }
+    }
+    BOOST_TEST(contacts > 50);
+    BOOST_TEST(overlaps > 50);
+}
+
+BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
+    std::mt19937_64 random(29);
+    int cases = 0;
+    for (const std::string& path : packing_files()) {
+        const ExactPacking packing = read_packing(path).packing;
+        const Inspection before = inspected(packing);
+        ExactPacking other = packing;
+        std::vector<std::size_t> label(packing.radius.size());
+        for (std::size_t i = 0; i < label.size(); ++i) {
+            label[i] = i;
+        }
+        std::shuffle(label.begin(), label.end(), random);
+        const bool walls = !(packing.walls == isostat::Walls<2>::none());
+        const Number scale = n("7/3"), c = walls ? Number(1) : n("3/5"), s = walls ? Number(0) : n("4/5");
+        const auto turned = [&](const Number& x, const Number& y) {
+            return std::array<Number, 2>{c * x - s * y, s * x + c * y};
+        };
+        for (std::size_t i = 0; i < label.size(); ++i) {
+            const std::size_t to = label[i];
+            const auto centre = turned(packing.centre[i][0], packing.centre[i][1]);
+            other.centre[to] = {scale * centre[0], scale * centre[1]};
+            other.radius[to] = scale * packing.radius[i];
+            if (!packing.fixed.empty()) {
+                other.fixed[to] = packing.fixed[i];
+            }
+            if (packing.load && !packing.load->disk.empty()) {
+                const auto force = turned(packing.load->disk[2 * i], packing.load->disk[2 * i + 1]);
+                other.load->disk[2 * to] = force[0];
+                other.load->disk[2 * to + 1] = force[1];
+            }
+        }
+        other.length = {scale * packing.length[0], scale * packing.length[1]};
+        const Inspection after = inspected(other);
+        BOOST_TEST_CONTEXT(path) {
+            BOOST_TEST(after.dof_count == before.dof_count);
+            BOOST_TEST(after.contacts.size() == before.contacts.size());
+            BOOST_TEST(after.rank == before.rank);
+            BOOST_TEST(after.generic_rank == before.generic_rank);
+            BOOST_TEST((after.special_position == before.special_position));
+            BOOST_TEST((after.support == before.support));
+            BOOST_TEST((after.one_sign.kind == before.one_sign.kind));
+            BOOST_TEST((after.second_order == before.second_order));
+            BOOST_TEST((after.stable == before.stable));
+            for (std::size_t i = 0; i < label.size(); ++i) {
+                BOOST_TEST((after.hold[label[i]] == before.hold[i]));
+            }
+        }
+        ++cases;
+    }
+    BOOST_TEST(cases >= 25);
+}
+
+BOOST_AUTO_TEST_CASE(bases_are_in_the_kernel_and_count_as_they_should) {
+    for (const auto& [rows, columns] : {std::pair{2, 3}, std::pair{3, 3}, std::pair{4, 5}, std::pair{1, 4}}) {
+        for (const bool box : {false, true}) {
+            const ExactPacking packing = triangular(rows, columns, box);
+            const Inspection inspection = inspected(packing);
+            BOOST_REQUIRE((inspection.bases_exact == Verdict::proved));
+            const auto h = static_cast<std::size_t>(inspection.hyperstaticity),
+                       k = static_cast<std::size_t>(inspection.mechanisms);
+            BOOST_TEST(inspection.self_stresses.size() == h);
+            BOOST_TEST(inspection.motions.size() == k);
+            BOOST_TEST(static_cast<std::size_t>(inspection.dof_count) + h == inspection.contacts.size() + k);
+            const isostat::DofMap<2> dofs(approximate(packing));
+            const auto matrix = exact_contact_matrix(packing, dofs, inspection.contacts);
+            for (const auto& stress : inspection.self_stresses) {
+                for (const Number& x : product(matrix, stress)) {
+                    BOOST_REQUIRE(x.is_zero());
+                }
+            }
+            for (const auto& motion : inspection.motions) {
+                for (const Number& x : product(transposed(matrix), motion)) {
+                    BOOST_REQUIRE(x.is_zero());
+                }
+            }
+            BOOST_TEST(inspection.internal_mechanisms() >= 0);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rational_packings_count_as_in_double_with_the_same_contacts) {
+    // Two independent codes: the field here, residues of the stored doubles there (dyadic coordinates are the same
+    // packing).
+    for (int m = 2; m <= 4; ++m) {
+        const ExactPacking packing =
+            read_packing(fmt::format("{}/packings/square_lattice_{}.toml", ISOSTAT_EXAMPLES, m)).packing;
+        const auto stored = approximate(packing);
+        const Inspection a = inspected(exact_copy(stored));
+        const isostat::Counting b = isostat::count_contacts<2>(stored, a.contacts);
+        BOOST_TEST(a.rank == b.rank);
+        BOOST_TEST(a.hyperstaticity == b.hyperstaticity);
+        BOOST_TEST(a.mechanisms == b.mechanisms);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(beyond_the_limits_the_answers_are_bounds_and_say_so) {
+    InspectionLimits limits;
+    limits.kernel.cells = 1;
+    const PackingFile file = parse_packing(contents("collinear_between_two.toml"), "collinear");
+    const auto inspection = inspect(file.packing, limits);
+    BOOST_REQUIRE(inspection.ok());
+    BOOST_TEST((inspection.value().rank_exact == Verdict::undecided));
+    BOOST_TEST((inspection.value().special_position == Verdict::undecided));
+    BOOST_TEST(inspection.value().verdict() == "undecided");
+    BOOST_TEST(!check_expected(inspection.value(), file, "collinear").empty());
+    // Full rank needs no kernel.
+    const auto full = inspect(parse_packing(contents("two_disks.toml"), "two").packing, limits);
+    BOOST_TEST((full.value().rank_exact == Verdict::proved));
+    BOOST_TEST(full.value().verdict() == "isostatic");
+    BOOST_TEST((full.value().stable == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(a_lattice_of_900_disks_is_counted_exactly) {
+    const ExactPacking packing = triangular(30, 30, true);
+    const auto start = std::chrono::steady_clock::now();
+    const Inspection inspection = inspected(packing);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    BOOST_TEST_MESSAGE("30 x 30: " << elapsed.count() << " s, N = " << inspection.contacts.size()
+                                   << ", h = " << inspection.hyperstaticity);
+    BOOST_TEST((inspection.rank_exact == Verdict::proved));
+    BOOST_TEST(inspection.mechanisms == 0);
+    // Rows: 30 * 29; between rows: 29 * 59; floor and ceiling 60, sides 30.
+    BOOST_TEST(inspection.contacts.size() == 30u * 29 + 29 * 59 + 60 + 30);
+}
+
+BOOST_AUTO_TEST_CASE(a_lattice_of_70_x_70_is_counted_within_seconds) {
+    const ExactPacking packing = triangular(70, 70, true);
+    const auto start = std::chrono::steady_clock::now();
+    const Inspection inspection = inspected(packing);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    BOOST_TEST_MESSAGE("70 x 70: " << elapsed.count() << " s, N = " << inspection.contacts.size()
+                                   << ", h = " << inspection.hyperstaticity);
+    BOOST_TEST((inspection.rank_exact == Verdict::proved));
+    BOOST_TEST(inspection.mechanisms == 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -29,7 +29,7 @@ struct ExtendedMatrix {
 template <int Dim>
 ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
 
-/// LU solve, one step of refinement, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the rounding of the residual
+/// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the rounding of the residual
 /// and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound is infinite. Cost: two
 /// solves.
 template <int Dim>

@@ -35,8 +35,8 @@ struct InspectArguments {
     std::string file;
 };
 int inspect(const InspectArguments& arguments);
-/// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares them with the
-/// file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
+/// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares
+/// them with the file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
 int inspect_packing(const InspectArguments& arguments);
 
 struct PlanArguments {

@@ -15,6 +15,7 @@ namespace {
 /// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
+constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -149,7 +150,8 @@ template <int Dim> class Follower {
                 at.q[i] += y_[i];
             }
             ++last_iterations_;
-            if (size <= rounding) {
+            // The chord iteration converges linearly: the next change would be size^2 / previous.
+            if (size <= rounding || (k > 1 && size * size <= 0.1 * rounding * previous)) {
                 return true;
             }
             if (k > 3 && size > 0.5 * previous) {
@@ -177,7 +179,7 @@ template <int Dim> class Follower {
     }
 
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
-    std::optional<Vector> tangent_at(const Packing<Dim>& at) {
+    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
         Vector t = tangent_;
         double previous = infinity;
         for (int k = 0; k < 30; ++k) {
@@ -189,7 +191,7 @@ template <int Dim> class Follower {
             if (!(size < previous)) {
                 break;
             }
-            if (size < tangent_accuracy * largest(t)) {
+            if (size < accuracy * largest(t)) {
                 return t;
             }
             previous = size;
@@ -299,7 +301,7 @@ template <int Dim> class Follower {
         if (off > 0.2 * s) {
             return std::nullopt; // another branch, or a curve too bent for this step
         }
-        auto t = tangent_at(at);
+        auto t = tangent_at(at, tangent_accuracy);
         if (!t || largest(*t) > 4) {
             return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
         }
@@ -520,7 +522,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                         continue;
                     }
                 }
-                auto t = tangent_at(at);
+                auto t = tangent_at(at, end_tangent_accuracy);
                 if (!t) {
                     break;
                 }

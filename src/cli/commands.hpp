@@ -39,6 +39,12 @@ int inspect(const InspectArguments& arguments);
 /// them with the file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
 int inspect_packing(const InspectArguments& arguments);
 
+struct CertifyArguments {
+    Common common;
+    std::string input, output;
+};
+int certify(const CertifyArguments& arguments);
+
 struct PlanArguments {
     Common common;
     std::string scene;

@@ -43,6 +43,7 @@ struct Program {
     PrepareArguments prepare_arguments;
     RunArguments run_arguments;
     InspectArguments inspect_arguments;
+    CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
     ConvertArguments convert_arguments;
@@ -59,6 +60,7 @@ struct Program {
         add_prepare(line);
         add_run(line);
         add_inspect(line);
+        add_certify(line);
         add_plan(line);
         add_report(line);
         add_convert(line);
@@ -124,6 +126,24 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return inspect(a); };
+        });
+    }
+
+    void add_certify(const std::string& line) {
+        CertifyArguments& a = certify_arguments;
+        CLI::App& command =
+            add("certify", "proves that a state is an isostatic, stable equilibrium, and writes what was proved",
+                "Claims are about the true vertex near the stored coordinates, where all gaps of the contacts are "
+                "exactly 0. What is not\n"
+                "proved is not claimed, and the reason is written. Exit status 0: every claim is proved; 1: one is "
+                "refuted; 2: some are undecided.\n"
+                "Example: isostat certify out/states/last.json -o last.cert.json");
+        command.add_option("state", a.input, "state file, or vertex text")->required()->type_name("STATE.json");
+        command.add_option("-o,--output", a.output, "certificate to write")->required()->type_name("CERT.json");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return certify(a); };
         });
     }
 

@@ -115,8 +115,7 @@ inline ExactPacking apollonian_strip(int columns, int largest) {
 /// second one against a fixed-height tower of the same kind: few contacts, extreme ratios of radii.
 inline ExactPacking random_tower(int disks, std::uint64_t seed) {
     std::mt19937_64 random(seed);
-    const std::array<std::array<int, 3>, 5> directions{
-        {{3, 4, 5}, {-3, 4, 5}, {0, 1, 1}, {-20, 21, 29}, {20, 21, 29}}};
+    const std::array<std::array<int, 3>, 5> directions{{{3, 4, 5}, {-3, 4, 5}, {0, 1, 1}, {-20, 21, 29}, {20, 21, 29}}};
     ExactPacking packing = empty_box(0, 0);
     Number x = 0;
     Number y = 0;

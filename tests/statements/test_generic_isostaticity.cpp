@@ -129,9 +129,9 @@ BOOST_AUTO_TEST_CASE(with_fixed_disks_the_statement_fails) {
     const Number along_x = kernel.basis[0][0]; // contact 0-2
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        const bool x = c.kind == ContactKind::disk_disk
-                           ? packing.centre[static_cast<std::size_t>(c.i)][1] == packing.centre[static_cast<std::size_t>(c.j)][1]
-                           : c.j == 0;
+        const bool x = c.kind == ContactKind::disk_disk ? packing.centre[static_cast<std::size_t>(c.i)][1] ==
+                                                              packing.centre[static_cast<std::size_t>(c.j)][1]
+                                                        : c.j == 0;
         BOOST_TEST((kernel.basis[0][l] == (x ? along_x : -along_x)), to_string<2>(c));
     }
 }

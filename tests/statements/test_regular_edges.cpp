@@ -6,7 +6,6 @@
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Regular_triangulation_vertex_base_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
@@ -163,7 +162,8 @@ BOOST_AUTO_TEST_CASE(a_square_of_four_disks_has_one_diagonal_only) {
     const auto packing = families::counterexample("t6_square_of_four");
     std::vector<Disk> disks;
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        disks.push_back({packing.centre[i][0].to_double(), packing.centre[i][1].to_double(), packing.radius[i].to_double()});
+        disks.push_back(
+            {packing.centre[i][0].to_double(), packing.centre[i][1].to_double(), packing.radius[i].to_double()});
     }
     BOOST_REQUIRE(disks.size() == 4u);
     const Edges edges = edges_of(disks);
@@ -211,7 +211,8 @@ BOOST_AUTO_TEST_CASE(when_no_edge_overlaps_nothing_does) {
         std::mt19937_64 random(seed);
         std::vector<Disk> disks;
         for (int k = 0; k < 12; ++k) {
-            disks.push_back({uniform(random, 0, 12), uniform(random, 0, 12), uniform(random, 0.1, seed % 2 == 0 ? 1 : 2)});
+            disks.push_back(
+                {uniform(random, 0, 12), uniform(random, 0, 12), uniform(random, 0.1, seed % 2 == 0 ? 1 : 2)});
         }
         const Edges edges = edges_of(disks);
         if (edges.hidden > 0) {

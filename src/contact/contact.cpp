@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace isostat {
@@ -26,7 +27,22 @@ template <int Dim> double norm(const std::array<double, Dim>& d) {
     for (const double c : d) {
         square += c * c;
     }
-    return std::sqrt(square);
+    if (square > 0x1p-900 && square < 0x1p1000) {
+        return std::sqrt(square);
+    }
+    // Squares that under- or overflow: scaled by a power of two, which rounds nothing that matters.
+    double largest = 0;
+    for (const double c : d) {
+        largest = std::max(largest, std::abs(c));
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    square = 0;
+    for (const double c : d) {
+        const double scaled = std::ldexp(c, -exponent);
+        square += scaled * scaled;
+    }
+    return std::ldexp(std::sqrt(square), exponent);
 }
 
 } // namespace

@@ -102,7 +102,7 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
         s.value.assign(n, 0.0);
         s.low.assign(rung == Rung::double_bound ? 0 : n, 0.0);
         part.unknown.assign(rung == Rung::exact ? n : 0, mpq_class(0));
-        part.refined.value.assign(rung == Rung::multiprecision ? n : 0, Real(bits));
+        part.refined.value.assign(rung == Rung::multiprecision ? n : 0, Real());
     } else if (rung == Rung::exact) {
         part.unknown = exact->solve(part.force);
         std::vector<Real> x;

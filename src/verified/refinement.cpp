@@ -1,5 +1,7 @@
 #include "verified/refinement.hpp"
 
+#include "verified/precise_matrix.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,41 +17,8 @@ constexpr mpfr_prec_t bound_bits = 64; ///< of sizes and bounds, rounded upwards
 template <int Dim>
 RefinedSystem<Dim>::RefinedSystem(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                   const Factorisation& factorisation, const InverseBound& inverse, mpfr_prec_t bits)
-    : pattern_(&structure.matrix()), factorisation_(&factorisation), inverse_(&inverse), bits_(bits) {
-    const sparse::Matrix<double>& h = *pattern_;
-    const DofMap<Dim>& dofs = structure.dofs();
-    entry_.reserve(h.value.size());
-    std::vector<Real> d(static_cast<std::size_t>(Dim), Real(bits));
-    Real length(bits);
-    for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
-        const Contact& contact = structure.contacts()[l];
-        const bool pair = contact.kind == ContactKind::disk_disk;
-        if (pair) {
-            mpfr_set_zero(length.get(), 1);
-            for (int a = 0; a < Dim; ++a) {
-                const Real from(packing.coordinate(DiskId(contact.i), a), 53);
-                Real& component = d[static_cast<std::size_t>(a)];
-                mpfr_set_d(component.get(), packing.coordinate(DiskId(contact.j), a), MPFR_RNDN);
-                mpfr_sub(component.get(), component.get(), from.get(), MPFR_RNDN);
-                mpfr_fma(length.get(), component.get(), component.get(), length.get(), MPFR_RNDN);
-            }
-            mpfr_sqrt(length.get(), length.get(), MPFR_RNDN);
-        }
-        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
-            if (!pair) {
-                entry_.emplace_back(h.value[static_cast<std::size_t>(e)], bits); // +-1
-                continue;
-            }
-            const int coordinate = dofs.coordinate_of(h.row[static_cast<std::size_t>(e)]);
-            Real value(bits);
-            mpfr_div(value.get(), d[static_cast<std::size_t>(coordinate % Dim)].get(), length.get(), MPFR_RNDN);
-            if (coordinate / Dim == contact.j) {
-                mpfr_neg(value.get(), value.get(), MPFR_RNDN);
-            }
-            entry_.push_back(std::move(value));
-        }
-    }
-}
+    : pattern_(&structure.matrix()), factorisation_(&factorisation), inverse_(&inverse), bits_(bits),
+      entry_(precise_contact_matrix(packing, structure, bits)) {}
 
 template <int Dim>
 RefinedVector RefinedSystem<Dim>::solve(const std::vector<Real>& b, const std::vector<Real>& start,

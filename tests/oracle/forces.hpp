@@ -9,6 +9,7 @@
 #include <gmpxx.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <initializer_list>
 #include <vector>
@@ -119,5 +120,43 @@ class IntegerSystem {
     std::vector<mpz_class> scale_;
     std::vector<mpq_class> square_;
 };
+
+/// Forces of a structure in which every free disk rests on two earlier ones (contacts 2k and 2k + 1 belong to the k-th
+/// free disk), from the last disk to the first, two equations at a time. Relative error about cond 2^-bits.
+inline std::vector<mpf_class> resting_forces(const Packing<2>& packing, const std::vector<Contact>& contacts,
+                                             const std::vector<double>& force, unsigned bits) {
+    const DofMap<2> dofs(packing);
+    std::vector<mpf_class> load(packing.q.size(), mpf_class(0, bits)); // still to be carried, by coordinate
+    for (std::size_t mu = 0; mu < force.size(); ++mu) {
+        load[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = force[mu];
+    }
+    std::vector<mpf_class> f(contacts.size(), mpf_class(0, bits));
+    for (std::size_t k = contacts.size() / 2; k-- > 0;) {
+        // Both contacts are (support, disk): H has -d/|d| in the rows of the disk, d from support to disk.
+        std::array<std::array<mpf_class, 2>, 2> normal;
+        for (std::size_t c = 0; c < 2; ++c) {
+            const Contact& contact = contacts[2 * k + c];
+            const auto i = static_cast<std::size_t>(2 * contact.i);
+            const auto j = static_cast<std::size_t>(2 * contact.j);
+            mpf_class x(packing.q[j], bits);
+            mpf_class y(packing.q[j + 1], bits);
+            x -= packing.q[i];
+            y -= packing.q[i + 1];
+            const mpf_class square = x * x + y * y;
+            const mpf_class length = sqrt(square);
+            normal[c] = {mpf_class(x / length), mpf_class(y / length)};
+        }
+        const auto j = static_cast<std::size_t>(2 * contacts[2 * k].j);
+        const mpf_class determinant = normal[0][0] * normal[1][1] - normal[1][0] * normal[0][1];
+        f[2 * k] = -(load[j] * normal[1][1] - load[j + 1] * normal[1][0]) / determinant;
+        f[2 * k + 1] = -(load[j + 1] * normal[0][0] - load[j] * normal[0][1]) / determinant;
+        for (std::size_t c = 0; c < 2; ++c) {
+            const auto i = static_cast<std::size_t>(2 * contacts[2 * k + c].i);
+            load[i] -= f[2 * k + c] * normal[c][0];
+            load[i + 1] -= f[2 * k + c] * normal[c][1];
+        }
+    }
+    return f;
+}
 
 } // namespace isostat::oracle

@@ -116,14 +116,12 @@ inline Structure random_structure(int count, Place place, bool grown, Random& ra
     return s;
 }
 
-/// A chain of `count` free disks between two fixed ones, on the x axis but for the heights `rise` of the inner ones,
-/// held in y by nothing else than the chain: 2 count contacts with the next ones and the next but one... Each free disk
-/// i touches i - 1 and a fixed disk almost straight ahead: angle `delta` off collinear, so sigma_min ~ delta.
+/// A first free disk held by two fixed ones on nearly opposite sides, `delta` off collinear: sigma_min ~ delta. Every
+/// further disk rests on the one before and on a fixed one of its own.
 inline Structure needle(int count, double delta) {
     Structure s;
     s.family = "needle";
     s.packing.walls = Walls<2>::none();
-    // Fixed disks at (-2, 0) and, for every free disk, far on the other side at height delta.
     s.packing.radius = {1};
     s.packing.q = {-2, 0};
     s.packing.fixed = {1};
@@ -135,6 +133,32 @@ inline Structure needle(int count, double delta) {
         const int previous = k == 0 ? 0 : anchor - 1;
         s.contacts.push_back({ContactKind::disk_disk, std::min(previous, anchor + 1), std::max(previous, anchor + 1)});
         s.contacts.push_back({ContactKind::disk_disk, anchor, anchor + 1});
+    }
+    s.packing.q.insert(s.packing.q.end(), {0, 0});
+    return s;
+}
+
+/// Rows of disks, each resting on two of the row below, the lowest row fixed; `height` is the distance of the rows in
+/// units of the distance in a row, so that forces grow like 1 / height and sigma_min falls with it. Regular, and solved
+/// from the top by hand.
+inline Structure layers(int rows, int top, double height, Random& random) {
+    Structure s;
+    s.family = "layers";
+    s.packing.walls = Walls<2>::none();
+    int below = 0; // first disk of the row below
+    for (int r = 0; r <= rows; ++r) {
+        const int first = static_cast<int>(s.packing.radius.size());
+        for (int k = 0; k < top + rows - r; ++k) {
+            s.packing.radius.push_back(0.5);
+            s.packing.q.push_back(k + 0.5 * r + random.real(-0.05, 0.05));
+            s.packing.q.push_back(height * (r + random.real(-0.05, 0.05)));
+            s.packing.fixed.push_back(r == 0 ? 1 : 0);
+            if (r > 0) {
+                s.contacts.push_back({ContactKind::disk_disk, below + k, first + k});
+                s.contacts.push_back({ContactKind::disk_disk, below + k + 1, first + k});
+            }
+        }
+        below = first;
     }
     s.packing.q.insert(s.packing.q.end(), {0, 0});
     return s;

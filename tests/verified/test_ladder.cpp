@@ -7,6 +7,7 @@
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <boost/test/unit_test.hpp>
+#include <mpfr.h>
 
 #include <array>
 #include <map>
@@ -190,6 +191,154 @@ BOOST_AUTO_TEST_CASE(a_regular_matrix_is_proved_so_down_to_the_smallest_singular
     BOOST_TEST(!IsostaticStructure<2>::prove(needle(3, 0).packing, needle(3, 0).contacts).ok());
     report("needles", count);
     BOOST_TEST(count.inverse[3] > 20);
+}
+
+namespace {
+
+/// All rungs in floating point against forces that were found from the top by hand.
+void check_layers(int rows, int top, double height, LadderOptions options) {
+    Random random(11);
+    const Structure s = layers(rows, top, height, random);
+    const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    const Factorisation factorisation(proved.value());
+    InverseBoundCache cache;
+    const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
+    BOOST_TEST_REQUIRE((inverse.verdict == Verdict::proved));
+    std::vector<double> force;
+    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
+        force.push_back(i % 2 == 0 ? random.real(-0.1, 0.1) : -1);
+    }
+    constexpr unsigned reference_bits = 1500;
+    const std::vector<mpf_class> reference = resting_forces(s.packing, s.contacts, force, reference_bits);
+    ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse, options);
+    const int part = ladder.add(force);
+    double before = std::numeric_limits<double>::infinity();
+    do {
+        const ForceSolution& solution = ladder.solution(part);
+        mpf_class worst(0, reference_bits);
+        for (std::size_t l = 0; l < reference.size(); ++l) {
+            mpf_class error = solution.value[l] - reference[l];
+            error += solution.low.empty() ? 0.0 : solution.low[l];
+            worst = std::max(worst, mpf_class(abs(error)));
+        }
+        const bool holds = worst <= mpf_class(solution.bound, reference_bits);
+        BOOST_TEST(holds, "N = " << s.contacts.size() << ", " << to_string(solution.rung) << " " << solution.bits
+                                 << " bits: error " << worst.get_d() << ", claimed " << solution.bound);
+        BOOST_TEST(solution.bound <= before);
+        before = solution.bound;
+        if (solution.rung == Rung::multiprecision) { // more digits than value + low hold
+            mpfr_t x;
+            mpfr_init2(x, reference_bits);
+            mpfr_set_str(x, ladder.digits(part, ContactId(0), solution.bits).c_str(), 16, MPFR_RNDN);
+            mpf_class read(0, reference_bits);
+            mpfr_get_f(read.get_mpf_t(), x, MPFR_RNDN);
+            mpfr_clear(x);
+            const mpf_class error = abs(mpf_class(read - reference[0]));
+            const mpf_class small = abs(reference[0]) * mpf_class(std::ldexp(1.0, -solution.bits / 2), reference_bits);
+            const bool close = error <= small;
+            BOOST_TEST(close, solution.bits << " bits: error " << error.get_d());
+        }
+    } while (ladder.climb());
+    BOOST_TEST((ladder.rung() == (2 * rows * top > options.exact_size ? Rung::multiprecision : Rung::exact)));
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(rungs_in_floating_point_hold_at_400_disks) {
+    LadderOptions options;
+    options.max_bits = 512;
+    options.exact_size = 100;
+    check_layers(16, 18, 0.5, options);
+    check_layers(16, 18, 1e-4, options);
+}
+
+BOOST_AUTO_TEST_CASE(rungs_in_floating_point_hold_at_5000_disks) {
+    LadderOptions options;
+    options.max_bits = 512;
+    check_layers(60, 54, 0.5, options);
+    check_layers(60, 54, 1e-3, options);
+}
+
+BOOST_AUTO_TEST_CASE(distances_to_a_limit_and_steepest_descents_are_ordered_as_the_rationals_order_them) {
+    Random random(77);
+    int settled_above_double = 0;
+    for (int k = 0; k < 200; ++k) {
+        const auto place = static_cast<Place>(k % place_count);
+        const Structure s = random_structure(2 + k % 3, place, true, random);
+        const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+        if (!proved.ok()) {
+            continue;
+        }
+        const Factorisation factorisation(proved.value());
+        InverseBoundCache cache;
+        const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
+        const std::size_t n = s.contacts.size();
+        const IntegerSystem oracle(s.packing, s.contacts);
+        std::vector<double> load = random_load(static_cast<int>(n), random);
+        std::vector<double> unit(n, 0.0);
+        unit[0] = 0.25;
+        unit[n - 1] = 1;
+        const auto x = oracle.solve({load.begin(), load.end()});
+        const auto y = oracle.solve({unit.begin(), unit.end()});
+        ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse);
+        const int part = ladder.add(load);
+        const int slope = ladder.add(unit);
+        ForceExpression a;
+        a.part = part;
+        a.slope_part = slope;
+        a.at = 0.1;
+        a.from = 0.3;
+        ForceExpression b = a;
+        a.contact = ContactId(random.integer(static_cast<int>(n)));
+        b.contact = ContactId(random.integer(static_cast<int>(n)));
+        const std::size_t l = a.contact.index();
+        const std::size_t m = b.contact.index();
+        if (y[l] == 0 || y[m] == 0) {
+            continue;
+        }
+        const mpq_class change = mpq_class(0.1) - mpq_class(0.3);
+        const mpq_class at_l = x[l] + change * y[l];
+        const mpq_class at_m = x[m] + change * y[m];
+        const auto check_order = [&](ForceExpression::Divisor divisor, int expected) {
+            ForceLadder<2> fresh(s.packing, proved.value(), factorisation, inverse);
+            fresh.add(load);
+            fresh.add(unit);
+            a.divisor = divisor;
+            b.divisor = divisor;
+            a.divisor_part = slope;
+            b.divisor_part = slope;
+            Order order = fresh.compare(a, b);
+            while (true) {
+                if (order.decided) {
+                    BOOST_TEST(order.sign == expected, s.family << ", " << to_string(order.rung));
+                    settled_above_double += order.rung > Rung::double_bound ? 1 : 0;
+                }
+                if (!fresh.climb()) {
+                    break;
+                }
+                order = fresh.compare(a, b);
+            }
+            BOOST_TEST(order.decided);
+        };
+        check_order(ForceExpression::Divisor::none, oracle.compare(at_l, l, at_m, m));
+        check_order(ForceExpression::Divisor::part, sgn(mpq_class(at_l / abs(y[l]) - at_m / abs(y[m]))));
+        // |v|: the velocity that opens a contact, from the rows of the inverse.
+        const auto speed_square = [&](std::size_t contact) {
+            mpq_class sum = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                std::vector<mpq_class> e(n, 0);
+                e[i] = 1;
+                const mpq_class v = oracle.solve(e)[contact]; // times sqrt(square)
+                sum += v * v;
+            }
+            return sum;
+        };
+        const mpq_class key_l = at_l * abs(at_l) / speed_square(l);
+        const mpq_class key_m = at_m * abs(at_m) / speed_square(m);
+        check_order(ForceExpression::Divisor::mechanism, sgn(mpq_class(key_l - key_m)));
+    }
+    BOOST_TEST(settled_above_double > 100);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

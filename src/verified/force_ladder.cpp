@@ -348,6 +348,20 @@ template <int Dim> std::string ForceLadder<Dim>::digits(int part, ContactId cont
     return result;
 }
 
+template <int Dim> double ForceLadder<Dim>::bound_exponent(int part) const {
+    Part& p = implementation_->parts[static_cast<std::size_t>(part)];
+    implementation_->bring(p);
+    if (p.zero || implementation_->rung == Rung::exact) {
+        return -std::numeric_limits<double>::infinity();
+    }
+    if (implementation_->rung != Rung::multiprecision) {
+        return std::log2(p.solution.bound) + 1e-12;
+    }
+    Real logarithm(64);
+    mpfr_log2(logarithm.get(), p.refined.bound.get(), MPFR_RNDU);
+    return logarithm.above();
+}
+
 template <int Dim> bool ForceLadder<Dim>::climb() {
     Implementation& self = *implementation_;
     const bool bounded = self.inverse->verdict == Verdict::proved;

@@ -66,6 +66,10 @@ template <int Dim> class ForceLadder {
     /// mantissa (rounded to nearest): for records and references.
     [[nodiscard]] std::string digits(int part, ContactId contact, int bits) const;
 
+    /// log2 of a proved bound of the error of what `digits` rounds (every component): -infinity for exact numbers.
+    /// Below the range of double it says more than `solution().bound`.
+    [[nodiscard]] double bound_exponent(int part) const;
+
     /// Goes to the next rung that can tell more; false when there is none.
     bool climb();
     [[nodiscard]] Rung rung() const;

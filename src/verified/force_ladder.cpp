@@ -332,7 +332,8 @@ template <int Dim> std::string ForceLadder<Dim>::digits(int part, ContactId cont
     const std::size_t l = contact.index();
     Real value(std::max<mpfr_prec_t>(bits, 2));
     if (self.rung == Rung::exact && !p.zero) {
-        mpfr_set(value.get(), root_product(p.unknown[l], self.exact->square(contact), bits).get(), MPFR_RNDN);
+        const Real product = root_product(p.unknown[l], self.exact->square(contact), bits); // mpfr_set is a macro
+        mpfr_set(value.get(), product.get(), MPFR_RNDN);
     } else if (self.rung == Rung::multiprecision && !p.zero) {
         mpfr_set(value.get(), p.refined.value[l].get(), MPFR_RNDN);
     } else {

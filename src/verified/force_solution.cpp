@@ -138,6 +138,10 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
     std::vector<dd_real> r(n);
     std::vector<double> correction(n);
     std::vector<double> size(n);
+    std::vector<double> terms(n, 0.0); // entries of each row
+    for (const int row : h.row) {
+        ++terms[static_cast<std::size_t>(row)];
+    }
     double best = std::numeric_limits<double>::infinity();
     constexpr int max_iterations = 8; // each gains the factor cond * u; stagnation ends the loop before
     for (int k = 0; k < max_iterations; ++k) {
@@ -158,13 +162,12 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
         for (const dd_real& c : x) {
             largest_x = std::max(largest_x, std::abs(c.x[0])); // a NaN is in the residual as well
         }
-        const double terms = 2 * static_cast<double>(n) + 6; // more than the entries of any row
         for (std::size_t i = 0; i < n; ++i) {
             correction[i] = r[i].x[0];
             largest = std::max(largest, std::abs(correction[i]));
             // The exact products of libqd lose their low parts below 2^-1022.
             size[i] = std::abs(correction[i]) * (1 + 2 * u) +
-                      terms * (dd_unit * size[i] + 16 * underflow_unit * (1 + largest_x));
+                      (terms[i] + 8) * (dd_unit * size[i] + 16 * underflow_unit * (1 + largest_x));
         }
         const double bound = norm_above(size) / inverse.sigma_min * (1 + 4 * u);
         if (!(bound < best / 2)) {

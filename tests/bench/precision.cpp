@@ -217,7 +217,7 @@ int main(int argc, char** argv) {
             }
             holds = measure("compressed packing", packing, state.value().contacts, force, lines) && holds;
         }
-        for (const double height : {0.5, 1e-3, 1e-6}) {
+        for (const double height : {1e-2, 1e-5, 1e-8, 1e-10}) {
             oracle::Random random(3);
             const int rows = std::max(2, static_cast<int>(std::sqrt(n)));
             const oracle::Structure s = oracle::layers(rows, std::max(1, rows / 2 + 1), height, random);

@@ -51,15 +51,15 @@ BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
         // it.
         BOOST_TEST(std::abs(answer.ranges[0].last - (std::sqrt(1.64) - 1.2)) < 6 * noise);
         BOOST_TEST(std::abs(answer.deepest_overlap) < 6 * noise);
-        BOOST_TEST(answer.steps.back().hyperstaticity == 1);
+        BOOST_TEST(answer.steps.back().backbone.hyperstaticity == 1);
         const PlateauStep& last = answer.steps[answer.steps.size() - 2];
         BOOST_TEST(last.rattlers == 1);
-        BOOST_TEST(last.dof_count == 8);
-        BOOST_TEST(last.contact_count == 8);
-        BOOST_TEST(last.hyperstaticity == 0);
-        BOOST_TEST(last.mechanisms == 0);
-        BOOST_TEST((last.isostatic == Verdict::proved));
-        BOOST_TEST((answer.steps.front().isostatic == Verdict::refuted));
+        BOOST_TEST(last.backbone.dof_count == 8);
+        BOOST_TEST(last.backbone.contact_count == 8);
+        BOOST_TEST(last.backbone.hyperstaticity == 0);
+        BOOST_TEST(last.backbone.mechanisms == 0);
+        BOOST_TEST((last.backbone.isostatic == Verdict::proved));
+        BOOST_TEST((answer.steps.front().backbone.isostatic == Verdict::refuted));
     }
 }
 
@@ -77,8 +77,8 @@ BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
     BOOST_REQUIRE_EQUAL(answer.ranges.size(), 1u);
     BOOST_TEST(answer.ranges[0].first < 1e-6);
     BOOST_TEST(std::abs(answer.ranges[0].last - 1e-3) < 1e-6);
-    BOOST_TEST(answer.steps.back().hyperstaticity == 2);
-    BOOST_TEST((answer.steps.back().isostatic == Verdict::refuted));
+    BOOST_TEST(answer.steps.back().backbone.hyperstaticity == 2);
+    BOOST_TEST((answer.steps.back().backbone.isostatic == Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
@@ -87,8 +87,8 @@ BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
     const Plateau answer = plateau(packing, {1e-6, 1e-5, 1e-4, 1e-3});
     BOOST_TEST(answer.ranges.empty());
     for (const PlateauStep& step : answer.steps) {
-        BOOST_TEST(step.hyperstaticity == 5);
-        BOOST_TEST(step.mechanisms == 0);
+        BOOST_TEST(step.backbone.hyperstaticity == 5);
+        BOOST_TEST(step.backbone.mechanisms == 0);
     }
 }
 
@@ -100,9 +100,9 @@ BOOST_AUTO_TEST_CASE(counts_agree_with_the_exact_inspection_of_the_examples) {
         BOOST_REQUIRE(inspection.ok());
         const Plateau answer = plateau(approximate(exact), {1e-12});
         BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST(answer.steps[0].rank == inspection.value().rank);
-            BOOST_TEST(answer.steps[0].hyperstaticity == inspection.value().hyperstaticity);
-            BOOST_TEST(answer.steps[0].mechanisms == inspection.value().mechanisms);
+            BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
+            BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
+            BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
         }
     }
 }
@@ -122,9 +122,9 @@ BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
     BOOST_TEST(answer.ranges[0].first < 1e-8);
     BOOST_TEST(answer.ranges[0].last > 1e-6);
     for (const PlateauStep& step : answer.steps) {
-        if (step.isostatic == Verdict::proved) {
+        if (step.backbone.isostatic == Verdict::proved) {
             BOOST_TEST(step.rattlers == report.rattlers);
-            BOOST_TEST(step.contact_count == 2 * (100 - report.rattlers) + 2);
+            BOOST_TEST(step.backbone.contact_count == 2 * (100 - report.rattlers) + 2);
         }
     }
 }

@@ -136,7 +136,7 @@ std::string recognise_format(const std::string& text) {
     }
     constexpr int header_lines = 60;
     for (int k = 0; k < header_lines && !lines.at_end(); ++k) {
-        const Line line(lines.take(""), lines.number(), &source);
+        const Line line = lines.next("");
         if (line.size() >= 2 && foreign::to_number(line.field(0)) && line.field(1) == "atoms") {
             return "lammps-data";
         }

@@ -300,6 +300,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
     (void)lines.take("a comment"); // LAMMPS ignores the first line
     bool read = false;
     bool in_section = false;
+    bool in_atoms = false;
     while (!lines.at_end()) {
         const std::string_view whole = lines.take("a line");
         const std::string_view content = without_comment(whole);
@@ -315,9 +316,13 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
                 line.fail(content, "section", "'N atoms' before it");
             }
             read_atoms(lines, comment_of(whole), header, options, raw);
-            read = in_section = true;
+            read = in_section = in_atoms = true;
         } else if (is_section(content)) {
             in_section = true;
+            in_atoms = false;
+        } else if (in_atoms) {
+            line.fail(content, "line after the atoms",
+                      fmt::format("a section, or the end: {} atoms were announced", header.atoms));
         } else if (!in_section) {
             header.take(HeaderLine(line));
         } else if (std::isalpha(static_cast<unsigned char>(content.front())) != 0) {

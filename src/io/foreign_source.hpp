@@ -51,7 +51,10 @@ class Lines {
     [[nodiscard]] std::string_view peek() const;
     /// Throws at the end of the file; `what` says what was expected.
     std::string_view take(const std::string& what);
-    Line next(const std::string& what, char separator = ' ') { return Line(take(what), number_, source_, separator); }
+    Line next(const std::string& what, char separator = ' ') {
+        const std::string_view text = take(what); // before number() is asked
+        return {text, number_, source_, separator};
+    }
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] const std::string& source() const { return *source_; }
     [[noreturn]] void fail(const std::string& message) const;

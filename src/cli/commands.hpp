@@ -65,6 +65,15 @@ struct ConvertArguments {
 };
 int convert(const ConvertArguments& arguments);
 
+struct VerifyArguments {
+    Common common;
+    std::string certificate;
+    std::string input; ///< empty, or the file that the certificate speaks of
+};
+/// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
+/// equilibrium is there and proved.
+int verify(const VerifyArguments& arguments);
+
 /// "isostat 0.1.0".
 std::string program_name();
 

@@ -47,6 +47,7 @@ struct Program {
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
     ConvertArguments convert_arguments;
+    VerifyArguments verify_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -63,6 +64,7 @@ struct Program {
         add_plan(line);
         add_report(line);
         add_convert(line);
+        add_verify(line);
     }
 
   private:
@@ -188,6 +190,26 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return convert(a); };
+        });
+    }
+
+    void add_verify(const std::string& line) {
+        VerifyArguments& a = verify_arguments;
+        CLI::App& command =
+            add("verify", "re-checks a certificate with separate code: proved, refuted or undecided for every claim",
+                "The checker shares only the reader of the file with the program that made the certificate, and needs "
+                "nothing of a run.\n"
+                "Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a "
+                "claim is\n"
+                "undecided or absent.\n"
+                "Example: isostat verify certificate.json --input state.json");
+        command.add_option("certificate", a.certificate, "certificate (JSON)")->required()->type_name("CERT.json");
+        command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
+            ->type_name("FILE");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return verify(a); };
         });
     }
 };

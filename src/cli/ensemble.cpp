@@ -17,6 +17,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <set>
 #include <thread>
@@ -27,10 +28,14 @@ namespace {
 
 std::unique_ptr<Dealer> make_dealer(std::size_t count) {
 #ifdef ISOSTAT_WITH_MPI
-    return std::make_unique<MpiDealer>(count);
-#else
-    return std::make_unique<LocalDealer>(count);
+    // Set by mpirun and its like. Without them MPI would only start a helper process of its own.
+    for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}) {
+        if (std::getenv(variable) != nullptr) { // NOLINT(concurrency-mt-unsafe): one thread
+            return std::make_unique<MpiDealer>(count);
+        }
+    }
 #endif
+    return std::make_unique<LocalDealer>(count);
 }
 
 /// The last line of a log: what `isostat run` had to say.

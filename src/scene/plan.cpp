@@ -55,8 +55,8 @@ void add_solvers(Plan& plan, const Scene& scene) {
                        : "true stresses on a box that changes shape have no potential");
     plan.add("solver", "random choice of the contact that opens", runs && random,
              random ? "rule = \"random\"" : "the rule is deterministic: rule_seed is not used");
-    plan.add("solver", "multiprecision (MPFR)", false,
-             "a sign that double-double leaves open ends the run as undecided");
+    plan.add("solver", "multiprecision (MPFR), exact numbers", true,
+             "only where double-double does not decide a sign or an order");
     plan.add("solver", "fixed disks, external forces on disks", false,
              "a scene has none; a start file in the state format may");
 }

@@ -10,12 +10,34 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 
 namespace isostat {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
+template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& state) {
+    constexpr double largest = 1e100;
+    constexpr double smallest = 1e-100;
+    const auto [least, most] = std::minmax_element(state.packing.radius.begin(), state.packing.radius.end());
+    const auto size = [](const std::vector<double>& x) {
+        return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double c) { return std::max(m, std::abs(c)); });
+    };
+    if (least == state.packing.radius.end() || *least < smallest || *most > largest ||
+        size(state.packing.q) > largest) {
+        return "there are no disks, or lengths beyond 1e-100 and 1e100";
+    }
+    for (const double load : {size(state.load.external_force(state.packing)), size(state.load.infinitesimal)}) {
+        if (load != 0 && !(load > smallest && load < largest)) {
+            return fmt::format("the largest load is {:.3g}, beyond 1e-100 and 1e100", load);
+        }
+    }
+    return std::nullopt;
+}
 
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
 template <int Dim> class Prover {
@@ -96,6 +118,11 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
             fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
         absent("counting", reason);
         absent_from_vertex_on(reason);
+        return false;
+    }
+    if (const auto reason = out_of_range(state_)) {
+        absent("counting", *reason);
+        absent_from_vertex_on(*reason);
         return false;
     }
     const int dof_count = DofMap<Dim>(state_.packing).dof_count();

@@ -179,10 +179,11 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
         exists = exists_on_some_rung();
     }
     if (!exists) {
-        absent_from_vertex_on(fmt::format(
-            "no configuration in which all gaps of the contacts are 0 was proved to exist near the stored one (largest "
-            "|gap| of a contact {:.3g}, smallest singular value at least {:.3g})",
-            result_.stored_gap, centre_->inverse.sigma_min));
+        absent_from_vertex_on(
+            fmt::format("no configuration in which all gaps of the contacts are 0 was proved to exist, and to be "
+                        "alone, near the stored "
+                        "one (largest |gap| of a contact {:.3g}, smallest singular value at least {:.3g})",
+                        result_.stored_gap, centre_->inverse.sigma_min));
         return false;
     }
     result_.claims.vertex = VertexClaim{vertex_->radius(), vertex_->unique_radius(), vertex_->rung()};

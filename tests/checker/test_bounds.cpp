@@ -108,12 +108,13 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
     using namespace isostat::checker;
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> place(0.5, 40);
-    for (int trial = 0; trial < 200; ++trial) {
+    for (int trial = 0; trial < 2000; ++trial) {
         State<2> state = small_states::with_a_rattler();
-        const auto disks = static_cast<std::size_t>(2 + trial % 40);
+        const auto disks = static_cast<std::size_t>(2 + trial % 7);
         state.contacts.clear();
         state.packing.radius.assign(disks, 0.4);
         state.packing.radius[0] = 3;
+        state.packing.radius[1] = 2.9;
         state.packing.q.resize(2 * disks + 2);
         for (double& x : state.packing.q) {
             x = place(random);

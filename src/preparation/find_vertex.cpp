@@ -116,7 +116,8 @@ template <int Dim> class VertexSearch {
                 if (pivoted.ok()) {
                     return succeed(std::move(pivoted.value()));
                 }
-                if (pivoted.failure().kind == FailureKind::tie || pivoted.failure().kind == FailureKind::interrupted) {
+                if (report_.candidate || pivoted.failure().kind == FailureKind::tie ||
+                    pivoted.failure().kind == FailureKind::interrupted) {
                     return give_up(pivoted.failure());
                 }
                 if (divided || polished.failure().kind != FailureKind::not_converged) {
@@ -136,7 +137,8 @@ template <int Dim> class VertexSearch {
         PivotLimits limits;
         limits.step = attempt_below * scale_.mean_radius() * scale_.unit();
         limits.stop = options_.stop;
-        auto pivoted = pivot_to_vertex(scale_.to_user(packing_, radius_), contacts, load_, limits, newton_.iterations);
+        auto pivoted = pivot_to_vertex(scale_.to_user(packing_, radius_), contacts, load_, limits, newton_.iterations,
+                                       report_.candidate);
         newton_.seconds += watch.seconds();
         newton_.cpu_seconds += watch.cpu_seconds();
         return pivoted;
@@ -218,6 +220,7 @@ template <int Dim> class VertexSearch {
         report_.min_gap = vertex.min_gap;
         report_.sigma_min_bound = vertex.sigma_min_bound;
         report_.last.reset();
+        report_.candidate.reset();
         return std::move(vertex.state);
     }
 

@@ -17,8 +17,9 @@ namespace isostat::preparation {
 
 namespace {
 
-/// Entries of an exchange below this share of the largest one are rounding.
-constexpr double smallest_pivot = 1e-9;
+/// Entries of an exchange below this share of the largest one are not pivots: the next matrix would be so badly
+/// conditioned that Newton leaves the neighbourhood (seen at 1e-9, for lattices perturbed by 1e-9).
+constexpr double smallest_pivot = 1e-6;
 
 /// Force of a contact as it is compared: finite part, then the infinitesimal one.
 using Force = std::pair<double, double>;
@@ -152,7 +153,8 @@ template <int Dim> class Basis {
 
 template <int Dim>
 Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                                      const PivotLimits& limits, long& iterations) {
+                                      const PivotLimits& limits, long& iterations,
+                                      std::optional<State<Dim>>& candidate) {
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
             return Failure{FailureKind::interrupted, fmt::format("stopped after {} pivots", pivot)};
@@ -170,7 +172,17 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
         if (!basis.known() || (!overlapping && !pulling)) {
-            return polish(packing, contacts, load, iterations);
+            auto polished = polish(packing, contacts, load, iterations);
+            if (!polished.ok() && polished.failure().kind == FailureKind::undecided) {
+                candidate.emplace();
+                candidate->load = load;
+                for (int a = 0; a < Dim; ++a) {
+                    candidate->load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
+                }
+                candidate->packing = std::move(packing);
+                candidate->contacts = std::move(contacts);
+            }
+            return polished;
         }
         if (overlapping) {
             const auto leaving = basis.leaving(*overlapping);
@@ -202,6 +214,6 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
 }
 
 template Result<Polished<2>> pivot_to_vertex<2>(Packing<2>, std::vector<Contact>, const Load<2>&, const PivotLimits&,
-                                                long&);
+                                                long&, std::optional<State<2>>&);
 
 } // namespace isostat::preparation

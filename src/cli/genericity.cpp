@@ -267,7 +267,7 @@ int genericity(const GenericityArguments& a) {
         "the samples.\n");
     for (std::size_t s = 0; s < all.size(); ++s) {
         for (std::size_t k = 0;
-             k < all[s].lists.size() && k < static_cast<std::size_t>(a.lists) && all[s].lists[k].samples > 1; ++k) {
+             k < all[s].lists.size() && k < static_cast<std::size_t>(a.lists) && all[s].lists[k].samples > std::max(1, a.samples / 20); ++k) {
             fmt::print("size {:.0e}: {} samples {}\n", a.sizes[s], all[s].lists[k].samples,
                        list_text(all[s].lists[k].contacts, original.contacts));
         }

@@ -7,6 +7,7 @@
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/statics/decisions.hpp>
 #include <isostat/trajectory/records.hpp>
+#include <isostat/trajectory/records.hpp>
 
 #include <atomic>
 #include <cstdint>
@@ -32,6 +33,7 @@ struct RunOptions {
     long max_arcs = 20000;                   ///< per rearrangement; reaching it is a result: the sample fails
     double max_strain = 0.5;                 ///< |eps_2| since the reference state
     double step_fraction = 0.1;              ///< longest predictor step, in units of the smallest radius
+    CertifyLevel certify = CertifyLevel::decisions; ///< `states` is the observer's work: here as `decisions`
     const std::atomic<bool>* stop = nullptr; ///< set by Ctrl-C: the run ends after the current arc
 };
 
@@ -41,6 +43,7 @@ struct RunCounters {
     int equilibria = 0; ///< number of the last equilibrium
     double seconds = 0;
     Tally tally;
+    ArcTally arcs;
 };
 
 /// How a segment ended.

@@ -31,16 +31,36 @@ template <int Dim> class Certifier {
     Certifier(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
               const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates, const ArcCertificateOptions& options)
         : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(candidates),
-          options_(options), power_(power) {}
+          options_(options), load_(power) {}
 
+    /// First with the bounds that the vertices have; when the rows of the opened and of the closed contact do not serve
+    /// (they move slowly against the rest), with the fastest coordinates in their place.
     ArcCertificate run() {
-        certificate_.tube_margin = std::numeric_limits<double>::infinity();
-        if (chain()) {
-            certificate_.verdict = Verdict::proved;
-            power_.conclude(certificate_, closed().kind == ContactKind::held);
+        if (!check_input()) {
+            return std::move(certificate_);
         }
-        certificate_.gap_margin = watch_.margin();
-        certificate_.gap_tests = watch_.tests();
+        for (const bool fresh_ends : {false, true}) {
+            fresh_ends_ = fresh_ends;
+            const int factorisations = certificate_.factorisations;
+            const std::string first = std::move(certificate_.reason);
+            certificate_ = {};
+            certificate_.factorisations = factorisations;
+            certificate_.tube_margin = std::numeric_limits<double>::infinity();
+            watch_ = {};
+            PowerWatch<Dim> power(load_);
+            power_ = &power;
+            const bool proved = chain();
+            certificate_.gap_margin = watch_.margin();
+            certificate_.gap_tests = watch_.tests();
+            if (proved) {
+                certificate_.verdict = Verdict::proved;
+                power.conclude(certificate_, closed().kind == ContactKind::held);
+                break;
+            }
+            if (hopeless_) {
+                break;
+            }
+        }
         return std::move(certificate_);
     }
 
@@ -59,7 +79,7 @@ template <int Dim> class Certifier {
     bool check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name);
     bool prove_longest(Piece& piece, double h);
     bool finish(const Piece& piece, double from, double to);
-    std::unique_ptr<Piece> end_piece(int forward);
+    std::unique_ptr<Piece> end_piece(double forward);
     bool arrive(const Piece& last, double from, double joint_slack);
 
     const ArcVertex<Dim>& start_;
@@ -72,7 +92,11 @@ template <int Dim> class Certifier {
     std::unique_ptr<MovingPart<Dim>> part_;
     std::unique_ptr<Centre<Dim>> end_centre_;
     GapWatch<Dim> watch_;
-    PowerWatch<Dim> power_;
+    const PowerLoad<Dim>& load_;
+    PowerWatch<Dim>* power_ = nullptr;
+    bool fresh_ends_ = false;
+    bool hopeless_ = false; ///< fresh ends would not help
+    double end_rate_ = -1;  ///< of the free row at the end
     ArcCertificate certificate_;
     double start_uncertainty_ = 0;
     double end_uncertainty_ = 0;
@@ -147,14 +171,14 @@ template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, 
                                       to_string<Dim>(contact), certificate_.pieces, s, from, to, piece.radius()));
         }
     }
-    power_.look(piece, from, to);
+    power_->look(piece, from, to);
     return true;
 }
 
-template <int Dim> std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::end_piece(int forward) {
+template <int Dim> std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::end_piece(double forward) {
     auto piece =
         std::make_unique<Piece>(part_->curve(), end_centre_->packing(), end_centre_->structure(),
-                                end_centre_->factorisation(), end_centre_->sigma_min(), static_cast<double>(forward));
+                                end_centre_->factorisation(), end_centre_->sigma_min(), forward);
     return prove_longest(*piece, piece->natural_reach()) ? std::move(piece) : nullptr;
 }
 
@@ -181,13 +205,11 @@ template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, d
 }
 
 template <int Dim> bool Certifier<Dim>::chain() {
-    if (!check_input()) {
-        return false;
-    }
     start_uncertainty_ = uncertainty(start_.enclosure);
     end_uncertainty_ = uncertainty(end_.enclosure);
     part_ = std::make_unique<MovingPart<Dim>>(start_, end_, slot_, start_uncertainty_, end_uncertainty_);
     certificate_.moving = static_cast<int>(part_->curve().contacts.size());
+    hopeless_ = true;
     if (!part_->trouble().empty()) {
         return refuse(part_->trouble());
     }
@@ -199,19 +221,32 @@ template <int Dim> bool Certifier<Dim>::chain() {
     if (!check_vertex(start_, opened(), "start")) {
         return false;
     }
+    hopeless_ = false;
     active_.clear();
     if (opened().kind != ContactKind::held) {
         watch_.starts_at_zero(opened());
     }
     InverseBoundCache cache;
-    const auto start_centre = part_->start_centre(cache);
-    end_centre_ = part_->end_centre(cache);
+    // A released coordinate says in which direction the curve is followed: its row stays.
+    double rate = opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0;
+    const auto with_fastest = [&](std::unique_ptr<Centre<Dim>>& vertex, double& forward) {
+        ++certificate_.factorisations;
+        vertex = vertex ? part_->with_fastest(*vertex, forward, cache) : nullptr;
+    };
+    auto start_centre = part_->at_start(cache);
+    end_centre_ = part_->at_end(cache);
+    end_rate_ = -1;
+    if (fresh_ends_ && opened().kind != ContactKind::held) {
+        with_fastest(start_centre, rate);
+    }
+    if (fresh_ends_ && closed().kind != ContactKind::held) {
+        with_fastest(end_centre_, end_rate_);
+    }
     if (!start_centre || !end_centre_) {
         return refuse("the grains that move are not proved isostatic at an end");
     }
     auto piece = std::make_unique<Piece>(part_->curve(), start_centre->packing(), start_centre->structure(),
-                                         start_centre->factorisation(), start_centre->sigma_min(),
-                                         opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0);
+                                         start_centre->factorisation(), start_centre->sigma_min(), rate);
     if (!prove_longest(*piece, piece->natural_reach())) {
         return refuse("no tube around the start");
     }
@@ -237,11 +272,10 @@ template <int Dim> bool Certifier<Dim>::chain() {
         const double open =
             piece->radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * coordinate;
         if (!last || (closed().kind == ContactKind::held && last->forward() != piece->direction_along(*last, to))) {
-            const int held_forward = last ? -last->forward() : end_.packing.q[static_cast<std::size_t>(closed().i)] >=
-                                                                       start_.packing.q[static_cast<std::size_t>(closed().i)]
-                                                                   ? 1
-                                                                   : -1;
-            last = end_piece(closed().kind == ContactKind::held ? held_forward : -1);
+            if (closed().kind == ContactKind::held) {
+                end_rate_ = last ? -last->forward() : piece->slope(to)[static_cast<std::size_t>(closed().i)] > 0 ? 1 : -1;
+            }
+            last = end_piece(end_rate_);
             if (!last) {
                 return refuse("no tube around the end");
             }

@@ -16,6 +16,7 @@ constexpr double root2 = 1.4142135623731;
 /// Share of sigma_min that the change of the derivative over a piece may take. Cost only.
 constexpr double share = 0.7;
 constexpr int max_order = 14;
+constexpr double longest_reach = 0.2; ///< in units of the smallest radius
 
 double norm(const std::vector<double>& x) {
     double sum = 0;
@@ -177,8 +178,9 @@ template <int Dim> void CurvePiece<Dim>::expand() {
         }
     }
     const double turning = norm_of(e);
-    // Walls only: straight motion; a reach of the size of the smallest disk.
-    reach_ = turning > 0 ? std::min(share / (inverse_ * turning), centre_.min_radius()) : centre_.min_radius();
+    // No longer than what a candidate list allows.
+    const double longest = longest_reach * centre_.min_radius();
+    reach_ = turning > 0 ? std::min(share / (inverse_ * turning), longest) : longest;
     const double negligible = 0x1p-60 * centre_.min_radius();
     for (int k = 2; k <= max_order; ++k) {
         for (std::size_t l = 0; l < n; ++l) {

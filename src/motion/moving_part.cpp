@@ -156,12 +156,12 @@ template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
 }
 
 template <int Dim>
-std::unique_ptr<Centre<Dim>> MovingPart<Dim>::start_centre(InverseBoundCache& cache) const {
+std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
     return whole_ ? Centre<Dim>::of(start_)
                   : Centre<Dim>::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
 }
 
-template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::end_centre(InverseBoundCache& cache) const {
+template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_end(InverseBoundCache& cache) const {
     return whole_ ? Centre<Dim>::of(end_)
                   : Centre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
 }
@@ -169,6 +169,19 @@ template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::end_centre(Inve
 template <int Dim>
 std::unique_ptr<Centre<Dim>> MovingPart<Dim>::centre(Packing<Dim> packing, int held, InverseBoundCache& cache) const {
     return Centre<Dim>::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
+}
+
+template <int Dim>
+std::unique_ptr<Centre<Dim>> MovingPart<Dim>::with_fastest(const Centre<Dim>& vertex, double& rate,
+                                                           InverseBoundCache& cache) const {
+    std::vector<double> mechanism(static_cast<std::size_t>(vertex.structure().size()), 0.0);
+    mechanism[curve_->slot] = -rate; // approach velocity
+    vertex.factorisation().solve_velocities(mechanism);
+    const auto fastest = std::max_element(mechanism.begin(), mechanism.end(),
+                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
+    rate = *fastest > 0 ? 1 : -1;
+    return centre(vertex.packing(), vertex.structure().dofs().coordinate_of(static_cast<int>(fastest - mechanism.begin())),
+                  cache);
 }
 
 template <int Dim> std::vector<Contact> MovingPart<Dim>::watched(const CandidateList<Dim>& list) const {

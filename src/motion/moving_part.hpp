@@ -47,8 +47,13 @@ template <int Dim> class MovingPart {
     /// Empty, or why the part cannot be certified.
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
     [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
-    [[nodiscard]] std::unique_ptr<Centre<Dim>> start_centre(InverseBoundCache& cache) const;
-    [[nodiscard]] std::unique_ptr<Centre<Dim>> end_centre(InverseBoundCache& cache) const;
+    /// The vertex at an end, with its own contact in the free row.
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> at_start(InverseBoundCache& cache) const;
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> at_end(InverseBoundCache& cache) const;
+    /// The same place with the coordinate that is fastest there in the free row, `rate` (of the present free row) made
+    /// the sign of that coordinate's rate.
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> with_fastest(const Centre<Dim>& vertex, double& rate,
+                                                            InverseBoundCache& cache) const;
     /// Fresh centre with coordinate `held` in the free row.
     [[nodiscard]] std::unique_ptr<Centre<Dim>> centre(Packing<Dim> packing, int held, InverseBoundCache& cache) const;
     [[nodiscard]] bool whole() const { return whole_; }

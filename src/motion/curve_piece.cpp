@@ -131,6 +131,7 @@ CurvePiece<Dim>::CurvePiece(const KeptCurve<Dim>& curve, Packing<Dim> centre,
     expand();
     if (!a_.empty()) {
         bound_coefficients();
+        shorten_reach();
     }
 }
 
@@ -252,6 +253,28 @@ template <int Dim> void CurvePiece<Dim>::bound_coefficients() {
                 absolute += absolute_dot<Dim>(line, d[k]);
             }
             bound[k] = (std::abs(sum) + (static_cast<double>(k) + 16) * u * absolute) / length * (1 + 8 * u);
+        }
+    }
+}
+
+/// Shortens the reach until the polynomial misses the equations by no more than the centre itself does.
+template <int Dim> void CurvePiece<Dim>::shorten_reach() {
+    const std::size_t order = a_.size();
+    const std::size_t stride = 2 * order + 1;
+    for (int attempt = 0; attempt < 60; ++attempt, reach_ *= 0.85) {
+        double at_centre = 0;
+        double beyond = 0;
+        for (std::size_t l = 0; l < curve_->contacts.size(); ++l) {
+            const double* c = &residual_[l * stride];
+            double value = 0;
+            for (std::size_t k = stride - 1; k >= 1; --k) {
+                value = (value + c[k]) * reach_;
+            }
+            at_centre += c[0] * c[0];
+            beyond += value * value;
+        }
+        if (beyond <= 4 * at_centre) {
+            return;
         }
     }
 }

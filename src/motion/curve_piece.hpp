@@ -79,10 +79,10 @@ template <int Dim> class CurvePiece {
     [[nodiscard]] const GapGradient<Dim>& row() const { return row_; }
 
   private:
-    struct Size; ///< sums over |s| <= h of the parts of one contact
     [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;
     void expand();
     void bound_coefficients();
+    void shorten_reach();
     /// Upper bound of the 2-norm of the matrix with row l = e_l on one disk and -e_l on the other.
     [[nodiscard]] double norm_of(const std::vector<double>& e) const;
     [[nodiscard]] std::vector<double> stretch(double h) const;

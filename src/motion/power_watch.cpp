@@ -12,6 +12,9 @@ namespace {
 constexpr double u = 0x1p-53;
 constexpr double up = 1 + 1e-9;
 constexpr int max_depth = 40;
+/// Shares of a piece beyond which an end with power 0 is not called that: they are reported whatever they are.
+constexpr double largest_open_start = 1e-2;
+constexpr double largest_open_end = 1e-4;
 
 } // namespace
 
@@ -26,6 +29,7 @@ template <int Dim> struct PowerWatch<Dim>::Power {
     double heaviest = 0;        ///< largest |f| / d
     double residual = 0;        ///< |F - H f| times the speed
 
+    /// P lies above this for s in [from, to].
     double low(double from, double to) const {
         const double s = 0.5 * (from + to);
         const double half = std::max(to - s, s - from) * (1 + 4 * u);
@@ -218,7 +222,7 @@ template <int Dim> void PowerWatch<Dim>::conclude(ArcCertificate& certificate, b
     }
     certificate.power_open_start = first_open_;
     certificate.power_open_end = last_open_;
-    if (inner_open_ || first_open_ >= 0.5 || last_open_ >= 0.5 || (last_open_ > 0 && !turns)) {
+    if (inner_open_ || first_open_ > largest_open_start || last_open_ > (turns ? largest_open_end : 0)) {
         certificate.power_reason = "the power of the load is not proved positive all along the arc";
         return;
     }

@@ -39,6 +39,12 @@ int inspect(const InspectArguments& arguments);
 /// them with the file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
 int inspect_packing(const InspectArguments& arguments);
 
+struct CertifyArguments {
+    Common common;
+    std::string input, output;
+};
+int certify(const CertifyArguments& arguments);
+
 struct PlanArguments {
     Common common;
     std::string scene;
@@ -58,6 +64,15 @@ struct ConvertArguments {
     std::string input, output;
 };
 int convert(const ConvertArguments& arguments);
+
+struct VerifyArguments {
+    Common common;
+    std::string certificate;
+    std::string input; ///< empty, or the file that the certificate speaks of
+};
+/// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
+/// equilibrium is there and proved.
+int verify(const VerifyArguments& arguments);
 
 /// "isostat 0.1.0".
 std::string program_name();

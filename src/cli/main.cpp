@@ -43,9 +43,11 @@ struct Program {
     PrepareArguments prepare_arguments;
     RunArguments run_arguments;
     InspectArguments inspect_arguments;
+    CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
     ConvertArguments convert_arguments;
+    VerifyArguments verify_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -58,9 +60,11 @@ struct Program {
         add_prepare(line);
         add_run(line);
         add_inspect(line);
+        add_certify(line);
         add_plan(line);
         add_report(line);
         add_convert(line);
+        add_verify(line);
     }
 
   private:
@@ -125,6 +129,24 @@ struct Program {
         });
     }
 
+    void add_certify(const std::string& line) {
+        CertifyArguments& a = certify_arguments;
+        CLI::App& command =
+            add("certify", "proves that a state is an isostatic, stable equilibrium, and writes what was proved",
+                "Claims are about the true vertex near the stored coordinates, where all gaps of the contacts are "
+                "exactly 0. What is not\n"
+                "proved is not claimed, and the reason is written. Exit status 0: every claim is proved; 1: one is "
+                "refuted; 2: some are undecided.\n"
+                "Example: isostat certify out/states/last.json -o last.cert.json");
+        command.add_option("state", a.input, "state file, or vertex text")->required()->type_name("STATE.json");
+        command.add_option("-o,--output", a.output, "certificate to write")->required()->type_name("CERT.json");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return certify(a); };
+        });
+    }
+
     void add_plan(const std::string& line) {
         PlanArguments& a = plan_arguments;
         CLI::App& command =
@@ -168,6 +190,26 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return convert(a); };
+        });
+    }
+
+    void add_verify(const std::string& line) {
+        VerifyArguments& a = verify_arguments;
+        CLI::App& command =
+            add("verify", "re-checks a certificate with separate code: proved, refuted or undecided for every claim",
+                "The checker shares only the reader of the file with the program that made the certificate, and needs "
+                "nothing of a run.\n"
+                "Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a "
+                "claim is\n"
+                "undecided or absent.\n"
+                "Example: isostat verify certificate.json --input state.json");
+        command.add_option("certificate", a.certificate, "certificate (JSON)")->required()->type_name("CERT.json");
+        command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
+            ->type_name("FILE");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return verify(a); };
         });
     }
 };

@@ -120,8 +120,7 @@ template <int Dim>
 bool Certifier<Dim>::check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name) {
     for (const Contact& contact : active_) {
         if (contact != zero && !gap_at_vertex(vertex.packing, vertex.enclosure, contact).positive()) {
-            return refuse(
-                fmt::format("the gap of {} is not proved positive at the {}", to_string<Dim>(contact), name));
+            return refuse(fmt::format("the gap of {} is not proved positive at the {}", to_string<Dim>(contact), name));
         }
     }
     return true;
@@ -165,9 +164,8 @@ template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, 
 }
 
 template <int Dim> std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::end_piece(double forward) {
-    auto piece =
-        std::make_unique<Piece>(part_->curve(), end_centre_->packing(), end_centre_->structure(),
-                                end_centre_->factorisation(), end_centre_->sigma_min(), forward);
+    auto piece = std::make_unique<Piece>(part_->curve(), end_centre_->packing(), end_centre_->structure(),
+                                         end_centre_->factorisation(), end_centre_->sigma_min(), forward);
     return prove_longest(*piece, piece->natural_reach()) ? std::move(piece) : nullptr;
 }
 
@@ -181,8 +179,8 @@ template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, d
     if (!finish(last, from, std::max(to, from))) {
         return false;
     }
-    // The end lies ahead of the start of the piece; or this is the only piece and the closing gap, positive at the start
-    // of the arc, falls all along it.
+    // The end lies ahead of the start of the piece; or this is the only piece and the closing gap, positive at the
+    // start of the arc, falls all along it.
     const bool ahead = place->s - place->slack > from + 2 * joint_slack;
     if (!ahead && !(certificate_.pieces == 1 && closed() != opened() && watch_.fell_all_along(closed()))) {
         return refuse("the end is not proved to lie ahead of the start");
@@ -275,11 +273,12 @@ template <int Dim> bool Certifier<Dim>::chain() {
         for (const double x : frontier) {
             coordinate = std::max(coordinate, std::abs(x));
         }
-        const double open =
-            piece->radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * coordinate;
+        const double open = piece->radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * coordinate;
         if (!last || (closed().kind == ContactKind::held && last->forward() != piece->direction_along(*last, to))) {
             if (closed().kind == ContactKind::held) {
-                end_rate_ = last ? -last->forward() : piece->slope(to)[static_cast<std::size_t>(closed().i)] > 0 ? 1 : -1;
+                end_rate_ = last                                                         ? -last->forward()
+                            : piece->slope(to)[static_cast<std::size_t>(closed().i)] > 0 ? 1
+                                                                                         : -1;
             }
             last = end_piece(end_rate_);
             if (!last) {
@@ -302,9 +301,8 @@ template <int Dim> bool Certifier<Dim>::chain() {
                 continue;
             }
             const std::vector<double> velocity = piece->slope(to + ahead);
-            const auto fastest = std::max_element(velocity.begin(), velocity.end(), [](double a, double b) {
-                return std::abs(a) < std::abs(b);
-            });
+            const auto fastest = std::max_element(velocity.begin(), velocity.end(),
+                                                  [](double a, double b) { return std::abs(a) < std::abs(b); });
             ++certificate_.factorisations;
             next_centre = part_->centre(std::move(*at), static_cast<int>(fastest - velocity.begin()), cache);
             if (!next_centre) {

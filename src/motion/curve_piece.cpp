@@ -111,9 +111,8 @@ KeptCurve<Dim>::KeptCurve(const Packing<Dim>& start_packing, std::vector<Contact
 }
 
 template <int Dim>
-CurvePiece<Dim>::CurvePiece(const KeptCurve<Dim>& curve, Packing<Dim> centre,
-                            const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                            double sigma_min, double forward)
+CurvePiece<Dim>::CurvePiece(const KeptCurve<Dim>& curve, Packing<Dim> centre, const IsostaticStructure<Dim>& structure,
+                            const Factorisation& factorisation, double sigma_min, double forward)
     : curve_(&curve), centre_(std::move(centre)), structure_(&structure), factorisation_(&factorisation),
       forward_(forward) {
     row_ = gap_gradient(centre_, structure.contacts()[curve.slot]);
@@ -472,7 +471,7 @@ std::optional<typename CurvePiece<Dim>::Place> CurvePiece<Dim>::locate(const std
     }
     const double remaining = difference_at(s);
     double square = 0;
-    double coordinate = 0;
+    double coordinate = proved_;
     for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure_->size()); ++mu) {
         const auto k = static_cast<std::size_t>(structure_->dofs().coordinate_of(static_cast<int>(mu)));
         square += off[k] * off[k];
@@ -483,8 +482,7 @@ std::optional<typename CurvePiece<Dim>::Place> CurvePiece<Dim>::locate(const std
     Place place;
     place.s = s;
     place.slack = (std::abs(remaining) + 64 * u * coordinate + root2 * uncertainty) / row_rate_ * up;
-    if (!(std::abs(s) + place.slack <= proved_ * (1 - 1e-9)) ||
-        !(distance + speed_ * place.slack * up < unique_)) {
+    if (!(std::abs(s) + place.slack <= proved_ * (1 - 1e-9)) || !(distance + speed_ * place.slack * up < unique_)) {
         return std::nullopt;
     }
     return place;
@@ -520,9 +518,7 @@ template <int Dim> std::optional<Packing<Dim>> CurvePiece<Dim>::corrected(double
         for (std::size_t l = 0; l < rhs.size(); ++l) {
             const Contact& c = curve_->contacts[l];
             const auto i = static_cast<std::size_t>(c.i);
-            rhs[l] = l == curve_->slot                ? 0.0
-                     : c.kind == ContactKind::held ? at.q[i] - curve_->start->q[i]
-                                                   : gap(at, c);
+            rhs[l] = l == curve_->slot ? 0.0 : c.kind == ContactKind::held ? at.q[i] - curve_->start->q[i] : gap(at, c);
         }
         const std::vector<double> y = solved(rhs);
         const double size = largest(y);

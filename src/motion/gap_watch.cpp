@@ -168,7 +168,8 @@ bool GapWatch<Dim>::walk(const Motion& motion, double from, double to, int depth
             return false;
         }
     }
-    return walk(motion, from, middle, depth + 1, last, only_falls) && walk(motion, middle, to, depth + 1, last, only_falls);
+    return walk(motion, from, middle, depth + 1, last, only_falls) &&
+           walk(motion, middle, to, depth + 1, last, only_falls);
 }
 
 template <int Dim>

@@ -155,8 +155,7 @@ template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
     }
 }
 
-template <int Dim>
-std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
+template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
     return whole_ ? Centre<Dim>::of(start_)
                   : Centre<Dim>::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
 }
@@ -180,8 +179,8 @@ std::unique_ptr<Centre<Dim>> MovingPart<Dim>::with_fastest(const Centre<Dim>& ve
     const auto fastest = std::max_element(mechanism.begin(), mechanism.end(),
                                           [](double a, double b) { return std::abs(a) < std::abs(b); });
     rate = *fastest > 0 ? 1 : -1;
-    return centre(vertex.packing(), vertex.structure().dofs().coordinate_of(static_cast<int>(fastest - mechanism.begin())),
-                  cache);
+    return centre(vertex.packing(),
+                  vertex.structure().dofs().coordinate_of(static_cast<int>(fastest - mechanism.begin())), cache);
 }
 
 template <int Dim> std::vector<Contact> MovingPart<Dim>::watched(const CandidateList<Dim>& list) const {

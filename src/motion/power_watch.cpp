@@ -66,9 +66,8 @@ template <int Dim> void PowerWatch<Dim>::walk(const Power& power, double from, d
         return;
     }
     const double middle = 0.5 * (from + to);
-    if (depth >= max_depth || !(middle > from && middle < to) || (depth > 12 && !(power.low(middle, middle) > 0) &&
-                                                                  !(power.low(to, to) > 0) &&
-                                                                  !(power.low(from, from) > 0))) {
+    if (depth >= max_depth || !(middle > from && middle < to) ||
+        (depth > 12 && !(power.low(middle, middle) > 0) && !(power.low(to, to) > 0) && !(power.low(from, from) > 0))) {
         if (!open_.empty() && open_.back().second == from) {
             open_.back().second = to;
         } else {
@@ -90,8 +89,8 @@ template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, doub
     const IsostaticStructure<Dim>& structure = piece.structure();
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(structure.size());
-    const std::vector<double> load = power_.infinitesimal ? power_.load->infinitesimal
-                                                          : power_.load->external_force(*curve.start);
+    const std::vector<double> load =
+        power_.infinitesimal ? power_.load->infinitesimal : power_.load->external_force(*curve.start);
     std::vector<double> force(n, 0.0);
     for (std::size_t mu = 0; mu < n; ++mu) {
         const auto k = static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)));

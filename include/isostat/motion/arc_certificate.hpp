@@ -36,14 +36,14 @@ struct ArcCertificateOptions {
 /// `true_stress` nothing is claimed.
 struct ArcCertificate {
     Verdict verdict = Verdict::undecided;
-    std::string reason;       ///< when undecided
-    int pieces = 0;           ///< stretches of the curve with a tube of their own
-    int factorisations = 0;   ///< fresh centres: rank proof, factorisation and bound of the inverse, each once
-    int moving = 0;           ///< coordinates that take part
-    long gap_tests = 0;       ///< stretches on which a gap was bounded
-    double tube = 0;          ///< largest radius of a tube (2-norm over all coordinates)
-    double tube_margin = 0;   ///< smallest (1/4) / (beta^2 K rho) of Kantorovich's test
-    double gap_margin = 0;    ///< smallest |gap or rate| / (what the tube leaves open) over the stretches
+    std::string reason;     ///< when undecided
+    int pieces = 0;         ///< stretches of the curve with a tube of their own
+    int factorisations = 0; ///< fresh centres: rank proof, factorisation and bound of the inverse, each once
+    int moving = 0;         ///< coordinates that take part
+    long gap_tests = 0;     ///< stretches on which a gap was bounded
+    double tube = 0;        ///< largest radius of a tube (2-norm over all coordinates)
+    double tube_margin = 0; ///< smallest (1/4) / (beta^2 K rho) of Kantorovich's test
+    double gap_margin = 0;  ///< smallest |gap or rate| / (what the tube leaves open) over the stretches
     Verdict power = Verdict::undecided;
     double power_open_start = 0;
     double power_open_end = 0;

@@ -1,6 +1,6 @@
 #include "cli/state_certifier.hpp"
 
-#include "cli/common.hpp"
+#include "cli/commands.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/files.hpp>

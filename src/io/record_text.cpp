@@ -36,6 +36,7 @@ Json certificate_json(const ArcCertificate& certificate) {
         object["reason"] = certificate.reason;
         return object;
     }
+    object["turning"] = certificate.turning;
     object["tube"] = json::or_null(certificate.tube);
     object["tube_margin"] = json::or_null(certificate.tube_margin);
     object["gap_margin"] = json::or_null(certificate.gap_margin);

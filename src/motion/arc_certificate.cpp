@@ -188,6 +188,7 @@ template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, d
     if (closed().kind != ContactKind::held && !watch_.falls(closed())) {
         return refuse(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string<Dim>(closed())));
     }
+    certificate_.turning = opened().kind != ContactKind::held && GapWatch<Dim>::rate_sign(last, opened(), place->s) < 0;
     return check_vertex(end_, closed(), "end");
 }
 

@@ -194,6 +194,11 @@ bool GapWatch<Dim>::look(const CurvePiece<Dim>& piece, const Contact& contact, d
     return true;
 }
 
+template <int Dim> int GapWatch<Dim>::rate_sign(const CurvePiece<Dim>& piece, const Contact& contact, double s) {
+    const auto view = Motion(piece, contact).view(s, s);
+    return view.rate > view.rate_open ? 1 : -view.rate > view.rate_open ? -1 : 0;
+}
+
 template class GapWatch<2>;
 
 } // namespace isostat

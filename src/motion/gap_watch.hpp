@@ -30,6 +30,8 @@ template <int Dim> class GapWatch {
     }
     /// Whether the gap of a contact was shown to fall on every stretch of the piece looked at last.
     [[nodiscard]] bool fell_all_along(const Contact& contact) const { return fell_.count(contact) != 0; }
+    /// Proved sign of the rate of a gap at s: +1, -1, or 0 = not proved.
+    static int rate_sign(const CurvePiece<Dim>& piece, const Contact& contact, double s);
     /// Smallest |quantity| / (share of it that the tube and the roundings leave open) over what was proved.
     [[nodiscard]] double margin() const { return margin_; }
     [[nodiscard]] double where() const { return where_; }

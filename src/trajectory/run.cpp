@@ -295,7 +295,20 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                    : opening.infinitesimal                                                       ? "rattler"
                                                                                                  : "tension";
     }
-    vertex_ = std::move(here);
+    // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh factors
+    // and bound. A resumed run starts from the same bits.
+    fresh_caches(here->packing);
+    auto anew = Vertex<Dim>::make(here->packing, here->structure.contacts(), load, bound_cache_);
+    if (!anew.ok()) {
+        return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+    }
+    vertex_ = std::move(anew.value());
+    auto gaps = vertex_->check_gaps(candidates_);
+    if (!gaps.ok()) {
+        return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+    }
+    record_.min_gap = gaps.value().smallest;
+    record_.min_gap_contact = gaps.value().where;
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();

@@ -40,6 +40,7 @@ struct ArcCertificate {
     int pieces = 0;         ///< stretches of the curve with a tube of their own
     int factorisations = 0; ///< fresh centres: rank proof, factorisation and bound of the inverse, each once
     int moving = 0;         ///< coordinates that take part
+    bool turning = false;   ///< the gap of the opened contact is proved to fall at the end: it grew, and turned back
     long gap_tests = 0;     ///< stretches on which a gap was bounded
     double tube = 0;        ///< largest radius of a tube (2-norm over all coordinates)
     double tube_margin = 0; ///< smallest (1/4) / (beta^2 K rho) of Kantorovich's test

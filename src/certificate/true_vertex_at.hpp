@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// `TrueVertex` in one number type. Included by one source per type only. Bounds: statements V5 to V7 of
-/// proofs/bounds.md; every constant below is counted there.
+/// `TrueVertex` in one number type. Included by one source per type only. Bounds: statements V5 to V7,
+/// proofs/true_vertex.md; every constant below is counted there.
 
 #include "certificate/arithmetic.hpp"
 #include "certificate/true_vertex.hpp"

@@ -48,6 +48,7 @@ struct Program {
     ReportArguments report_arguments;
     ConvertArguments convert_arguments;
     VerifyArguments verify_arguments;
+    PlateauArguments plateau_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -65,6 +66,7 @@ struct Program {
         add_report(line);
         add_convert(line);
         add_verify(line);
+        add_plateau(line);
     }
 
   private:
@@ -210,6 +212,60 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return verify(a); };
+        });
+    }
+
+    static void add_foreign(CLI::App& command, ForeignArguments& a) {
+        command.add_option("--radius", a.radius, "the column, or the number, that is every disk's radius")
+            ->type_name("COLUMN|NUMBER");
+        command.add_option("--diameter", a.diameter, "the same for diameters")
+            ->type_name("COLUMN|NUMBER")
+            ->excludes("--radius");
+        command
+            .add_option("--walls", a.walls,
+                        "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for "
+                        "files of other programs)")
+            ->check(CLI::IsMember({"none", "box", "fixed"}));
+        command.add_option("--box", a.box, "positions of the walls instead of the bounds in the file")
+            ->type_name("XLO:XHI,YLO:YHI");
+        command.add_option("--frame", a.frame, "of a file with several, from 0 (default: last)")
+            ->type_name("NUMBER|last");
+        command
+            .add_option("--columns", a.columns, "names of the columns of a table without a header; - leaves one out")
+            ->type_name("x,y,r");
+        command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
+        command.add_flag("--not-periodic", a.not_periodic,
+                         "take periodic boundaries for open ones: contacts across them are not looked for");
+    }
+
+    void add_plateau(const std::string& line) {
+        PlateauArguments& a = plateau_arguments;
+        CLI::App& command = add(
+            "plateau", "contacts, rank, h, k of a packing made elsewhere against the gap threshold",
+            "Reads LAMMPS data files (atom style sphere), LAMMPS dumps, extended XYZ, tables of x y r, CSV, and our "
+            "own files. Whether a\n"
+            "size is a radius or a diameter is said by the name of its column or by you; it is never guessed. Gaps "
+            "are compared exactly,\n"
+            "for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is "
+            "isostatic are proved at\n"
+            "every threshold, not only at those of the table.\n"
+            "Exit status 0: isostatic at some threshold, proved; 1: at none; 2: undecided.\n"
+            "Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box\n"
+            "          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1");
+        command.add_option("file", a.file, "packing")->required()->type_name("FILE");
+        command
+            .add_option("--thresholds", a.thresholds,
+                        "smallest and largest gap of a contact, in the unit of the file (default: from the deepest "
+                        "overlap to a tenth of the smallest radius)")
+            ->type_name("A:B");
+        command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
+            ->check(CLI::NonNegativeNumber);
+        command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
+        add_foreign(command, a.foreign);
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return plateau(a); };
         });
     }
 };

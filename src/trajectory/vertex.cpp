@@ -1,6 +1,7 @@
 #include "trajectory/vertex.hpp"
 
 #include <isostat/contact/contact_set.hpp>
+#include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <fmt/format.h>
 
@@ -24,10 +25,13 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
         return structure.failure();
     }
     std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, cache));
+    if (vertex->inverse.verdict != Verdict::proved) { // small structures: with as many bits as it takes
+        vertex->inverse = bound_inverse_multiprecision(vertex->packing, vertex->structure);
+        vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->inverse);
+    }
     if (vertex->inverse.verdict != Verdict::proved) {
-        return Failure{FailureKind::undecided,
-                       "no bound of the inverse of the contact matrix was proved in double precision: no sign "
-                       "of a force can be decided"};
+        return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved: no sign "
+                                               "of a force can be decided"};
     }
     if (vertex->enclosure.verdict != Verdict::proved) {
         vertex->enclosure =

@@ -3,6 +3,7 @@
 /// The subcommands of `isostat`: arguments as parsed, exit status as returned.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,18 @@ struct RunArguments {
     bool resume = false, force = false;
 };
 int run(const RunArguments& arguments);
+
+struct EnsembleArguments {
+    Common common;
+    std::string scene, output;
+    int samples = 0;
+    std::uint64_t first_seed = 1;
+    std::optional<int> jobs; ///< processes at a time (per rank under mpirun); none: one per core, under mpirun one
+    bool resume = false, force = false;
+};
+/// Independent samples of a scene, each a process `isostat run`; merges their tables. Returns 0 when all completed, 130
+/// when some were interrupted, 1 when some failed, crashed or were refused, 2 when some are undecided.
+int ensemble(const EnsembleArguments& arguments);
 
 struct InspectArguments {
     Common common;

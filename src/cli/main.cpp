@@ -42,6 +42,7 @@ struct Program {
                  "isostat"};
     PrepareArguments prepare_arguments;
     RunArguments run_arguments;
+    EnsembleArguments ensemble_arguments;
     InspectArguments inspect_arguments;
     CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
@@ -61,6 +62,7 @@ struct Program {
                    "Example: isostat run examples/biaxial-400.toml -o out");
         add_prepare(line);
         add_run(line);
+        add_ensemble(line);
         add_inspect(line);
         add_certify(line);
         add_plan(line);
@@ -111,6 +113,40 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return run(a); };
+        });
+    }
+
+    void add_ensemble(const std::string& line) {
+        EnsembleArguments& a = ensemble_arguments;
+        CLI::App& command =
+            add("ensemble", "independent samples of a scene (seeds 1, 2, ...), their tables in one",
+                "Every sample is a process of its own: one that fails or crashes loses no other. The folder "
+                "holds samples/seed_.../\n"
+                "(each the folder of a run), equilibria.csv, increments.csv, samples.csv, ensemble.json. "
+                "After a kill or Ctrl-C, --resume\n"
+                "goes on; with a larger --samples it adds more. The tables do not depend on --jobs. Under "
+                "mpirun (builds with\n"
+                "ISOSTAT_WITH_MPI) the ranks share the samples.\n"
+                "Exit status: 0 all completed; 1 some failed, crashed or were refused; 2 some undecided; "
+                "130 interrupted.\n"
+                "Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many\n"
+                "          mpirun -n 4 isostat ensemble examples/biaxial-400.toml --samples 8 -o many");
+        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
+        command.add_option("-S,--samples", a.samples, "number of samples")
+            ->required()
+            ->check(CLI::Range(1, 1'000'000))
+            ->type_name("S");
+        command.add_option("-o,--output", a.output, "folder of the ensemble")->required()->type_name("DIR");
+        command.add_option("-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)")
+            ->check(CLI::Range(1, 10'000))
+            ->type_name("J");
+        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
+        CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
+        add_common(command, a.common, true);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return ensemble(a); };
         });
     }
 

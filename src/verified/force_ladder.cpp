@@ -2,6 +2,7 @@
 #include "verified/real.hpp"
 #include "verified/refinement.hpp"
 
+#include <isostat/core/work.hpp>
 #include <isostat/verified/force_ladder.hpp>
 
 #include <algorithm>
@@ -265,6 +266,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
     if (structure->size() > options.exact_size) {
         return false;
     }
+    count_work(Work::exact_solutions);
     exact.emplace(*packing, *structure);
     if (!exact->regular()) {
         exact.reset();
@@ -373,6 +375,7 @@ template <int Dim> bool ForceLadder<Dim>::climb() {
             return self.open_exact();
         }
         self.extended = extended_contact_matrix(*self.packing, *self.structure);
+        count_work(Work::double_double);
         self.rung = Rung::double_double;
         self.bits = 106;
         return true;
@@ -383,6 +386,7 @@ template <int Dim> bool ForceLadder<Dim>::climb() {
             return self.open_exact();
         }
         self.system.emplace(*self.packing, *self.structure, *self.factorisation, *self.inverse, next);
+        count_work(Work::multiprecision);
         self.rung = Rung::multiprecision;
         self.bits = next;
         return true;

@@ -109,13 +109,13 @@ struct GenericityArguments {
     Common common;
     std::string file, csv;
     int samples = 100;
-    double size = 1e-6;
+    std::vector<double> sizes{1e-6};
     std::uint64_t seed = 1;
     double stress = 1;
     int lists = 10;
+    bool keep_equal = false;
 };
-/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 1: some were proved not to be; 2: some are
-/// undecided.
+/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 2: some were not.
 int genericity(const GenericityArguments& arguments);
 
 /// "isostat 0.1.0".

@@ -50,6 +50,7 @@ struct Program {
     ConvertArguments convert_arguments;
     VerifyArguments verify_arguments;
     PlateauArguments plateau_arguments;
+    GenericityArguments genericity_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -69,6 +70,7 @@ struct Program {
         add_convert(line);
         add_verify(line);
         add_plateau(line);
+        add_genericity(line);
     }
 
   private:
@@ -272,6 +274,36 @@ struct Program {
         command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
+    }
+
+    void add_genericity(const std::string& line) {
+        GenericityArguments& a = genericity_arguments;
+        CLI::App& command = add(
+            "genericity", "perturbs the radii of a packing and proves what its equilibria are",
+            "Each sample: radii times 1 + size u (seeded), downhill to the vertex under isotropic stress, certificate "
+            "of the true vertex.\n"
+            "Exit status 0: every sample is proved isostatic; 2: some are not (ties, signs beyond 100 digits, no "
+            "vertex found).\n"
+            "Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 20 --size 1e-2,1e-6,1e-10\n"
+            "          isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal");
+        command
+            .add_option("packing", a.file, "crafted packing (TOML), state or vertex text, in a box with movable walls")
+            ->required()
+            ->type_name("FILE");
+        command.add_option("--samples", a.samples, "samples per size (default 100)");
+        command.add_option("--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)")
+            ->delimiter(',');
+        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)");
+        command.add_option("--stress", a.stress, "isotropic stress (default 1)");
+        command.add_option("--lists", a.lists, "frequent contact lists to show (default 10)")
+            ->check(CLI::NonNegativeNumber);
+        command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
+        command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return genericity(a); };
+        });
     }
 
     void add_plateau(const std::string& line) {

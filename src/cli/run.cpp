@@ -2,6 +2,7 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/state_certifier.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/work.hpp>
@@ -117,7 +118,8 @@ class Player {
         RunOptions options = scene_.run;
         options.stop = &stop_flag();
         Both both(directory_, table_);
-        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, both);
+        StateCertifier certifier(directory_.path(), options.certify != CertifyLevel::decisions, counters_, both);
+        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, certifier);
         table_.end();
         return outcome.completed ? Ending{} : ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
     }

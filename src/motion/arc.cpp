@@ -208,6 +208,39 @@ template <int Dim> class Follower {
         return sum;
     }
 
+    /// First place inside a step of length s where the power seems to be negative although both ends are positive: the
+    /// cubic with its value and its first two derivatives at q_, and its value at the end.
+    std::optional<double> power_dip(double p_start, double p_end, double s) {
+        const auto third = [&](const Contact& c) { // kept gaps: n . third derivative = -3 (t . curvature) / d
+            if (c.kind != ContactKind::disk_disk) {
+                return 0.0;
+            }
+            const auto i = static_cast<std::size_t>(Dim * c.i);
+            const auto j = static_cast<std::size_t>(Dim * c.j);
+            double product = 0;
+            double square = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const double d = q_.q[j + a] - q_.q[i + a];
+                square += d * d;
+                product += (tangent_[j + a] - tangent_[i + a]) * (curvature_[j + a] - curvature_[i + a]);
+            }
+            return 3 * product / std::sqrt(square);
+        };
+        const double p1 = s * power_of(q_, curvature_);
+        chord(
+            third, [&](const Vector& v) { return v[fastest_]; }, 0.0);
+        const double p2 = 0.5 * s * s * power_of(q_, y_);
+        const double p3 = p_end - p_start - p1 - p2;
+        constexpr int samples = 32;
+        for (int k = 1; k < samples; ++k) {
+            const double x = static_cast<double>(k) / samples;
+            if (p_start + x * (p1 + x * (p2 + x * p3)) < 0) {
+                return x * s;
+            }
+        }
+        return std::nullopt;
+    }
+
     /// The factors of the start are stale: prove and factorise the structure that holds the fastest coordinate, here.
     std::optional<Failure> renew() {
         std::vector<Contact> contacts = structure_->contacts();
@@ -426,6 +459,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     const double noise = 16 * grid_step(start_);
     double shrink = 1;
     double forced_step = infinity; // a step cut at a dip
+    double power_step = infinity;  // for the rest of an arc whose power comes near 0
     double p_start = power_.starts_at_zero ? 0.0 : infinity;
     const auto narrow = [&]() -> std::optional<Failure> {
         // Stale factors first, then shorter steps.
@@ -472,7 +506,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         }
         // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
         const double reach = 0.9 * reach_left() / (1.3 * std::sqrt(static_cast<double>(Dim)));
-        const double s_max = std::min({step_limit_ * shrink, reach, forced_step});
+        const double s_max = std::min({step_limit_ * shrink, reach, forced_step, power_step});
         ++steps_;
         bool accepted = false;
 
@@ -565,6 +599,12 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         if (!judged && p_end < 0 && s > 1e-6 * step_limit_) {
             forced_step = 0.25 * s; // it may have grown and turned within the step
             continue;
+        }
+        if (p_end > 0 && s > 1e-6 * step_limit_) {
+            if (const auto dip = power_dip(p_start, p_end, s)) {
+                power_step = std::min(power_step, 0.5 * *dip);
+                continue;
+            }
         }
         if (judged && p_end < 0 && p_start > 0) {
             return power_turn(0.0, p_start, s, p_end);

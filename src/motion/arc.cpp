@@ -296,6 +296,12 @@ template <int Dim> class Follower {
 
     Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power) {
         Arc<Dim> arc;
+        for (const Contact& contact : structure_->contacts()) {
+            if (contact.kind == ContactKind::held && contact != opened_ && &contact != &structure_->contacts()[slot_]) {
+                const auto k = static_cast<std::size_t>(contact.i);
+                end.q[k] = start_.q[k]; // held means held, rounding apart
+            }
+        }
         for (std::size_t k = 0; k < end.q.size(); ++k) {
             arc.displacement = std::max(arc.displacement, std::abs(end.q[k] - start_.q[k]));
         }

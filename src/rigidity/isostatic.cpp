@@ -1,3 +1,4 @@
+#include <isostat/core/work.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
@@ -99,7 +100,11 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
         for (int k = 0; k < g.count; ++k) {
             const auto e = static_cast<std::size_t>(k);
             const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[e]));
-            if (dof >= 0 && g.value[e] != 0) {
+            // The pattern of the exact matrix: a component that underflows is kept as 0.
+            const int axis = g.coordinate[e] % Dim;
+            const bool pair = contact.kind == ContactKind::disk_disk;
+            if (dof >= 0 &&
+                !(pair && packing.coordinate(DiskId(contact.i), axis) == packing.coordinate(DiskId(contact.j), axis))) {
                 column.add(dof, -g.value[e]);
             }
         }
@@ -134,6 +139,7 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
                        fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
                                    dof_count, ordering->structural_rank())};
     }
+    count_work(Work::rank_proofs);
     // Full rank over any prime field is a proof; the small field is tried first because it costs half.
     int rank = exact::rank(
         reduced_contact_matrix(packing, *structure.dofs_, contacts, exact::mersenne31, exact::residue31), *ordering);

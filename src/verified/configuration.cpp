@@ -1,3 +1,9 @@
+#include "contact/gap_sign.hpp"
+#include "verified/extended_norm.hpp"
+#include "verified/norm.hpp"
+#include "verified/refined_vertex.hpp"
+#include "verified/vertex_bounds.hpp"
+
 #include <isostat/verified/configuration.hpp>
 
 #include <qd/dd_real.h>
@@ -15,35 +21,6 @@ constexpr double coordinate_unit =
     0x1p-100;                       // rounding of a difference of corrected coordinates, per unit of the coordinates
 constexpr double dd_unit = 0x1p-98; // granted to one operation of libqd (its own bounds are 2^-104 to 2^-102)
 
-/// Sum of the radii of a contact: the length that scales the rounding of its gap.
-template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-        return packing.radius[static_cast<std::size_t>(contact.i)] +
-               packing.radius[static_cast<std::size_t>(contact.j)];
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return packing.radius[static_cast<std::size_t>(contact.i)];
-    case ContactKind::held: return 0;
-    }
-    return 0;
-}
-
-/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
-/// of disk contacts of one disk (V4). 0 when there are only walls.
-template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    std::vector<int> count(packing.radius.size(), 0);
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : contacts) {
-        if (contact.kind == ContactKind::disk_disk) {
-            ++count[static_cast<std::size_t>(contact.i)];
-            ++count[static_cast<std::size_t>(contact.j)];
-            smallest = std::min(smallest, target(packing, contact));
-        }
-    }
-    const double most = *std::max_element(count.begin(), count.end());
-    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 8 * u);
-}
-
 /// Kantorovich with |F| <= residual, |DF^-1| <= inverse_norm: radius of existence, or NaN when the test fails.
 double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
     const double eta = inverse_norm * residual * (1 + 4 * u);
@@ -60,12 +37,12 @@ dd_real gap_dd(const Packing<Dim>& packing, const std::vector<double>& correctio
     const double ri = packing.radius[static_cast<std::size_t>(contact.i)];
     switch (contact.kind) {
     case ContactKind::disk_disk: {
-        dd_real square = 0.0;
+        std::array<dd_real, static_cast<std::size_t>(Dim)> d;
         for (int a = 0; a < Dim; ++a) {
-            const dd_real d = at(Dim * contact.j + a) - at(Dim * contact.i + a);
-            square += d * d;
+            d[static_cast<std::size_t>(a)] = at(Dim * contact.j + a) - at(Dim * contact.i + a);
         }
-        return sqrt(square) - (dd_real(ri) + packing.radius[static_cast<std::size_t>(contact.j)]);
+        const int exponent = normalise(d);
+        return ldexp(length(d), exponent) - (dd_real(ri) + packing.radius[static_cast<std::size_t>(contact.j)]);
     }
     case ContactKind::lower_wall: return at(Dim * contact.i + contact.j) - ri;
     case ContactKind::upper_wall:
@@ -90,7 +67,7 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
                                const InverseBound& inverse) {
     VertexEnclosure vertex;
     vertex.radius = std::numeric_limits<double>::infinity();
-    double sum = 0;
+    std::vector<double> bounds;
     double worst_ratio = 0;
     for (const Contact& contact : structure.contacts()) {
         const double h = gap(packing, contact);
@@ -100,15 +77,14 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             worst_ratio = std::max(worst_ratio, std::abs(h) / d);
         }
         // |F| <= |h| (1 + |h|/2D), and |h|/D is checked below; the computed gap is off by less than 8u D.
-        const double bound = std::abs(h) * 1.001 + 8 * u * d;
-        sum += bound * bound;
+        bounds.push_back(std::abs(h) * 1.001 + 8 * u * d + underflow_unit);
     }
     if (inverse.verdict != Verdict::proved || !(worst_ratio < 1e-3)) {
         return vertex;
     }
     const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
     const double radius =
-        kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), inverse_norm, lipschitz(packing, structure.contacts()));
+        kantorovich_radius(norm_above(bounds), inverse_norm, lipschitz(packing, structure.contacts()));
     if (radius >= 0) {
         vertex.verdict = Verdict::proved;
         vertex.radius = radius;
@@ -140,28 +116,24 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
     const auto n = static_cast<std::size_t>(structure.size());
     std::vector<double> correction(packing.q.size(), 0.0);
     std::vector<double> f(n);
+    std::vector<double> bounds(n);
     constexpr int max_iterations = 6;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
-        double sum = 0;
         for (std::size_t l = 0; l < n; ++l) {
             const Contact& contact = structure.contacts()[l];
             const dd_real value = quadratic_dd(packing, correction, contact);
             f[l] = value.x[0];
-            const double bound =
-                std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact) + coordinate_unit * largest;
-            sum += bound * bound;
+            bounds[l] = std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact) +
+                        coordinate_unit * largest + 16 * underflow_unit;
         }
-        double shift = 0;
-        for (const double c : correction) {
-            shift += c * c;
-        }
-        shift = std::sqrt(shift) * (1 + 1e-10);
+        std::vector<double> shifts(correction.size());
+        std::transform(correction.begin(), correction.end(), shifts.begin(), [](double c) { return std::abs(c); });
+        const double shift = norm_above(shifts);
         // |DF^-1| at the corrected point: |DF^-1(q)| / (1 - |DF^-1(q)| K |correction|).
         const double at_q = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
         const double lost = at_q * k * shift;
-        const double radius = lost < 0.5
-                                  ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
-                                  : std::numeric_limits<double>::quiet_NaN();
+        const double radius = lost < 0.5 ? kantorovich_radius(norm_above(bounds), at_q / (1 - lost) * (1 + 1e-10), k)
+                                         : std::numeric_limits<double>::quiet_NaN();
         if (radius >= 0 && radius < vertex.radius) {
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
@@ -203,6 +175,48 @@ Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vert
                        (1 + 4 * u)};
 }
 
+template <int Dim>
+Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
+                         const LadderOptions& options) {
+    Order order;
+    std::vector<Real> start = exact_coordinates(packing.q, {});
+    for (int bits = options.first_bits; bits <= options.max_bits; bits *= 2) {
+        const RefinedVertex vertex = refine_vertex(packing, structure, factorisation, inverse, start, bits);
+        if (vertex.verdict != Verdict::proved) {
+            break;
+        }
+        order.rung = Rung::multiprecision;
+        order.bits = bits;
+        const Real h = precise_gap(packing, vertex.coordinate, contact, bits);
+        Real radius(64);
+        mpfr_abs(radius.get(), h.get(), MPFR_RNDU);
+        mpfr_add_d(radius.get(), radius.get(), target(packing, contact), MPFR_RNDU);
+        mpfr_mul_2si(radius.get(), radius.get(), 4 - bits, MPFR_RNDU);
+        Real moved(64);
+        mpfr_mul_d(moved.get(), vertex.radius.get(), 1.4142135623731, MPFR_RNDU);
+        mpfr_add(radius.get(), radius.get(), moved.get(), MPFR_RNDU);
+        const Interval gap_there(h, radius, bits);
+        if (gap_there.positive() || gap_there.negative()) {
+            order.decided = true;
+            order.sign = gap_there.positive() ? 1 : -1;
+            order.margin = gap_there.margin();
+            return order;
+        }
+        start = vertex.coordinate;
+    }
+    // A stored configuration that closes every kept gap exactly is the true vertex.
+    const bool exact = std::all_of(structure.contacts().begin(), structure.contacts().end(), [&](const Contact& c) {
+        return c.kind == ContactKind::held || gap_sign(packing, c, 0) == 0;
+    });
+    if (exact && order.rung != Rung::none) { // unique there, by the enclosure
+        order = {true, gap_sign(packing, contact, 0), std::numeric_limits<double>::infinity(), Rung::exact, 0};
+    }
+    return order;
+}
+
+template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
+                                     const InverseBound&, const Contact&, const LadderOptions&);
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
 template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                          const Factorisation&, const InverseBound&);

@@ -1,0 +1,79 @@
+#pragma once
+/// \file
+/// Contact forces at every precision behind one interface, and proved comparisons of them.
+
+#include <isostat/core/ids.hpp>
+#include <isostat/verified/configuration.hpp>
+#include <isostat/verified/force_solution.hpp>
+#include <isostat/verified/order.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// A quantity by which contacts are ordered: p_l + (at - from) s_l with p, s the solutions of two right-hand sides,
+/// possibly divided by |d_l| (d a third solution, then proved not zero) or by the 2-norm of the mechanism that opens
+/// contact l at unit rate. All doubles are exact.
+struct ForceExpression {
+    enum class Divisor : unsigned char { none, part, mechanism };
+    ContactId contact;
+    int part = 0;
+    int slope_part = -1; ///< -1: no second term
+    double at = 0;
+    double from = 0;
+    bool minus_magnitude = false; ///< -|.| instead of the sum (held coordinates)
+    Divisor divisor = Divisor::none;
+    int divisor_part = -1;
+};
+
+/// The solutions of H f = F for several right-hand sides, all on one rung, each with its proved bound:
+///   double -> refined with residuals in double-double -> in MPFR with first_bits, twice as many, ... max_bits ->
+///   exact.
+/// The rungs in floating point need the bound of the inverse (V3) and are skipped when there is none or when a climb
+/// gained nothing; exact numbers need only the proof of rank that `structure` is. Solutions are computed when asked
+/// for. The arguments must outlive the object.
+template <int Dim> class ForceLadder {
+  public:
+    ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
+                const VertexEnclosure* vertex = nullptr);
+    ~ForceLadder();
+    ForceLadder(ForceLadder&&) noexcept;
+    ForceLadder& operator=(ForceLadder&&) noexcept;
+
+    /// Adds a right-hand side (one number per degree of freedom, taken as exact); returns its number, from 0.
+    /// `rate`: the force itself depends on the configuration, |F(q) - F(q*)|_2 <= rate |q - q*|_2 (true stresses).
+    int add(std::vector<double> force, double rate = 0);
+    [[nodiscard]] const std::vector<double>& force(int part) const;
+
+    /// The solution on the present rung. A zero right-hand side has the exact solution 0 with bound 0 on every rung.
+    const ForceSolution& solution(int part) const;
+    /// Component l of the solution on the present rung, as a hexadecimal floating-point number with `bits` bits of
+    /// mantissa (rounded to nearest): for records and references.
+    [[nodiscard]] std::string digits(int part, ContactId contact, int bits) const;
+
+    /// log2 of a proved bound of the error of what `digits` rounds (every component): -infinity for exact numbers.
+    /// Below the range of double it says more than `solution().bound`.
+    [[nodiscard]] double bound_exponent(int part) const;
+
+    /// Goes to the next rung that can tell more; false when there is none.
+    bool climb();
+    [[nodiscard]] Rung rung() const;
+    [[nodiscard]] int bits() const;
+    /// A bound of |H - H*|_2 between the stored configuration and the one that is spoken of (0 without a vertex).
+    [[nodiscard]] double normal_uncertainty() const;
+
+    /// Sign of a quantity, and of the difference a - b, on the present rung.
+    [[nodiscard]] Order sign(const ForceExpression& a) const;
+    [[nodiscard]] Order compare(const ForceExpression& a, const ForceExpression& b) const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+extern template class ForceLadder<2>;
+
+} // namespace isostat

@@ -148,8 +148,19 @@ Json tally_json(const Tally& tally) {
     object["combinatorial"] = tally.combinatorial;
     object["double"] = tally.double_bound;
     object["double-double"] = tally.double_double;
+    object["mpfr"] = tally.multiprecision;
+    object["exact"] = tally.exact;
     object["undecided"] = tally.undecided;
     object["smallest_margin"] = json::or_null(tally.smallest_margin);
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
+        Json& kind = object["kinds"][std::string(to_string(static_cast<DecisionKind>(k)))];
+        for (std::size_t rung = 0; rung < tally.by_kind[k].size(); ++rung) {
+            kind[std::string(to_string(static_cast<Rung>(rung)))] = tally.by_kind[k][rung];
+        }
+        kind["smallest_margin"] = json::or_null(tally.smallest_margin_of[k]);
+    }
+    object["ties"]["structural"] = tally.structural_ties;
+    object["ties"]["other"] = tally.ties;
     return object;
 }
 
@@ -195,7 +206,19 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.combinatorial = tally.at("combinatorial").integer();
     counters.tally.double_bound = tally.at("double").integer();
     counters.tally.double_double = tally.at("double-double").integer();
+    counters.tally.multiprecision = tally.at("mpfr").integer();
+    counters.tally.exact = tally.at("exact").integer();
     counters.tally.undecided = tally.at("undecided").integer();
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
+        const json::Field kind = tally.at("kinds").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str());
+        for (std::size_t rung = 0; rung < counters.tally.by_kind[k].size(); ++rung) {
+            counters.tally.by_kind[k][rung] =
+                kind.at(std::string(to_string(static_cast<Rung>(rung))).c_str()).integer();
+        }
+        counters.tally.smallest_margin_of[k] = kind.at("smallest_margin").number();
+    }
+    counters.tally.structural_ties = tally.at("ties").at("structural").integer();
+    counters.tally.ties = tally.at("ties").at("other").integer();
     counters.tally.smallest_margin = tally.at("smallest_margin").number();
     const json::Field states = field.at("certified_states");
     counters.states.proved = states.at("proved").integer();

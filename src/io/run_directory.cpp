@@ -3,6 +3,7 @@
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/work.hpp>
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
@@ -22,8 +23,8 @@ using json::Json;
 namespace fs = std::filesystem;
 
 /// Everything that a run may leave in its folder, figures apart.
-constexpr std::array<const char*, 6> run_files{"run.json",        "events.jsonl", "equilibria.csv",
-                                               "checkpoint.json", "summary.json", "start.json"};
+constexpr std::array<const char*, 7> run_files{"run.json",     "events.jsonl", "equilibria.csv", "checkpoint.json",
+                                               "summary.json", "start.json",   "work.json"};
 
 fs::path state_path(const fs::path& directory, int equilibrium) {
     return directory / "states" / fmt::format("eq_{:06}.json", equilibrium);
@@ -279,6 +280,7 @@ void RunDirectory::write_checkpoint() {
     if (!pending_) {
         return;
     }
+    count_work(Work::checkpoints);
     files_->events.sync();
     files_->equilibria.sync();
     Json object;

@@ -97,6 +97,11 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
                                                       Interval{-inf, inf});
                 zeros.insert(at, static_cast<int>(l));
             });
+            const Alteration as_zero = list.back();
+            add(which + " as a structural zero, in any interval", [=](Certificate& c) {
+                as_zero.apply(c);
+                c.claims.forces->finite[l] = {-inf, inf};
+            });
         }
     }
     for (std::size_t k = 0; k < forces.structural_zeros.size(); ++k) {

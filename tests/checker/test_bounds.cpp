@@ -1,4 +1,6 @@
 // The bounds of the inverse against a dense inverse in long double: never below it, and not much above.
+#include "checker/forces.hpp"
+#include "checker/gaps.hpp"
 #include "checker/inverse.hpp"
 #include "checker/maker.hpp"
 #include "checker/small_states.hpp"
@@ -7,6 +9,8 @@
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>
+
+#include <random>
 
 using namespace isostat;
 
@@ -80,6 +84,66 @@ BOOST_AUTO_TEST_CASE(a_wrong_factorisation_proves_nothing) {
     const isostat::checker::Problem other(crafted::three_disks(1, 1.4, 2.3, 1, 1));
     const isostat::checker::Solver wrong(other);
     BOOST_TEST(!isostat::checker::bound_inverse(problem, wrong, CheckerArithmetic::fixed64).found);
+}
+
+// One disk between four walls: the two contacts along x are alone with x and the right wall, unless that is loaded.
+BOOST_AUTO_TEST_CASE(forces_vanish_by_counting_only_without_load) {
+    using namespace isostat::checker;
+    const Problem problem(crafted::one_disk(1, 1)); // contacts left, right, bottom, top; coordinates x, y, Lx, Ly
+    Forces load(4, Range(Rational(0)));
+    BOOST_TEST(vanish_structurally(problem, {0, 1}, load));
+    BOOST_TEST(!vanish_structurally(problem, {0}, load));
+    BOOST_TEST(!vanish_structurally(problem, {0, 1, 2}, load));
+    BOOST_TEST(!vary_together(problem, {0, 1}, load));
+    load[2] = Range(Rational(-1));
+    BOOST_TEST(!vanish_structurally(problem, {0, 1}, load));
+    BOOST_TEST(vary_together(problem, {0, 1}, load));
+    BOOST_TEST(vanish_structurally(problem, {2, 3}, load));
+    load[2] = Range(Rational(0), Rational(1)); // may be loaded
+    BOOST_TEST(!vanish_structurally(problem, {0, 1}, load));
+}
+
+// Brute force over all pairs, for configurations that need not be anything: the sweep must list the smallest gap.
+BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
+    using namespace isostat::checker;
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> place(0.5, 40);
+    for (int trial = 0; trial < 2000; ++trial) {
+        State<2> state = small_states::with_a_rattler();
+        const auto disks = static_cast<std::size_t>(2 + trial % 7);
+        state.contacts.clear();
+        state.packing.radius.assign(disks, 0.4);
+        state.packing.radius[0] = 3;
+        state.packing.radius[1] = 2.9;
+        state.packing.q.resize(2 * disks + 2);
+        for (double& x : state.packing.q) {
+            x = place(random);
+        }
+        state.packing.length(0) = 100;
+        state.packing.length(1) = 100;
+        const std::vector<Contact> pairs = maker::all_pairs(state);
+        state.contacts = {pairs[random() % pairs.size()], pairs[random() % pairs.size()]};
+        const Problem problem(state);
+        TrueVertex vertex;
+        vertex.middle = problem.stored;
+        vertex.radius = 0;
+        const std::vector<Gap> near = smallest_gaps(problem, state, vertex);
+        const maker::Approximation at(state);
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const Contact& pair : pairs) {
+            if (is_free_pair(state, pair)) {
+                smallest = std::min(smallest, static_cast<double>(at.gap(pair)));
+            }
+        }
+        BOOST_REQUIRE(!near.empty());
+        double found = std::numeric_limits<double>::infinity();
+        for (const Gap& gap : near) {
+            BOOST_TEST(is_free_pair(state, gap.pair));
+            BOOST_TEST(std::abs(gap.value.lower.get_d() - static_cast<double>(at.gap(gap.pair))) < 1e-12);
+            found = std::min(found, gap.value.lower.get_d());
+        }
+        BOOST_TEST(std::abs(found - smallest) < 1e-12);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(ranges_contain_what_they_must) {

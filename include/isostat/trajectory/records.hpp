@@ -6,8 +6,10 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/motion/arc_certificate.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace isostat {
@@ -71,6 +73,24 @@ template <int Dim> struct EquilibriumRecord {
     double seconds = 0;                   ///< since the start of the run
 };
 
+/// What a decision was about.
+enum class DecisionKind : unsigned char {
+    gaps,       ///< no candidate overlaps at the end of an arc: which gap closed first
+    power,      ///< the power of the load is positive where an arc ends
+    opening,    ///< which contact opens: an arc was started with it
+    equilibrium ///< every force positive, both ends of the supported interval and what opens there
+};
+inline constexpr int decision_kinds = 4;
+constexpr std::string_view to_string(DecisionKind kind) {
+    switch (kind) {
+    case DecisionKind::gaps: return "gaps";
+    case DecisionKind::power: return "power";
+    case DecisionKind::opening: return "opening";
+    case DecisionKind::equilibrium: return "equilibrium";
+    }
+    return "equilibrium";
+}
+
 /// How much of a run is proved.
 /// - decisions: every comparison that steers, with a bound on both sides;
 /// - states: besides, a certificate file for each equilibrium (an observer writes them);
@@ -108,8 +128,19 @@ struct Tally {
     long combinatorial = 0;
     long double_bound = 0;
     long double_double = 0;
-    long undecided = 0;
+    long multiprecision = 0;
+    long exact = 0;
+    long undecided = 0; ///< ended a segment: a sign or an order that no rung settled
+    long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
+    long structural_ties =
+        0; ///< forces that vanish together for a structural reason, ordered by the infinitesimal loads
     double smallest_margin = 0; ///< smallest |quantity| / bound among the decided ones (0: none yet)
+    /// The same by kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
+    std::array<std::array<long, 5>, decision_kinds> by_kind{};
+    std::array<double, decision_kinds> smallest_margin_of{}; ///< 0: none yet
+
+    /// Adds one decision.
+    void count(DecisionKind kind, double margin, Rung rung);
 };
 
 /// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written

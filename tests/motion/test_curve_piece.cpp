@@ -64,10 +64,10 @@ BOOST_AUTO_TEST_CASE(the_true_curve_lies_in_the_tube_and_its_tangent_within_the_
 }
 
 BOOST_AUTO_TEST_CASE(no_tube_is_proved_across_a_point_where_the_row_turns) {
-    // x = 2 cos(angle) has its largest value at angle 0, 0.0025 ahead.
+    // x = 2 cos(angle) has its largest value at angle 0; s runs like the faster coordinate y, 0.1 away from there.
     OnCircle on(0.05, 0);
     CurvePiece<2> piece = on.piece();
-    const double ahead = 2 - on.packing.q[2];
+    const double ahead = on.packing.q[3];
     BOOST_TEST(piece.natural_reach() < ahead);
     for (const double share : {1.001, 1.5, 4.0}) {
         BOOST_TEST(!piece.prove(share * ahead));

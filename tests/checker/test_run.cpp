@@ -168,6 +168,27 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
                            "\"closed\":\"" + kept, "closed already"});
     finds(folder / "run", {"events.jsonl", 1, "\"opened\":\"" + name_in("opened", 1), "\"opened\":\"" + kept, ""});
 
+    // A record left out.
+    const std::string without = scratch::replaced(events, line_of(events, tension) + "\n", "");
+    scratch::write(folder / "run/events.jsonl", without);
+    BOOST_TEST((verify_run(folder / "run").verdict == Verdict::refuted));
+    scratch::write(folder / "run/events.jsonl", events);
+    // Another stored state, by a coordinate and by a contact.
+    const std::filesystem::path stored = folder / "run/states/eq_000001.json";
+    const State<2> state = read_state<2>(stored).state;
+    for (const bool coordinate : {true, false}) {
+        State<2> altered = state;
+        if (coordinate) {
+            altered.packing.q[7] += 1e-7;
+        } else {
+            altered.contacts[5] = {ContactKind::disk_disk, 0, 99};
+        }
+        write_state(stored, altered);
+        const RunVerification found = verify_run(folder / "run");
+        BOOST_TEST((found.verdict == Verdict::refuted));
+        BOOST_TEST((found.wrong.find("eq_000001") != std::string::npos), found.wrong);
+    }
+    write_state(stored, state);
     for (const char* column : {"number",
                                "previous",
                                "sigma2",
@@ -196,7 +217,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
                                "min_gap",
                                "min_gap_j",
                                "proved"}) {
-        finds(folder / "run", in_row(csv, 4, column, "7"));
+        finds(folder / "run", in_row(csv, 4, column, "9"));
     }
 }
 

@@ -3,6 +3,7 @@
 /// The subcommands of `isostat`: arguments as parsed, exit status as returned.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,18 @@ struct RunArguments {
     bool resume = false, force = false;
 };
 int run(const RunArguments& arguments);
+
+struct EnsembleArguments {
+    Common common;
+    std::string scene, output;
+    int samples = 0;
+    std::uint64_t first_seed = 1;
+    std::optional<int> jobs; ///< processes at a time (per rank under mpirun); none: one per core, under mpirun one
+    bool resume = false, force = false;
+};
+/// Independent samples of a scene, each a process `isostat run`; merges their tables. Returns 0 when all completed, 130
+/// when some were interrupted, 1 when some failed, crashed or were refused, 2 when some are undecided.
+int ensemble(const EnsembleArguments& arguments);
 
 struct InspectArguments {
     Common common;
@@ -96,13 +109,13 @@ struct GenericityArguments {
     Common common;
     std::string file, csv;
     int samples = 100;
-    double size = 1e-6;
+    std::vector<double> sizes{1e-6};
     std::uint64_t seed = 1;
     double stress = 1;
     int lists = 10;
+    bool keep_equal = false;
 };
-/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 1: some were proved not to be; 2: some are
-/// undecided.
+/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 2: some were not.
 int genericity(const GenericityArguments& arguments);
 
 /// "isostat 0.1.0".

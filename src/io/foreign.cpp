@@ -176,6 +176,9 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
     }
     check_boundaries(raw, source, options);
     out.notes = raw.notes;
+    if (!text.ends_with('\n')) {
+        out.notes.emplace_back("the last line has no end: was the file cut there?");
+    }
     for (std::size_t i = 0; i < raw.x.size(); ++i) {
         out.packing.q.push_back(raw.x[i]);
         out.packing.q.push_back(raw.y[i]);

@@ -53,7 +53,10 @@ template <int Dim> Enclosure mechanism_norm(const Statics<Dim>& statics, Contact
         size += c * c;
     }
     const double value = std::sqrt(size);
-    return {value, std::sqrt(residual) * (1 + 1e-10) / statics.inverse().sigma_min + 1e-10 * value};
+    const double away = statics.normal_uncertainty();
+    const double sigma = statics.inverse().sigma_min - away;
+    const double error = (std::sqrt(residual) + away * value) * (1 + 1e-10);
+    return {value, sigma > 0 ? error / sigma * (1 + 1e-10) + 1e-10 * value : infinity};
 }
 
 /// f / |v| for the steepest rule.

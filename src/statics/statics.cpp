@@ -34,13 +34,18 @@ std::vector<int> nonzero_rows(const std::vector<double>& force) {
 
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-                      const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options)
+                      const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
+                      const VertexEnclosure* vertex)
     : structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
       sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
-      ladder_(packing, structure, factorisation, inverse, options) {
+      ladder_(packing, structure, factorisation, inverse, options, vertex) {
     const DofMap<Dim>& dofs = structure.dofs();
-    ladder_.add(on_dofs(load.external_force(packing), dofs));
-    ladder_.add(on_dofs(load.unit_force(packing), dofs));
+    // Under true stresses a wall's force follows the length of the other wall.
+    const bool follows = load.kind == LoadKind::true_stress;
+    const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
+                                                     [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    ladder_.add(on_dofs(load.external_force(packing), dofs), follows ? stress * (1 + 4 * u) : 0);
+    ladder_.add(on_dofs(load.unit_force(packing), dofs), follows ? 1 : 0);
     ladder_.add(on_dofs(load.infinitesimal, dofs));
     loaded_rows_ = nonzero_rows(on_dofs(load.fixed_force(packing), dofs));
     const std::vector<int> wall = nonzero_rows(ladder_.force(unit));

@@ -35,9 +35,18 @@ template <int Dim> class Run {
         : state_(state), segment_(segment), options_(options), counters_(counters), observer_(observer),
           seconds_before_(counters.seconds) {}
 
-    SegmentOutcome run(const Segment& segment);
+    SegmentOutcome run(const Segment& segment) {
+        SegmentOutcome outcome = play(segment);
+        if (outcome.failure &&
+            (outcome.failure->kind == FailureKind::undecided || outcome.failure->kind == FailureKind::tie)) {
+            ++counters_.tally.undecided;
+            counters_.tally.ties += outcome.failure->kind == FailureKind::tie ? 1 : 0;
+        }
+        return outcome;
+    }
 
   private:
+    SegmentOutcome play(const Segment& segment);
     [[nodiscard]] double sigma() const { return sigma_of(state_.load); }
     void set_sigma(Load<Dim>& load, double value) const {
         load.stress[static_cast<std::size_t>(load.loaded_axis)] = value;
@@ -52,14 +61,8 @@ template <int Dim> class Run {
         bound_cache_ = {};
     }
 
-    void count(double margin, Rung rung, ArcRecord<Dim>* arc = nullptr) {
-        Tally& tally = counters_.tally;
-        (rung == Rung::double_double   ? tally.double_double
-         : rung == Rung::combinatorial ? tally.combinatorial
-                                       : tally.double_bound)++;
-        if (std::isfinite(margin) && (tally.smallest_margin == 0 || margin < tally.smallest_margin)) {
-            tally.smallest_margin = margin;
-        }
+    void count(DecisionKind kind, double margin, Rung rung, ArcRecord<Dim>* arc = nullptr) {
+        counters_.tally.count(kind, margin, rung);
         margin_ = std::min(margin_, margin);
         rung_ = std::max(rung_, rung);
         if (arc != nullptr) {
@@ -74,6 +77,8 @@ template <int Dim> class Run {
                                                 const Load<Dim>& load, ArcRecord<Dim>& record);
     std::optional<Failure> check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
                                      const Load<Dim>& load, ArcRecord<Dim>& record);
+    void certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
+                 const Load<Dim>& load, ArcRecord<Dim>& record);
     std::optional<Failure> report(int arcs);
 
     State<Dim>& state_;
@@ -128,7 +133,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
         if (!gaps.value().negative) {
-            count(gaps.value().margin, gaps.value().rung, &record);
+            count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung, &record);
             record_.min_gap = gaps.value().smallest;
             record_.min_gap_contact = gaps.value().where;
             return std::move(made.value());
@@ -190,9 +195,36 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
                                                                to_string<Dim>(record.opened),
                                                                to_string<Dim>(record.closed), f.value, f.radius)};
         }
-        count(f.margin(), to.statics.rung(), &record);
+        count(DecisionKind::power, f.margin(), to.statics.rung(), &record);
     }
     return std::nullopt;
+}
+
+/// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
+template <int Dim>
+void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
+                       const Load<Dim>& load, ArcRecord<Dim>& record) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto vertex = [](const Vertex<Dim>& v) {
+        return ArcVertex<Dim>{v.packing, v.structure, v.factorisation, v.inverse, v.enclosure};
+    };
+    record.certificate = certify_arc(vertex(from), opening.contact, opening.direction, vertex(to),
+                                     PowerLoad<Dim>{&load, opening.infinitesimal, at_limit}, candidates_);
+    const ArcCertificate& certificate = *record.certificate;
+    ArcTally& tally = counters_.arcs;
+    const bool proved = certificate.verdict == Verdict::proved;
+    (proved ? tally.certified : tally.undecided)++;
+    tally.power_undecided += proved && certificate.power != Verdict::proved ? 1 : 0;
+    tally.pieces += certificate.pieces;
+    tally.factorisations += certificate.factorisations;
+    const auto lower = [proved](double& smallest, double margin) {
+        if (proved && std::isfinite(margin) && (smallest == 0 || margin < smallest)) {
+            smallest = margin;
+        }
+    };
+    lower(tally.tube_margin, certificate.tube_margin);
+    lower(tally.gap_margin, certificate.gap_margin);
+    tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress) {
@@ -225,7 +257,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         record.force = opening.force.value;
         record.margin = infinity;
         record.decided_by = Rung::combinatorial;
-        count(opening.margin, opening.rung, &record);
+        count(DecisionKind::opening, opening.margin, opening.rung, &record);
         const bool at_limit = arcs == 1 && kind == "limit";
         const std::string where = fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arcs, stress);
         auto made = follow(*from, opening, at_limit, load, record);
@@ -235,6 +267,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         std::unique_ptr<Vertex<Dim>> next = std::move(made.value());
         if (auto failure = check_arc(*from, *next, opening, load, record)) {
             return located(*failure, where);
+        }
+        if (options_.certify == CertifyLevel::arcs) {
+            certify(*from, *next, opening, at_limit, load, record);
         }
         const auto axis = static_cast<std::size_t>(load.loaded_axis);
         const double reference = load.reference_length[axis];
@@ -255,7 +290,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                                        std::abs(record.strain), stress, options_.max_strain)};
         }
         if (!decision.value().opening) {
-            count(decision.value().margin, decision.value().rung);
+            count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung);
             break;
         }
         opening = *decision.value().opening;
@@ -263,7 +298,20 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                    : opening.infinitesimal                                                       ? "rattler"
                                                                                                  : "tension";
     }
-    vertex_ = std::move(here);
+    // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh factors
+    // and bound. A resumed run starts from the same bits.
+    fresh_caches(here->packing);
+    auto anew = Vertex<Dim>::make(here->packing, here->structure.contacts(), load, bound_cache_);
+    if (!anew.ok()) {
+        return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+    }
+    vertex_ = std::move(anew.value());
+    auto gaps = vertex_->check_gaps(candidates_);
+    if (!gaps.ok()) {
+        return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+    }
+    record_.min_gap = gaps.value().smallest;
+    record_.min_gap_contact = gaps.value().where;
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();
@@ -286,7 +334,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     }
     record.min_gap = record_.min_gap;
     record.min_gap_contact = record_.min_gap_contact;
-    count(record.margin, record.decided_by);
+    count(DecisionKind::equilibrium, record.margin, record.decided_by);
     record.margin = margin_;
     record.decided_by = rung_;
     record.number = counters_.equilibria;
@@ -335,7 +383,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         record_ = described.value();
         return std::nullopt;
     }
-    count(gaps.value().margin, gaps.value().rung);
+    count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung);
     auto decision =
         decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), bits_for(options_.rule_seed, 0));
     if (!decision.ok()) {
@@ -345,11 +393,11 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         const Opening& opening = *decision.value().opening;
         return rearrange(opening, opening.infinitesimal ? "rattler" : "tension", sigma());
     }
-    count(decision.value().margin, decision.value().rung);
+    count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung);
     return report(0);
 }
 
-template <int Dim> SegmentOutcome Run<Dim>::run(const Segment& segment) {
+template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
     SegmentOutcome outcome;
     if (auto failure = start()) {
         outcome.failure = failure;
@@ -379,6 +427,7 @@ template <int Dim> SegmentOutcome Run<Dim>::run(const Segment& segment) {
             return outcome;
         }
         const LoadLimit& limit = found.value();
+        counters_.tally.structural_ties += limit.tie_class.size() > 1 ? 1 : 0;
         if (segment.to_stress) {
             const double ahead = limit.unbounded ? infinity : segment.direction * (limit.stress - *segment.to_stress);
             if (!limit.unbounded && std::abs(ahead) <= limit.stress_error) {

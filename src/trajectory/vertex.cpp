@@ -15,7 +15,7 @@ template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure),
       inverse(bound_inverse(structure, factorisation, cache)), enclosure(enclose_vertex(packing, structure, inverse)),
-      statics(packing, load, structure, factorisation, inverse) {}
+      statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
 
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
@@ -82,16 +82,26 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(co
             look(contact);
         }
     }
-    if (!doubtful.empty()) {
-        std::string names;
-        for (const Contact& contact : doubtful) {
-            const Enclosure h = gap_at_vertex(packing, enclosure, contact);
-            names += fmt::format("{}{} (gap {:.3g}, proved to {:.3g})", names.empty() ? "" : ", ",
-                                 to_string<Dim>(contact), h.value, h.radius);
+    std::string names;
+    for (const Contact& contact : doubtful) { // with as many bits as the ladder has
+        const Order order = gap_sign_at_vertex(packing, structure, factorisation, inverse, contact);
+        if (order.decided && order.sign != 0) {
+            gaps.rung = std::max(gaps.rung, order.rung);
+            gaps.margin = std::min(gaps.margin, order.margin);
+            const double h = gap_at_vertex(packing, enclosure, contact).value;
+            if (order.sign < 0) {
+                gaps.negative = contact;
+            } else if (h < gaps.smallest) {
+                gaps.smallest = std::max(h, 0.0);
+                gaps.where = contact;
+            }
+            continue;
         }
-        return Failure{FailureKind::tie,
-                       "gaps that are zero as far as double-double arithmetic can tell, beside the contacts kept: " +
-                           names};
+        names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),
+                             order.decided ? std::string("exactly 0") : fmt::format("0 to {} bits", order.bits));
+    }
+    if (!names.empty()) {
+        return Failure{FailureKind::tie, "gaps that are zero beside those of the contacts kept: " + names};
     }
     return gaps;
 }

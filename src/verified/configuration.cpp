@@ -1,5 +1,8 @@
+#include "contact/gap_sign.hpp"
 #include "verified/extended_norm.hpp"
 #include "verified/norm.hpp"
+#include "verified/refined_vertex.hpp"
+#include "verified/vertex_bounds.hpp"
 
 #include <isostat/verified/configuration.hpp>
 
@@ -17,35 +20,6 @@ constexpr double u = 0x1p-53;
 constexpr double coordinate_unit =
     0x1p-100;                       // rounding of a difference of corrected coordinates, per unit of the coordinates
 constexpr double dd_unit = 0x1p-98; // granted to one operation of libqd (its own bounds are 2^-104 to 2^-102)
-
-/// Sum of the radii of a contact: the length that scales the rounding of its gap.
-template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-        return packing.radius[static_cast<std::size_t>(contact.i)] +
-               packing.radius[static_cast<std::size_t>(contact.j)];
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return packing.radius[static_cast<std::size_t>(contact.i)];
-    case ContactKind::held: return 0;
-    }
-    return 0;
-}
-
-/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
-/// of disk contacts of one disk (V4). 0 when there are only walls.
-template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    std::vector<int> count(packing.radius.size(), 0);
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : contacts) {
-        if (contact.kind == ContactKind::disk_disk) {
-            ++count[static_cast<std::size_t>(contact.i)];
-            ++count[static_cast<std::size_t>(contact.j)];
-            smallest = std::min(smallest, target(packing, contact));
-        }
-    }
-    const double most = *std::max_element(count.begin(), count.end());
-    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 8 * u);
-}
 
 /// Kantorovich with |F| <= residual, |DF^-1| <= inverse_norm: radius of existence, or NaN when the test fails.
 double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
@@ -201,6 +175,48 @@ Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vert
                        (1 + 4 * u)};
 }
 
+template <int Dim>
+Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
+                         const LadderOptions& options) {
+    Order order;
+    std::vector<Real> start = exact_coordinates(packing.q, {});
+    for (int bits = options.first_bits; bits <= options.max_bits; bits *= 2) {
+        const RefinedVertex vertex = refine_vertex(packing, structure, factorisation, inverse, start, bits);
+        if (vertex.verdict != Verdict::proved) {
+            break;
+        }
+        order.rung = Rung::multiprecision;
+        order.bits = bits;
+        const Real h = precise_gap(packing, vertex.coordinate, contact, bits);
+        Real radius(64);
+        mpfr_abs(radius.get(), h.get(), MPFR_RNDU);
+        mpfr_add_d(radius.get(), radius.get(), target(packing, contact), MPFR_RNDU);
+        mpfr_mul_2si(radius.get(), radius.get(), 4 - bits, MPFR_RNDU);
+        Real moved(64);
+        mpfr_mul_d(moved.get(), vertex.radius.get(), 1.4142135623731, MPFR_RNDU);
+        mpfr_add(radius.get(), radius.get(), moved.get(), MPFR_RNDU);
+        const Interval gap_there(h, radius, bits);
+        if (gap_there.positive() || gap_there.negative()) {
+            order.decided = true;
+            order.sign = gap_there.positive() ? 1 : -1;
+            order.margin = gap_there.margin();
+            return order;
+        }
+        start = vertex.coordinate;
+    }
+    // A stored configuration that closes every kept gap exactly is the true vertex.
+    const bool exact = std::all_of(structure.contacts().begin(), structure.contacts().end(), [&](const Contact& c) {
+        return c.kind == ContactKind::held || gap_sign(packing, c, 0) == 0;
+    });
+    if (exact && order.rung != Rung::none) { // unique there, by the enclosure
+        order = {true, gap_sign(packing, contact, 0), std::numeric_limits<double>::infinity(), Rung::exact, 0};
+    }
+    return order;
+}
+
+template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
+                                     const InverseBound&, const Contact&, const LadderOptions&);
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
 template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                          const Factorisation&, const InverseBound&);

@@ -1,7 +1,12 @@
+#include "contact/gap_sign.hpp"
 #include "verified/exact_forces.hpp"
+#include "verified/norm.hpp"
 #include "verified/real.hpp"
+#include "verified/refined_vertex.hpp"
 #include "verified/refinement.hpp"
+#include "verified/vertex_bounds.hpp"
 
+#include <isostat/core/work.hpp>
 #include <isostat/verified/force_ladder.hpp>
 
 #include <algorithm>
@@ -14,6 +19,7 @@ namespace isostat {
 
 namespace {
 
+constexpr double u = 0x1p-53;
 constexpr mpfr_prec_t low_bits = 160; ///< of comparisons on the rungs double and double-double, and of exact roots
 
 bool all_zero(const std::vector<double>& x) {
@@ -34,6 +40,7 @@ Real root_product(const mpq_class& factor, const mpz_class& square, mpfr_prec_t 
 /// One right-hand side with what is known of its solution on every rung reached.
 struct Part {
     std::vector<double> force;
+    double rate = 0; ///< |F(q) - F(q*)| per |q - q*|
     bool zero = false;
     ForceSolution solution; ///< on the rung `solution.rung` with `solution.bits`; empty before the first request
     RefinedVector refined;  ///< rung multiprecision
@@ -64,6 +71,32 @@ void round(const std::vector<Real>& x, const Real& error, ForceSolution& solutio
     solution.bound = bound.above();
 }
 
+/// 2-norm of a correction, from above.
+double length_of(const std::vector<double>& correction) {
+    std::vector<double> size;
+    for (const double c : correction) {
+        size.push_back(std::abs(c));
+    }
+    return norm_above(size);
+}
+
+/// Norm of the components of normals that the pattern leaves out because they are 0 in the stored configuration:
+/// `moved(j, i)` is a bound of what they are at other coordinates.
+template <int Dim, class Moved>
+double left_out(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Moved moved) {
+    std::vector<double> parts;
+    for (const Contact& contact : contacts) {
+        for (int a = 0; a < Dim && contact.kind == ContactKind::disk_disk; ++a) {
+            const auto i = static_cast<std::size_t>(Dim * contact.i + a);
+            const auto j = static_cast<std::size_t>(Dim * contact.j + a);
+            if (packing.q[i] == packing.q[j]) {
+                parts.push_back(1.5 * moved(j, i) / target(packing, contact)); // twice, in two rows
+            }
+        }
+    }
+    return norm_above(parts);
+}
+
 } // namespace
 
 template <int Dim> struct ForceLadder<Dim>::Implementation {
@@ -72,6 +105,17 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
     const Factorisation* factorisation;
     const InverseBound* inverse;
     LadderOptions options;
+    const VertexEnclosure* vertex; ///< null: the stored configuration is meant
+    /// Of the configuration at which the present rung evaluates the normals: distance from the stored one, bound of
+    /// |H* - H| there, and distance of the stored from the true one.
+    struct Place {
+        double shift = 0;
+        double uncertainty = 0;
+        double away = 0;
+    };
+    mutable std::optional<Place> place;
+    mutable std::optional<double> rate; ///< normal_rate
+    std::optional<RefinedVertex> refined_vertex;
     Rung rung = Rung::double_bound;
     int bits = 53;
     mutable std::vector<Part> parts;
@@ -90,7 +134,122 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
     [[nodiscard]] mpq_class exact_value(const ForceExpression& e, mpq_class& square) const;
     bool open_exact();
     [[nodiscard]] bool converged() const;
+    [[nodiscard]] const Place& where() const;
+    [[nodiscard]] double normals() const;
+    [[nodiscard]] double stored_uncertainty() const;
+    void inflate(const Part& part, ForceSolution& s) const;
+    bool extend();
+    bool refine(int next);
 };
+
+template <int Dim> double ForceLadder<Dim>::Implementation::normals() const {
+    if (!rate) {
+        rate = vertex == nullptr ? 0 : normal_rate(*packing, structure->contacts());
+    }
+    return *rate;
+}
+
+template <int Dim>
+const typename ForceLadder<Dim>::Implementation::Place& ForceLadder<Dim>::Implementation::where() const {
+    if (!place) { // the rung double: normals of the stored configuration
+        place.emplace();
+        if (vertex != nullptr) {
+            place->away = vertex->verdict == Verdict::proved
+                              ? (vertex->radius + length_of(vertex->correction)) * (1 + 4 * u)
+                              : std::numeric_limits<double>::infinity();
+            place->uncertainty = stored_uncertainty();
+        }
+    }
+    return *place;
+}
+
+template <int Dim> double ForceLadder<Dim>::Implementation::stored_uncertainty() const {
+    const double away = where().away;
+    return normals() * away +
+           left_out(*packing, structure->contacts(), [away](std::size_t, std::size_t) { return 1.5 * away; });
+}
+
+/// The bound of a solution at the place of the rung becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H* - H|),
+/// |H* x - F*| <= |H x - F| + |H* - H| |x| + |F* - F|.
+template <int Dim> void ForceLadder<Dim>::Implementation::inflate(const Part& part, ForceSolution& s) const {
+    if (vertex == nullptr) {
+        return;
+    }
+    const Place& here = where();
+    const double sigma = inverse->sigma_min;
+    const double left = (sigma - normals() * here.shift - here.uncertainty) * (1 - 8 * u);
+    if (!(left > sigma / 2)) {
+        s.bound = std::numeric_limits<double>::infinity();
+        return;
+    }
+    const double residual =
+        s.bound * sigma + here.uncertainty * length_of(s.value) * (1 + 4 * u) + part.rate * here.away;
+    s.bound = residual / left * (1 + 16 * u);
+}
+
+/// Normals in double-double, at the vertex in double-double when the true one is meant.
+template <int Dim> bool ForceLadder<Dim>::Implementation::extend() {
+    VertexEnclosure at;
+    if (vertex != nullptr) {
+        at = enclose_vertex_double_double(*packing, *structure, *factorisation, *inverse);
+        if (at.verdict != Verdict::proved) {
+            return false;
+        }
+        const double shift = length_of(at.correction);
+        Place here;
+        here.shift = shift;
+        here.away = (shift + at.radius) * (1 + 4 * u);
+        here.uncertainty = normals() * (at.radius + 0x1p-90 * shift) +
+                           left_out(*packing, structure->contacts(), [&](std::size_t j, std::size_t i) {
+                               const double moved = at.correction.empty() ? 0 : at.correction[j] - at.correction[i];
+                               return std::abs(moved) * (1 + 4 * u) + 1.5 * at.radius;
+                           });
+        place = here;
+    }
+    extended = extended_contact_matrix(*packing, *structure, at.correction);
+    rung = Rung::double_double;
+    count_work(Work::double_double);
+    bits = 106;
+    return true;
+}
+
+/// The system in MPFR, at the vertex to as many bits when the true one is meant.
+template <int Dim> bool ForceLadder<Dim>::Implementation::refine(int next) {
+    const std::vector<Real> stored = exact_coordinates(packing->q, {});
+    double sigma = inverse->sigma_min;
+    Real uncertainty(64);
+    if (vertex != nullptr) {
+        RefinedVertex found = refine_vertex(*packing, *structure, *factorisation, *inverse,
+                                            refined_vertex ? refined_vertex->coordinate : stored, next);
+        if (found.verdict != Verdict::proved) {
+            return false;
+        }
+        Real difference(64);
+        Place here;
+        here.shift = found.shift;
+        here.away = (found.shift + found.radius.above()) * (1 + 4 * u);
+        // May be far below the range of double: the part of the rate in MPFR, what the pattern leaves out added to it.
+        mpfr_mul_d(uncertainty.get(), found.radius.get(), normals(), MPFR_RNDU);
+        here.uncertainty = left_out(*packing, structure->contacts(), [&](std::size_t j, std::size_t i) {
+            mpfr_sub(difference.get(), found.coordinate[j].get(), found.coordinate[i].get(), MPFR_RNDA);
+            return std::abs(mpfr_get_d(difference.get(), MPFR_RNDA)) + 1.5 * found.radius.above();
+        });
+        mpfr_add_d(uncertainty.get(), uncertainty.get(), here.uncertainty, MPFR_RNDU);
+        sigma = (sigma - normals() * here.shift - uncertainty.above()) * (1 - 8 * u);
+        if (!(sigma > 0)) {
+            return false;
+        }
+        here.uncertainty = uncertainty.above();
+        place = here;
+        refined_vertex = std::move(found);
+    }
+    system.emplace(*structure, vertex != nullptr ? refined_vertex->coordinate : stored, *factorisation, sigma,
+                   uncertainty, next);
+    rung = Rung::multiprecision;
+    count_work(Work::multiprecision);
+    bits = next;
+    return true;
+}
 
 template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) const {
     ForceSolution& s = part.solution;
@@ -123,7 +282,9 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
         if (rung != Rung::double_bound && s.rung == Rung::double_bound) {
             refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force);
         }
-        if (rung == Rung::multiprecision) {
+        if (rung != Rung::multiprecision) {
+            inflate(part, s);
+        } else {
             std::vector<Real> b;
             std::vector<Real> start;
             for (std::size_t l = 0; l < n; ++l) {
@@ -135,7 +296,9 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
                 }
                 start.push_back(std::move(x));
             }
-            part.refined = system->solve(b, part.refined.value.size() == n ? part.refined.value : start);
+            Real error(64);
+            mpfr_set_d(error.get(), part.rate == 0 ? 0 : part.rate * where().away * (1 + 4 * u), MPFR_RNDU);
+            part.refined = system->solve(b, part.refined.value.size() == n ? part.refined.value : start, false, error);
             if (part.refined.value.size() == n) {
                 round(part.refined.value, part.refined.bound, s);
                 s.residual = part.refined.residual;
@@ -181,7 +344,13 @@ template <int Dim> Interval ForceLadder<Dim>::Implementation::mechanism_norm(std
     if (inverse->verdict == Verdict::proved) {
         std::optional<RefinedSystem<Dim>> own;
         if (!system) {
-            own.emplace(*packing, *structure, *factorisation, *inverse, low_bits);
+            const double sigma = inverse->sigma_min - where().uncertainty * (1 + 8 * u) - normals() * where().shift;
+            if (!(sigma > inverse->sigma_min / 2)) {
+                return norm;
+            }
+            // Normals of the stored configuration: as far from the true ones as on the rung double.
+            own.emplace(*structure, exact_coordinates(packing->q, {}), *factorisation, sigma * (1 - 8 * u),
+                        Real(vertex == nullptr ? 0.0 : stored_uncertainty(), 53), low_bits);
         }
         const RefinedSystem<Dim>& use = system ? *system : *own;
         std::vector<Real> unit(n, Real(53));
@@ -265,6 +434,19 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
     if (structure->size() > options.exact_size) {
         return false;
     }
+    if (vertex != nullptr) { // the stored configuration must be the true vertex, not only near it
+        const auto closed = [&](const Contact& c) {
+            return c.kind == ContactKind::held || gap_sign(*packing, c, 0) == 0;
+        };
+        const auto& contacts = structure->contacts();
+        const bool loads_exact =
+            std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.rate == 0 || part.zero; });
+        if (vertex->verdict != Verdict::proved || !loads_exact ||
+            !std::all_of(contacts.begin(), contacts.end(), closed)) {
+            return false;
+        }
+    }
+    count_work(Work::exact_solutions);
     exact.emplace(*packing, *structure);
     if (!exact->regular()) {
         exact.reset();
@@ -294,21 +476,28 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::converged() const {
 
 template <int Dim>
 ForceLadder<Dim>::ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                              const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options)
+                              const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
+                              const VertexEnclosure* vertex)
     : implementation_(std::make_unique<Implementation>()) {
     implementation_->packing = &packing;
     implementation_->structure = &structure;
     implementation_->factorisation = &factorisation;
     implementation_->inverse = &inverse;
     implementation_->options = options;
+    implementation_->vertex = vertex;
 }
 
 template <int Dim> ForceLadder<Dim>::~ForceLadder() = default;
 template <int Dim> ForceLadder<Dim>::ForceLadder(ForceLadder&&) noexcept = default;
 template <int Dim> ForceLadder<Dim>& ForceLadder<Dim>::operator=(ForceLadder&&) noexcept = default;
 
-template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force) {
+template <int Dim> double ForceLadder<Dim>::normal_uncertainty() const {
+    return implementation_->vertex == nullptr ? 0 : implementation_->stored_uncertainty();
+}
+
+template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, double rate) {
     Part part;
+    part.rate = rate;
     part.zero = all_zero(force);
     part.force = std::move(force);
     implementation_->parts.push_back(std::move(part));
@@ -372,20 +561,14 @@ template <int Dim> bool ForceLadder<Dim>::climb() {
         if (!bounded) {
             return self.open_exact();
         }
-        self.extended = extended_contact_matrix(*self.packing, *self.structure);
-        self.rung = Rung::double_double;
-        self.bits = 106;
-        return true;
+        return self.extend() || self.refine(self.options.first_bits) || self.open_exact();
     case Rung::double_double:
     case Rung::multiprecision: {
         const int next = self.rung == Rung::double_double ? self.options.first_bits : 2 * self.bits;
         if (next > self.options.max_bits || (self.rung == Rung::multiprecision && !self.converged())) {
             return self.open_exact();
         }
-        self.system.emplace(*self.packing, *self.structure, *self.factorisation, *self.inverse, next);
-        self.rung = Rung::multiprecision;
-        self.bits = next;
-        return true;
+        return self.refine(next) || self.open_exact();
     }
     default: return false;
     }

@@ -92,7 +92,8 @@ ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Facto
 }
 
 template <int Dim>
-ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure) {
+ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                       const std::vector<double>& correction) {
     const sparse::Matrix<double>& h = structure.matrix();
     ExtendedMatrix matrix{h.value, std::vector<double>(h.value.size(), 0.0)};
     const DofMap<Dim>& dofs = structure.dofs();
@@ -103,8 +104,13 @@ ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const Isosta
         }
         std::array<dd_real, Dim> d;
         for (int a = 0; a < Dim; ++a) {
-            d[static_cast<std::size_t>(a)] =
-                dd_real(packing.coordinate(DiskId(contact.j), a)) - packing.coordinate(DiskId(contact.i), a);
+            const auto i = static_cast<std::size_t>(Dim * contact.i + a);
+            const auto j = static_cast<std::size_t>(Dim * contact.j + a);
+            dd_real& component = d[static_cast<std::size_t>(a)];
+            component = dd_real(packing.q[j]) - packing.q[i];
+            if (!correction.empty()) { // the large parts cancel first
+                component += dd_real(correction[j]) - correction[i];
+            }
         }
         normalise(d);
         const dd_real distance = length(d);
@@ -190,7 +196,8 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
     solution.bits = 106;
 }
 
-template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&);
+template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&,
+                                                   const std::vector<double>&);
 template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
                                        const std::vector<double>&);
 template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,

@@ -1,5 +1,6 @@
 #include "exact/sparse_lu.hpp"
 #include "verified/precise_matrix.hpp"
+#include "verified/refined_vertex.hpp"
 
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
 
@@ -115,9 +116,10 @@ InverseBound bound_inverse_multiprecision(const Packing<Dim>& packing, const Iso
     if (pattern.rows > size_limit) {
         return {};
     }
+    const std::vector<Real> coordinates = exact_coordinates(packing.q, {});
     for (int bits = 128; bits <= max_bits; bits *= 2) {
         const sparse::Matrix<Real> h{pattern.rows, pattern.cols, pattern.start, pattern.row,
-                                     precise_contact_matrix(packing, structure, bits)};
+                                     precise_contact_matrix(structure, coordinates, bits)};
         const double sigma = sigma_by_rows(h, structure.ordering(), bits);
         if (sigma > 0) {
             return {Verdict::proved, sigma, InverseBound::Route::multiprecision};

@@ -3,7 +3,7 @@
 namespace isostat {
 
 template <int Dim>
-std::vector<Real> precise_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+std::vector<Real> precise_contact_matrix(const IsostaticStructure<Dim>& structure, const std::vector<Real>& coordinate,
                                          mpfr_prec_t bits) {
     const sparse::Matrix<double>& h = structure.matrix();
     std::vector<Real> entries;
@@ -17,10 +17,10 @@ std::vector<Real> precise_contact_matrix(const Packing<Dim>& packing, const Isos
         if (pair) {
             mpfr_set_zero(length.get(), 1);
             for (int a = 0; a < Dim; ++a) {
-                const Real from(packing.coordinate(DiskId(contact.i), a), 53);
+                const auto i = static_cast<std::size_t>(Dim * contact.i + a);
+                const auto j = static_cast<std::size_t>(Dim * contact.j + a);
                 Real& component = d[static_cast<std::size_t>(a)];
-                mpfr_set_d(component.get(), packing.coordinate(DiskId(contact.j), a), MPFR_RNDN);
-                mpfr_sub(component.get(), component.get(), from.get(), MPFR_RNDN);
+                mpfr_sub(component.get(), coordinate[j].get(), coordinate[i].get(), MPFR_RNDN);
                 mpfr_fma(length.get(), component.get(), component.get(), length.get(), MPFR_RNDN);
             }
             mpfr_sqrt(length.get(), length.get(), MPFR_RNDN);
@@ -30,10 +30,10 @@ std::vector<Real> precise_contact_matrix(const Packing<Dim>& packing, const Isos
                 entries.emplace_back(h.value[static_cast<std::size_t>(e)], bits); // +-1
                 continue;
             }
-            const int coordinate = dofs.coordinate_of(h.row[static_cast<std::size_t>(e)]);
+            const int k = dofs.coordinate_of(h.row[static_cast<std::size_t>(e)]);
             Real value(bits);
-            mpfr_div(value.get(), d[static_cast<std::size_t>(coordinate % Dim)].get(), length.get(), MPFR_RNDN);
-            if (coordinate / Dim == contact.j) {
+            mpfr_div(value.get(), d[static_cast<std::size_t>(k % Dim)].get(), length.get(), MPFR_RNDN);
+            if (k / Dim == contact.j) {
                 mpfr_neg(value.get(), value.get(), MPFR_RNDN);
             }
             entries.push_back(std::move(value));
@@ -42,6 +42,7 @@ std::vector<Real> precise_contact_matrix(const Packing<Dim>& packing, const Isos
     return entries;
 }
 
-template std::vector<Real> precise_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&, mpfr_prec_t);
+template std::vector<Real> precise_contact_matrix<2>(const IsostaticStructure<2>&, const std::vector<Real>&,
+                                                     mpfr_prec_t);
 
 } // namespace isostat

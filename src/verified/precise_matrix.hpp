@@ -9,13 +9,14 @@
 
 namespace isostat {
 
-/// H of the stored configuration in the pattern of `structure.matrix()`, every entry within 5 units 2^-bits (relative)
-/// of the exact one.
+/// H at the given coordinates in the pattern of `structure.matrix()`, every entry within 5 units 2^-bits (relative) of
+/// the exact one. Components that are 0 in the stored configuration are not in the pattern: what they are at the
+/// coordinates is left out.
 template <int Dim>
-std::vector<Real> precise_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+std::vector<Real> precise_contact_matrix(const IsostaticStructure<Dim>& structure, const std::vector<Real>& coordinate,
                                          mpfr_prec_t bits);
 
-extern template std::vector<Real> precise_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&,
+extern template std::vector<Real> precise_contact_matrix<2>(const IsostaticStructure<2>&, const std::vector<Real>&,
                                                             mpfr_prec_t);
 
 } // namespace isostat

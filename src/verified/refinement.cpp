@@ -15,14 +15,15 @@ constexpr mpfr_prec_t bound_bits = 64; ///< of sizes and bounds, rounded upwards
 } // namespace
 
 template <int Dim>
-RefinedSystem<Dim>::RefinedSystem(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                                  const Factorisation& factorisation, const InverseBound& inverse, mpfr_prec_t bits)
-    : pattern_(&structure.matrix()), factorisation_(&factorisation), inverse_(&inverse), bits_(bits),
-      entry_(precise_contact_matrix(packing, structure, bits)) {}
+RefinedSystem<Dim>::RefinedSystem(const IsostaticStructure<Dim>& structure, const std::vector<Real>& coordinate,
+                                  const Factorisation& factorisation, double sigma_min, Real uncertainty,
+                                  mpfr_prec_t bits)
+    : pattern_(&structure.matrix()), factorisation_(&factorisation), sigma_min_(sigma_min),
+      uncertainty_(std::move(uncertainty)), bits_(bits), entry_(precise_contact_matrix(structure, coordinate, bits)) {}
 
 template <int Dim>
-RefinedVector RefinedSystem<Dim>::solve(const std::vector<Real>& b, const std::vector<Real>& start,
-                                        bool transposed) const {
+RefinedVector RefinedSystem<Dim>::solve(const std::vector<Real>& b, const std::vector<Real>& start, bool transposed,
+                                        const Real& b_error) const {
     const sparse::Matrix<double>& h = *pattern_;
     const std::size_t n = b.size();
     std::vector<Real> x;
@@ -76,7 +77,18 @@ RefinedVector RefinedSystem<Dim>::solve(const std::vector<Real>& b, const std::v
             mpfr_add(sum.get(), sum.get(), upper.get(), MPFR_RNDU);
         }
         mpfr_sqrt(sum.get(), sum.get(), MPFR_RNDU);
-        mpfr_div_d(sum.get(), sum.get(), inverse_->sigma_min, MPFR_RNDU);
+        // |H* x - b*| <= |H x - b| + |H* - H| |x| + |b* - b|.
+        mpfr_add(sum.get(), sum.get(), b_error.get(), MPFR_RNDU);
+        if (uncertainty_.sign() != 0) {
+            Real norm(bound_bits);
+            for (const Real& c : x) {
+                mpfr_sqr(upper.get(), c.get(), MPFR_RNDU);
+                mpfr_add(norm.get(), norm.get(), upper.get(), MPFR_RNDU);
+            }
+            mpfr_sqrt(norm.get(), norm.get(), MPFR_RNDU);
+            mpfr_fma(sum.get(), norm.get(), uncertainty_.get(), sum.get(), MPFR_RNDU);
+        }
+        mpfr_div_d(sum.get(), sum.get(), sigma_min_, MPFR_RNDU);
         mpfr_mul_2ui(upper.get(), sum.get(), 1, MPFR_RNDU);
         if (mpfr_less_p(upper.get(), best.bound.get()) == 0) {
             break; // NaN included

@@ -3,7 +3,7 @@
 
 #include "verified/real.hpp"
 
-#include <isostat/verified/inverse_bound.hpp>
+#include <isostat/linear/factorisation.hpp>
 
 #include <vector>
 
@@ -17,24 +17,27 @@ struct RefinedVector {
     double residual = 0; ///< max |b - A x|, rounded up
 };
 
-/// H, the exact unit normals of the stored configuration, with entries to `bits` bits.
+/// H, the exact unit normals at some coordinates, with entries to `bits` bits.
 template <int Dim> class RefinedSystem {
   public:
-    RefinedSystem(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                  const Factorisation& factorisation, const InverseBound& inverse, mpfr_prec_t bits);
+    /// `sigma_min` > 0: a proved lower bound of the smallest singular value of the matrix H* that is meant, with
+    /// |H* - H|_2 <= uncertainty, H that of the coordinates (in the pattern of the structure).
+    RefinedSystem(const IsostaticStructure<Dim>& structure, const std::vector<Real>& coordinate,
+                  const Factorisation& factorisation, double sigma_min, Real uncertainty, mpfr_prec_t bits);
 
     /// Solves H f = b (or H^T v = b) from the guess `start`: residuals with `bits` bits, corrections from the LU in
     /// double; ends when an iteration does not halve the bound. The bound is |H^-1|_2 |residual|_2, rounding of entries
-    /// and residual included (statement V3 with the unit 2^-bits). \pre inverse proved. Cost per iteration: N_entries
-    /// products of `bits` bits and a solve; an iteration gains -log2(cond 2^-53) bits.
+    /// and residual included (statement V3 with the unit 2^-bits). b is known to `b_error` (2-norm). Cost per
+    /// iteration: N_entries products of `bits` bits and a solve; an iteration gains -log2(cond 2^-53) bits.
     [[nodiscard]] RefinedVector solve(const std::vector<Real>& b, const std::vector<Real>& start,
-                                      bool transposed = false) const;
+                                      bool transposed = false, const Real& b_error = Real()) const;
     [[nodiscard]] mpfr_prec_t bits() const { return bits_; }
 
   private:
     const sparse::Matrix<double>* pattern_;
     const Factorisation* factorisation_;
-    const InverseBound* inverse_;
+    double sigma_min_;
+    Real uncertainty_;
     mpfr_prec_t bits_;
     std::vector<Real> entry_;
 };

@@ -7,6 +7,7 @@
 #include <isostat/rigidity/counting.hpp>
 
 #include <boost/test/unit_test.hpp>
+#include <crafted/hold.hpp>
 
 #include <cmath>
 #include <random>
@@ -190,7 +191,9 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
             BOOST_REQUIRE_EQUAL(step.candidate_count, static_cast<int>(contacts.size()));
             BOOST_REQUIRE_EQUAL(step.all.rank, all.rank);
             BOOST_REQUIRE_EQUAL(step.all.dof_count, all.dof_count);
-            const auto backbone = inspect_contacts(exact_copy(packing), contacts);
+            Inspection backbone;
+            backbone.contacts = contacts;
+            judge_holds(backbone, exact_copy(packing));
             int left = 0;
             std::vector<isostat::Contact> carrying;
             Packing<2> rest = packing;

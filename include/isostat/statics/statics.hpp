@@ -18,10 +18,12 @@ namespace isostat {
 template <int Dim> class Statics {
   public:
     /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for
-    /// (most vertices of a rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2
-    /// for each part asked for.
+    /// (most vertices of a rearrangement need neither). The arguments must outlive the object. With `vertex` every
+    /// answer is about the true vertex that it encloses, without it about the stored configuration (ForceLadder). Cost:
+    /// 2 solves, and 2 for each part asked for.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-            const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {});
+            const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
+            const VertexEnclosure* vertex = nullptr);
 
     /// Finite part at the loaded stress sigma (taken as exact).
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;
@@ -42,6 +44,9 @@ template <int Dim> class Statics {
     bool climb() { return ladder_.climb(); }
     [[nodiscard]] Rung rung() const { return ladder_.rung(); }
     [[nodiscard]] int bits() const { return ladder_.bits(); }
+
+    /// A bound of |H - H*|_2, H of the stored configuration, H* of the one that is spoken of.
+    [[nodiscard]] double normal_uncertainty() const { return ladder_.normal_uncertainty(); }
 
     /// The same quantities for comparisons: the finite part at sigma, the slope, the infinitesimal part, and what is
     /// left of the way to the limit, force / |slope|. \pre of the last: slope proved not zero.

@@ -4,8 +4,12 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/motion/arc_certificate.hpp>
 
+#include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace isostat {
@@ -28,6 +32,7 @@ template <int Dim> struct ArcRecord {
     int steps = 0;                ///< predictor steps
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided)
     Rung decided_by = Rung::none; ///< highest rung that was needed
+    std::optional<ArcCertificate> certificate; ///< level `arcs` only
 };
 
 /// One equilibrium, checked.
@@ -64,7 +69,58 @@ template <int Dim> struct EquilibriumRecord {
     double margin = 0;          ///< smallest |quantity| / bound over the decisions since the previous equilibrium
     Rung decided_by = Rung::none;
     Verdict verdict = Verdict::undecided; ///< proved: every check of this record holds for the stored configuration
+    std::optional<Verdict> certified;     ///< of its certificate file, from level `states` on
     double seconds = 0;                   ///< since the start of the run
+};
+
+/// What a decision was about.
+enum class DecisionKind : unsigned char {
+    gaps,       ///< no candidate overlaps at the end of an arc: which gap closed first
+    power,      ///< the power of the load is positive where an arc ends
+    opening,    ///< which contact opens: an arc was started with it
+    equilibrium ///< every force positive, both ends of the supported interval and what opens there
+};
+inline constexpr int decision_kinds = 4;
+constexpr std::string_view to_string(DecisionKind kind) {
+    switch (kind) {
+    case DecisionKind::gaps: return "gaps";
+    case DecisionKind::power: return "power";
+    case DecisionKind::opening: return "opening";
+    case DecisionKind::equilibrium: return "equilibrium";
+    }
+    return "equilibrium";
+}
+
+/// How much of a run is proved.
+/// - decisions: every comparison that steers, with a bound on both sides;
+/// - states: besides, a certificate file for each equilibrium (an observer writes them);
+/// - arcs: besides, each arc enclosed between its events (`certify_arc`). An arc that is not certified does not stop
+///   the run: it is counted and its record tells why.
+enum class CertifyLevel : unsigned char { decisions, states, arcs };
+
+/// "decisions", "states", "arcs".
+constexpr const char* to_string(CertifyLevel level) {
+    return level == CertifyLevel::decisions ? "decisions" : level == CertifyLevel::states ? "states" : "arcs";
+}
+
+/// Equilibria counted by what their certificates say (from level `states` on).
+struct StateTally {
+    long proved = 0;
+    long refuted = 0;
+    long undecided = 0;
+    double seconds = 0; ///< spent on the certificates
+};
+
+/// Arcs counted by what their certificates say (level `arcs`).
+struct ArcTally {
+    long certified = 0;
+    long undecided = 0;
+    long power_undecided = 0; ///< among the certified ones
+    long pieces = 0;
+    long factorisations = 0; ///< fresh centres: one rank proof, factorisation and bound of the inverse each
+    double tube_margin = 0;  ///< smallest of all certified arcs (0: none yet)
+    double gap_margin = 0;
+    double seconds = 0; ///< spent on the certificates
 };
 
 /// Decisions counted by the rung that settled them.
@@ -72,8 +128,19 @@ struct Tally {
     long combinatorial = 0;
     long double_bound = 0;
     long double_double = 0;
-    long undecided = 0;
+    long multiprecision = 0;
+    long exact = 0;
+    long undecided = 0; ///< ended a segment: a sign or an order that no rung settled
+    long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
+    long structural_ties =
+        0; ///< forces that vanish together for a structural reason, ordered by the infinitesimal loads
     double smallest_margin = 0; ///< smallest |quantity| / bound among the decided ones (0: none yet)
+    /// The same by kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
+    std::array<std::array<long, 5>, decision_kinds> by_kind{};
+    std::array<double, decision_kinds> smallest_margin_of{}; ///< 0: none yet
+
+    /// Adds one decision.
+    void count(DecisionKind kind, double margin, Rung rung);
 };
 
 /// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written

@@ -4,6 +4,7 @@
 
 #include <isostat/core/enclosure.hpp>
 #include <isostat/verified/inverse_bound.hpp>
+#include <isostat/verified/order.hpp>
 
 #include <vector>
 
@@ -34,6 +35,16 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
 template <int Dim>
 Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact);
 
+/// Sign of the gap of a candidate at the true vertex, beyond double-double: the vertex in MPFR with first_bits ...
+/// max_bits bits, then, when every kept gap is exactly 0 at the stored configuration (which is then the true one),
+/// exact numbers. sign 0: the candidate touches, proved. Cost: N gaps and a solve per 30 bits or so.
+template <int Dim>
+Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
+                         const LadderOptions& options = {});
+
+extern template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
+                                            const InverseBound&, const Contact&, const LadderOptions&);
 extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
 extern template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                                 const Factorisation&, const InverseBound&);

@@ -3,21 +3,15 @@
 /// Contact forces at every precision behind one interface, and proved comparisons of them.
 
 #include <isostat/core/ids.hpp>
+#include <isostat/verified/configuration.hpp>
 #include <isostat/verified/force_solution.hpp>
+#include <isostat/verified/order.hpp>
 
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace isostat {
-
-/// How far a ladder may climb.
-struct LadderOptions {
-    int first_bits = 256; ///< of the first rung in MPFR; doubled on every climb
-    int max_bits = 4096;  ///< cap: a comparison that is open there is a tie "to max_bits bits", unless exact
-    int exact_size =
-        2000; ///< largest N_f for which exact numbers are tried (0.04 s at 200, 1 s at 800, grows like N_f^2.5)
-};
 
 /// A quantity by which contacts are ordered: p_l + (at - from) s_l with p, s the solutions of two right-hand sides,
 /// possibly divided by |d_l| (d a third solution, then proved not zero) or by the 2-norm of the mechanism that opens
@@ -34,15 +28,6 @@ struct ForceExpression {
     int divisor_part = -1;
 };
 
-/// Answer of a comparison: the sign of a quantity or of a difference.
-struct Order {
-    bool decided = false; ///< false: open at the precision reached; `sign` says nothing
-    int sign = 0;         ///< -1, 0 or +1; 0 is *proved*: both sides are exactly equal
-    double margin = 0;    ///< |centre| / radius of the enclosure that decided; infinite for exact numbers
-    Rung rung = Rung::none;
-    int bits = 0; ///< as in ForceSolution
-};
-
 /// The solutions of H f = F for several right-hand sides, all on one rung, each with its proved bound:
 ///   double -> refined with residuals in double-double -> in MPFR with first_bits, twice as many, ... max_bits ->
 ///   exact.
@@ -52,13 +37,15 @@ struct Order {
 template <int Dim> class ForceLadder {
   public:
     ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {});
+                const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
+                const VertexEnclosure* vertex = nullptr);
     ~ForceLadder();
     ForceLadder(ForceLadder&&) noexcept;
     ForceLadder& operator=(ForceLadder&&) noexcept;
 
     /// Adds a right-hand side (one number per degree of freedom, taken as exact); returns its number, from 0.
-    int add(std::vector<double> force);
+    /// `rate`: the force itself depends on the configuration, |F(q) - F(q*)|_2 <= rate |q - q*|_2 (true stresses).
+    int add(std::vector<double> force, double rate = 0);
     [[nodiscard]] const std::vector<double>& force(int part) const;
 
     /// The solution on the present rung. A zero right-hand side has the exact solution 0 with bound 0 on every rung.
@@ -75,6 +62,8 @@ template <int Dim> class ForceLadder {
     bool climb();
     [[nodiscard]] Rung rung() const;
     [[nodiscard]] int bits() const;
+    /// A bound of |H - H*|_2 between the stored configuration and the one that is spoken of (0 without a vertex).
+    [[nodiscard]] double normal_uncertainty() const;
 
     /// Sign of a quantity, and of the difference a - b, on the present rung.
     [[nodiscard]] Order sign(const ForceExpression& a) const;

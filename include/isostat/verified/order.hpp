@@ -1,0 +1,25 @@
+#pragma once
+/// \file
+/// Answers of proved comparisons, and how far they may climb.
+
+#include <isostat/core/verdict.hpp>
+
+namespace isostat {
+
+/// How far a ladder may climb.
+struct LadderOptions {
+    int first_bits = 256;  ///< of the first rung in MPFR; doubled on every climb
+    int max_bits = 4096;   ///< cap: a comparison that is open there is a tie "to max_bits bits", unless exact
+    int exact_size = 2000; ///< largest N_f for exact numbers (0.04 s at 200, 1 s at 800, grows like N_f^2.5)
+};
+
+/// Answer of a comparison: the sign of a quantity or of a difference.
+struct Order {
+    bool decided = false; ///< false: open at the precision reached; `sign` says nothing
+    int sign = 0;         ///< -1, 0 or +1; 0 is *proved*: both sides are exactly equal
+    double margin = 0;    ///< |centre| / radius of the enclosure that decided; infinite for exact numbers
+    Rung rung = Rung::none;
+    int bits = 0; ///< of the arithmetic: 53, 106, those of MPFR, or 0 for exact numbers
+};
+
+} // namespace isostat

@@ -1,0 +1,59 @@
+#pragma once
+// What the bounds of the true vertex share (statement V4): private to the room.
+
+#include <isostat/contact/contact.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace isostat {
+
+/// Sum of the radii of a contact: the length that scales the rounding of its gap.
+template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk:
+        return packing.radius[static_cast<std::size_t>(contact.i)] +
+               packing.radius[static_cast<std::size_t>(contact.j)];
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return packing.radius[static_cast<std::size_t>(contact.i)];
+    case ContactKind::held: return 0;
+    }
+    return 0;
+}
+
+/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
+/// of disk contacts of one disk (V4). 0 when there are only walls.
+template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    std::vector<int> count(packing.radius.size(), 0);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : contacts) {
+        if (contact.kind == ContactKind::disk_disk) {
+            ++count[static_cast<std::size_t>(contact.i)];
+            ++count[static_cast<std::size_t>(contact.j)];
+            smallest = std::min(smallest, target(packing, contact));
+        }
+    }
+    const double most = *std::max_element(count.begin(), count.end());
+    return most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-50);
+}
+
+/// Largest |gap| / D over the disk contacts.
+template <int Dim> double worst_gap_ratio(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    double worst = 0;
+    for (const Contact& contact : contacts) {
+        const double d = target(packing, contact);
+        worst = d > 0 ? std::max(worst, std::abs(gap(packing, contact)) / d) : worst;
+    }
+    return worst;
+}
+
+/// |H(q) - H(q')|_2 <= normal_rate |q - q'| for the unit normals between the stored configuration and the true vertex:
+/// unit vectors of d and d' differ by at most |d - d'| / min(|d|, |d'|), and every distance there is above 0.99 D
+/// (\pre worst_gap_ratio below 1e-3 and |q - q'| below D_min / 1000, as V4 checks); then as in V4 (a).
+template <int Dim> double normal_rate(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    return 1.02 * lipschitz(packing, contacts);
+}
+
+} // namespace isostat

@@ -266,6 +266,13 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                    : opening.infinitesimal                                                       ? "rattler"
                                                                                                  : "tension";
     }
+    if (arcs > 1 && here->renew(load)) { // as `start` finds it after a resume
+        auto gaps = here->check_gaps(candidates_);
+        if (!gaps.ok()) {
+            return located(gaps.failure(), "equilibrium");
+        }
+        (void)decide_opening(here->statics, stress, options_.rule, ContactId(), 0);
+    }
     vertex_ = std::move(here);
     state_.load = load;
     state_.packing = vertex_->packing;
@@ -331,6 +338,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
     if (counters_.equilibria != 0 || counters_.steps != 0) {
+        // The same questions as when the equilibrium was found: the statics then stand on the same rung, and the run
+        // goes on with the same bits.
+        (void)decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), 0);
         auto described = describe(*vertex_, state_.load);
         if (!described.ok()) {
             return located(described.failure(), "start");

@@ -75,9 +75,35 @@ have -> : (A *m (u' - u)) l 0 = gaps u l 0 - gaps u' l 0.
   by move: (gaps u) (gaps u') => y z; rewrite !mxE.
 by rewrite g g' subr0.
 Qed.
+
+(** The pivot of the simplex method: the motion that opens l0 at unit rate and keeps the other contacts with a force raises the work of the
+    load in proportion to the length of the step, as long as the force in l0 is a traction. *)
+Theorem pivot_increases_the_work (f : 'rV[F]_m) (u v : 'cV_n) (l0 : 'I_m) (t : F) :
+  f *m A = load -> (forall l, l != l0 -> f 0 l != 0 -> (A *m v) l 0 = 0) -> (A *m v) l0 0 = -1 ->
+  f 0 l0 < 0 -> 0 < t -> (load *m u) 0 0 < (load *m (u + t *: v)) 0 0.
+Proof.
+move=> bal kept unit traction t0.
+have power : (load *m v) 0 0 = - f 0 l0.
+  rewrite -bal -mulmxA mxE (bigD1 l0) //= unit mulrN1 big1 ?addr0 // => l nl.
+  by case: (eqVneq (f 0 l) 0) => [->|fl]; rewrite ?mul0r // kept // mulr0.
+rewrite mulmxDr -scalemxAr [X in _ < X]mxE ltr_addl [X in _ < X]mxE power.
+by rewrite mulr_gt0 // oppr_gt0.
+Qed.
 End SmallDisplacements.
+
+(** No structure comes back along a path on which the work of the load (minus the potential) increases: the path is finite. For the simplex
+    method [T] are the bases, for arcs the isolated vertices. *)
+Theorem increasing_work_repeats_nothing (F : realFieldType) (T : finType) (work : T -> F) (x : T) (path_of : seq T) :
+  path (fun a b => work a < work b) x path_of -> uniq (x :: path_of) /\ (size path_of < #|T|)%N.
+Proof.
+move=> up; have distinct : uniq (x :: path_of).
+  apply: (sorted_uniq _ _ (up : sorted _ (x :: path_of))) => [b a c|a]; [exact: lt_trans|by rewrite ltxx].
+by split=> //; have := uniq_leq_size distinct (fun a _ => mem_enum T a); rewrite -cardE.
+Qed.
 
 Print Assumptions opening_a_traction_decreases_the_potential.
 Print Assumptions equilibrium_is_optimal.
 Print Assumptions equilibria_share_contacts.
 Print Assumptions equilibrium_displacement_is_unique.
+Print Assumptions pivot_increases_the_work.
+Print Assumptions increasing_work_repeats_nothing.

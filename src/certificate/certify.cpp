@@ -10,12 +10,34 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
 
 namespace isostat {
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
+template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& state) {
+    constexpr double largest = 1e100;
+    constexpr double smallest = 1e-100;
+    const auto [least, most] = std::minmax_element(state.packing.radius.begin(), state.packing.radius.end());
+    const auto size = [](const std::vector<double>& x) {
+        return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double c) { return std::max(m, std::abs(c)); });
+    };
+    if (least == state.packing.radius.end() || *least < smallest || *most > largest ||
+        size(state.packing.q) > largest) {
+        return "there are no disks, or lengths beyond 1e-100 and 1e100";
+    }
+    for (const double load : {size(state.load.external_force(state.packing)), size(state.load.infinitesimal)}) {
+        if (load != 0 && !(load > smallest && load < largest)) {
+            return fmt::format("the largest load is {:.3g}, beyond 1e-100 and 1e100", load);
+        }
+    }
+    return std::nullopt;
+}
 
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
 template <int Dim> class Prover {
@@ -98,6 +120,11 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
         absent_from_vertex_on(reason);
         return false;
     }
+    if (const auto reason = out_of_range(state_)) {
+        absent("counting", *reason);
+        absent_from_vertex_on(*reason);
+        return false;
+    }
     const int dof_count = DofMap<Dim>(state_.packing).dof_count();
     const int count = static_cast<int>(state_.contacts.size());
     if (dof_count == count && count > 0) {
@@ -152,10 +179,11 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
         exists = exists_on_some_rung();
     }
     if (!exists) {
-        absent_from_vertex_on(fmt::format(
-            "no configuration in which all gaps of the contacts are 0 was proved to exist near the stored one (largest "
-            "|gap| of a contact {:.3g}, smallest singular value at least {:.3g})",
-            result_.stored_gap, centre_->inverse.sigma_min));
+        absent_from_vertex_on(
+            fmt::format("no configuration in which all gaps of the contacts are 0 was proved to exist, and to be "
+                        "alone, near the stored "
+                        "one (largest |gap| of a contact {:.3g}, smallest singular value at least {:.3g})",
+                        result_.stored_gap, centre_->inverse.sigma_min));
         return false;
     }
     result_.claims.vertex = VertexClaim{vertex_->radius(), vertex_->unique_radius(), vertex_->rung()};

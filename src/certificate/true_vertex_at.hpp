@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// `TrueVertex` in one number type. Included by one source per type only. Bounds: statements V5 to V7 of
-/// proofs/bounds.md; every constant below is counted there.
+/// `TrueVertex` in one number type. Included by one source per type only. Bounds: statements V5 to V7,
+/// proofs/true_vertex.md; every constant below is counted there.
 
 #include "certificate/arithmetic.hpp"
 #include "certificate/true_vertex.hpp"
@@ -41,6 +41,15 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
     static constexpr double u = 0x1p-53;
     static constexpr double infinity = std::numeric_limits<double>::infinity();
     static constexpr double sums = 1 + 1e-10; // sums of up to 10^6 non-negative terms and their roots
+    /// Upper bound of the 2-norm of non-negative numbers; scaled, so that tiny ones are not lost to underflow.
+    static double norm_above(const std::vector<double>& x) {
+        const double largest = x.empty() ? 0.0 : *std::max_element(x.begin(), x.end());
+        double square = 0;
+        for (const double c : x) {
+            square += (c / largest) * (c / largest);
+        }
+        return largest == 0 ? 0.0 : largest * std::sqrt(square) * sums; // a NaN stays one and proves nothing
+    }
 
     /// |f*_l - value_l| <= bound for every l.
     struct Solution {
@@ -124,27 +133,23 @@ template <int Dim, class T> void TrueVertexAt<Dim, T>::enclose() {
     std::vector<T> accepted;
     for (int iteration = 0; iteration <= A::corrections; ++iteration) {
         std::vector<double> f;
-        double square = 0;
+        std::vector<double> bound;
         for (const Contact& contact : contacts) {
             f.push_back(A::rounded(gap_function(contact)));
-            const double bound =
-                std::abs(f.back()) * (1 + 2 * u) + 8 * A::unit * contact_length(centre_.packing, contact);
-            square += bound * bound;
+            bound.push_back(std::abs(f.back()) * (1 + 2 * u) + 8 * A::unit * contact_length(centre_.packing, contact));
         }
-        double shift = 0;
-        double largest = 0;
+        std::vector<double> moved;
         for (const T& c : correction_) {
-            const double size = std::abs(A::rounded(c)) * (1 + 2 * u);
-            shift += size * size;
-            largest = std::max(largest, size);
+            moved.push_back(std::abs(A::rounded(c)) * (1 + 2 * u));
         }
-        shift = std::sqrt(shift) * sums;
+        const double largest = *std::max_element(moved.begin(), moved.end());
+        const double shift = norm_above(moved);
         const double lost = centre_.inverse_norm * k * shift * (1 + 4 * u);
         if (!(largest <= largest_correction && lost < 0.5)) {
             break;
         }
         const double beta = centre_.inverse_norm / (1 - lost) * (1 + 4 * u);
-        const double eta = beta * std::sqrt(square) * sums;
+        const double eta = beta * norm_above(bound) * (1 + 2 * u);
         const double product = beta * k * eta * (1 + 4 * u);
         const double radius = 1.18 * eta; // (1 - sqrt(1 - 2h)) / h <= 1.172 for h <= 1/4
         const bool better = product <= 0.25 && radius < 0.5 * radius_;
@@ -171,15 +176,13 @@ template <int Dim, class T> void TrueVertexAt<Dim, T>::enclose() {
 
 template <int Dim, class T> void TrueVertexAt<Dim, T>::claim_radii() {
     const std::vector<double>& stored = subject_.state.packing.q;
-    double largest = 0;
-    double square = 0;
+    std::vector<double> moved;
     for (std::size_t c = 0; c < stored.size(); ++c) {
-        const double moved = std::abs(centre_.packing.q[c] - stored[c]) * (1 + 2 * u) +
-                             std::abs(A::rounded(correction_[c])) * (1 + 2 * u);
-        largest = std::max(largest, moved);
-        square += moved * moved;
+        moved.push_back(std::abs(centre_.packing.q[c] - stored[c]) * (1 + 2 * u) +
+                        std::abs(A::rounded(correction_[c])) * (1 + 2 * u));
     }
-    const double away = std::sqrt(square) * sums;
+    const double largest = *std::max_element(moved.begin(), moved.end());
+    const double away = norm_above(moved);
     claimed_radius_ = (largest + radius_) * (1 + 8 * u);
     // No other root within (1 + sqrt(1 - 2h)) / (beta K) >= 1.7 / (beta K) of q + p in the 2-norm.
     const double room = centre_.lipschitz == 0 ? infinity
@@ -241,6 +244,7 @@ auto TrueVertexAt<Dim, T>::solve(const std::vector<T>& load, double load_error) 
     std::vector<T> x(n, T(0.0));
     std::vector<double> step(n);
     std::vector<double> size(n);
+    std::vector<double> unknown(n); // bounds of the exact residual, row by row
     std::vector<int> terms(n);
     for (int iteration = 0; iteration <= A::refinements + 1; ++iteration) {
         std::vector<T> residual = load;
@@ -265,15 +269,13 @@ auto TrueVertexAt<Dim, T>::solve(const std::vector<T>& load, double load_error) 
                 weight[static_cast<std::size_t>(contact.j)] += w;
             }
         }
-        double square = 0;
         for (std::size_t i = 0; i < n; ++i) {
             step[i] = A::rounded(residual[i]);
-            const double bound = std::abs(step[i]) * (1 + 2 * u) + 1.02 * A::unit * terms[i] * size[i];
-            square += bound * bound;
+            unknown[i] = std::abs(step[i]) * (1 + 2 * u) + 1.02 * A::unit * terms[i] * size[i];
         }
         const double heaviest = weight.empty() ? 0.0 : *std::max_element(weight.begin(), weight.end());
         const double turned = 2 * heaviest * radius_ * sums; // what the distance to the true vertex does to A f
-        const double bound = (std::sqrt(square) * sums + load_error + turned) / sigma_ * (1 + 8 * u);
+        const double bound = (norm_above(unknown) + load_error + turned) / sigma_ * (1 + 8 * u);
         const bool enough = !(bound < 0.5 * best.bound);
         if (bound < best.bound) {
             best = {x, bound};

@@ -24,24 +24,29 @@ bool exists_and_moves(const Packing<2>& packing, const Contact& pair) {
     return false;
 }
 
-/// The middle of the enclosure of the true vertex in doubles, with one bound for the error of any gap computed from it.
+/// The middle of the enclosure of the true vertex in doubles, in units of a power of two above all lengths (so that no
+/// square overflows), with one bound for the error of any gap computed from it.
 struct Approximation {
     std::vector<double> q;
     std::vector<double> radius;
     double error = 0;
 
     Approximation(const Problem& problem, const TrueVertex& vertex) {
-        double largest = 0;
+        long largest = 1;
         for (const Integer& x : vertex.middle) {
-            q.push_back(approximate(x, problem.fine));
-            largest = std::max(largest, std::abs(q.back()));
+            largest = std::max(largest, bits(x));
         }
         for (const Integer& r : problem.radius) {
-            radius.push_back(approximate(r, problem.fine));
-            largest = std::max(largest, radius.back());
+            largest = std::max(largest, bits(r));
         }
-        // K9: 60 units in the last place of the largest length, and three radii of the enclosure.
-        error = 0x1p-47 * largest + 4 * rounded_up(vertex.radius);
+        for (const Integer& x : vertex.middle) {
+            q.push_back(approximate(x, -largest));
+        }
+        for (const Integer& r : problem.radius) {
+            radius.push_back(approximate(r, -largest));
+        }
+        // K9: 64 roundings of numbers up to 1, and three radii of the enclosure.
+        error = 0x1p-47 + 4 * rounded_up(vertex.radius * power_of_two(-largest - problem.fine));
     }
     [[nodiscard]] double gap(const Contact& pair, std::size_t disks) const {
         const auto i = static_cast<std::size_t>(pair.i);

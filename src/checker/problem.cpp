@@ -60,8 +60,14 @@ Problem::Problem(const State<2>& state) {
     disks = packing.disk_count();
     for (const Contact& contact : state.contacts) {
         if (contact.kind == ContactKind::held) {
-            unsupported = "the state holds a coordinate (" + to_string<2>(contact) +
-                          "): only states whose contacts are contacts are checked";
+            unsupported = "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
+            return;
+        }
+        const auto axis = static_cast<std::size_t>(contact.j);
+        const bool lower = contact.kind == ContactKind::lower_wall;
+        if (contact.kind != ContactKind::disk_disk &&
+            (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
+            unsupported = "there is no wall for the contact " + to_string<2>(contact);
             return;
         }
     }

@@ -2,6 +2,8 @@
 /// \file
 /// The subcommands of `isostat`: arguments as parsed, exit status as returned.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,18 @@ struct RunArguments {
     bool resume = false, force = false;
 };
 int run(const RunArguments& arguments);
+
+struct EnsembleArguments {
+    Common common;
+    std::string scene, output;
+    int samples = 0;
+    std::uint64_t first_seed = 1;
+    std::optional<int> jobs; ///< processes at a time (per rank under mpirun); none: one per core, under mpirun one
+    bool resume = false, force = false;
+};
+/// Independent samples of a scene, each a process `isostat run`; merges their tables. Returns 0 when all completed, 130
+/// when some were interrupted, 1 when some failed, crashed or were refused, 2 when some are undecided.
+int ensemble(const EnsembleArguments& arguments);
 
 struct InspectArguments {
     Common common;
@@ -73,6 +87,36 @@ struct VerifyArguments {
 /// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
 /// equilibrium is there and proved.
 int verify(const VerifyArguments& arguments);
+
+/// What the user states of a packing made elsewhere, as typed.
+struct ForeignArguments {
+    std::string format, radius, diameter, walls, box, columns;
+    std::string frame = "last";
+    bool not_periodic = false;
+};
+
+struct PlateauArguments {
+    Common common;
+    std::string file, thresholds, csv;
+    int rows = 40;
+    ForeignArguments foreign;
+};
+/// Counts of a packing made elsewhere against the gap threshold. 0: isostatic somewhere, proved; 1: nowhere; 2:
+/// nowhere proved, and not everywhere refuted.
+int plateau(const PlateauArguments& arguments);
+
+struct GenericityArguments {
+    Common common;
+    std::string file, csv;
+    int samples = 100;
+    std::vector<double> sizes{1e-6};
+    std::uint64_t seed = 1;
+    double stress = 1;
+    int lists = 10;
+    bool keep_equal = false;
+};
+/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 2: some were not.
+int genericity(const GenericityArguments& arguments);
 
 /// "isostat 0.1.0".
 std::string program_name();

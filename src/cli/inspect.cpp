@@ -110,7 +110,13 @@ int inspect(const InspectArguments& arguments) {
     const Certification truth = certify(state); // of the coordinates as they are stored
     snap_to_grid(state.packing);
     const Result<Inspection<2>> result = inspect_vertex(state);
-    const Counting counting = result.ok() ? result.value().counting : count_contacts(state.packing, state.contacts);
+    Counting counting = result.ok() ? result.value().counting : count_contacts(state.packing, state.contacts);
+    if (const auto& stored = truth.claims.counting) {
+        counting.rank = stored->rank;
+        counting.hyperstaticity = stored->hyperstaticity;
+        counting.mechanisms = stored->hypostaticity;
+        counting.rank_exact = Verdict::proved;
+    }
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
         Json object = counting_json(arguments.file, state, counting);

@@ -42,12 +42,15 @@ struct Program {
                  "isostat"};
     PrepareArguments prepare_arguments;
     RunArguments run_arguments;
+    EnsembleArguments ensemble_arguments;
     InspectArguments inspect_arguments;
     CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
     ConvertArguments convert_arguments;
     VerifyArguments verify_arguments;
+    PlateauArguments plateau_arguments;
+    GenericityArguments genericity_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -59,12 +62,15 @@ struct Program {
                    "Example: isostat run examples/biaxial-400.toml -o out");
         add_prepare(line);
         add_run(line);
+        add_ensemble(line);
         add_inspect(line);
         add_certify(line);
         add_plan(line);
         add_report(line);
         add_convert(line);
         add_verify(line);
+        add_plateau(line);
+        add_genericity(line);
     }
 
   private:
@@ -107,6 +113,40 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return run(a); };
+        });
+    }
+
+    void add_ensemble(const std::string& line) {
+        EnsembleArguments& a = ensemble_arguments;
+        CLI::App& command =
+            add("ensemble", "independent samples of a scene (seeds 1, 2, ...), their tables in one",
+                "Every sample is a process of its own: one that fails or crashes loses no other. The folder "
+                "holds samples/seed_.../\n"
+                "(each the folder of a run), equilibria.csv, increments.csv, samples.csv, ensemble.json. "
+                "After a kill or Ctrl-C, --resume\n"
+                "goes on; with a larger --samples it adds more. The tables do not depend on --jobs. Under "
+                "mpirun (builds with\n"
+                "ISOSTAT_WITH_MPI) the ranks share the samples.\n"
+                "Exit status: 0 all completed; 1 some failed, crashed or were refused; 2 some undecided; "
+                "130 interrupted.\n"
+                "Examples: isostat ensemble examples/biaxial-400.toml --samples 8 -o many\n"
+                "          mpirun -n 4 isostat ensemble examples/biaxial-400.toml --samples 8 -o many");
+        command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
+        command.add_option("-S,--samples", a.samples, "number of samples")
+            ->required()
+            ->check(CLI::Range(1, 1'000'000))
+            ->type_name("S");
+        command.add_option("-o,--output", a.output, "folder of the ensemble")->required()->type_name("DIR");
+        command.add_option("-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)")
+            ->check(CLI::Range(1, 10'000))
+            ->type_name("J");
+        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
+        CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
+        add_common(command, a.common, true);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return ensemble(a); };
         });
     }
 
@@ -210,6 +250,90 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return verify(a); };
+        });
+    }
+
+    static void add_foreign(CLI::App& command, ForeignArguments& a) {
+        command.add_option("--radius", a.radius, "the column, or the number, that is every disk's radius")
+            ->type_name("COLUMN|NUMBER");
+        command.add_option("--diameter", a.diameter, "the same for diameters")
+            ->type_name("COLUMN|NUMBER")
+            ->excludes("--radius");
+        command
+            .add_option("--walls", a.walls,
+                        "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for "
+                        "files of other programs)")
+            ->check(CLI::IsMember({"none", "box", "fixed"}));
+        command.add_option("--box", a.box, "positions of the walls instead of the bounds in the file")
+            ->type_name("XLO:XHI,YLO:YHI");
+        command.add_option("--frame", a.frame, "of a file with several, from 0 (default: last)")
+            ->type_name("NUMBER|last");
+        command
+            .add_option("--columns", a.columns, "names of the columns of a table without a header; - leaves one out")
+            ->type_name("x,y,r");
+        command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
+        command.add_flag("--not-periodic", a.not_periodic,
+                         "take periodic boundaries for open ones: contacts across them are not looked for");
+    }
+
+    void add_genericity(const std::string& line) {
+        GenericityArguments& a = genericity_arguments;
+        CLI::App& command = add(
+            "genericity", "perturbs the radii of a packing and proves what its equilibria are",
+            "Each sample: radii times 1 + size u (seeded), downhill to the vertex under isotropic stress, certificate "
+            "of the true vertex.\n"
+            "Exit status 0: every sample is proved isostatic; 2: some are not (ties, signs beyond 100 digits, no "
+            "vertex found).\n"
+            "Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 20 --size 1e-2,1e-6,1e-10\n"
+            "          isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal");
+        command
+            .add_option("packing", a.file, "crafted packing (TOML), state or vertex text, in a box with movable walls")
+            ->required()
+            ->type_name("FILE");
+        command.add_option("--samples", a.samples, "samples per size (default 100)");
+        command.add_option("--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)")
+            ->delimiter(',');
+        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)");
+        command.add_option("--stress", a.stress, "isotropic stress (default 1)");
+        command.add_option("--lists", a.lists, "frequent contact lists to show (default 10)")
+            ->check(CLI::NonNegativeNumber);
+        command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
+        command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return genericity(a); };
+        });
+    }
+
+    void add_plateau(const std::string& line) {
+        PlateauArguments& a = plateau_arguments;
+        CLI::App& command = add(
+            "plateau", "contacts, rank, h, k of a packing made elsewhere against the gap threshold",
+            "Reads LAMMPS data files (atom style sphere), LAMMPS dumps, extended XYZ, tables of x y r, CSV, and our "
+            "own files. Whether a\n"
+            "size is a radius or a diameter is said by the name of its column or by you; it is never guessed. Gaps "
+            "are compared exactly,\n"
+            "for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is "
+            "isostatic are proved at\n"
+            "every threshold, not only at those of the table.\n"
+            "Exit status 0: isostatic at some threshold, proved; 1: at none; 2: undecided.\n"
+            "Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box\n"
+            "          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1");
+        command.add_option("file", a.file, "packing")->required()->type_name("FILE");
+        command
+            .add_option("--thresholds", a.thresholds,
+                        "smallest and largest gap of a contact, in the unit of the file (default: from the deepest "
+                        "overlap to a tenth of the smallest radius)")
+            ->type_name("A:B");
+        command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
+            ->check(CLI::NonNegativeNumber);
+        command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
+        add_foreign(command, a.foreign);
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return plateau(a); };
         });
     }
 };

@@ -2,8 +2,11 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/state_certifier.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/work.hpp>
+#include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/report/run_report.hpp>
 
@@ -115,7 +118,8 @@ class Player {
         RunOptions options = scene_.run;
         options.stop = &stop_flag();
         Both both(directory_, table_);
-        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, both);
+        StateCertifier certifier(directory_.path(), options.certify != CertifyLevel::decisions, counters_, both);
+        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, certifier);
         table_.end();
         return outcome.completed ? Ending{} : ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
     }
@@ -141,6 +145,27 @@ Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& fro
         directory.store_start(prepared.value());
     }
     return prepared;
+}
+
+/// work.json: what this process did, added to what earlier ones did on the same run.
+void record_work(const std::filesystem::path& path) {
+    Json counts = Json::object();
+    if (std::filesystem::exists(path)) {
+        const Json old = Json::parse(read_text(path), nullptr, false);
+        if (old.is_object() && old.contains("counts") && old["counts"].is_object()) {
+            counts = old["counts"];
+        }
+    }
+    const auto work = work_done();
+    for (std::size_t k = 0; k < work_kinds; ++k) {
+        const char* name = to_string(static_cast<Work>(k));
+        counts[name] = counts.value(name, 0L) + work[k];
+    }
+    Json object;
+    object["format"] = "isostat-work";
+    object["version"] = 1;
+    object["counts"] = counts;
+    write_atomically(path, object.dump(2) + "\n");
 }
 
 void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
@@ -204,6 +229,7 @@ int run(const RunArguments& arguments) {
     if ((scene.pictures || scene.vtk) && ending.status != RunStatus::interrupted && start.ok()) {
         draw(scene, directory, quiet);
     }
+    record_work(directory.path() / "work.json");
     return exit_status(ending.status);
 }
 

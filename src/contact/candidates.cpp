@@ -2,6 +2,7 @@
 #include "contact/near_pairs.hpp"
 
 #include <isostat/contact/candidates.hpp>
+#include <isostat/core/work.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -70,6 +71,7 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing) 
 
 template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction) {
     assert(fraction > 0 && fraction <= 0.82);
+    count_work(Work::candidate_searches);
     CandidateList<Dim> list;
     list.reach = fraction * packing.min_radius();
     list.reference = packing.q;
@@ -88,6 +90,7 @@ template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packin
 
 template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing, double allowance) {
     assert(allowance >= 0);
+    count_work(Work::overlap_proofs);
     Admissibility result;
     result.worst_gap = std::numeric_limits<double>::infinity();
     result.verdict = Verdict::proved;

@@ -1,11 +1,12 @@
+#include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/genericity.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <random>
 #include <string>
 
@@ -31,23 +32,67 @@ void check(const Packing<2>& packing, const GenericityOptions& options) {
             "a positive number");
 }
 
-/// Contacts that carry a force of the walls' load: those not structurally zero (statement T11).
-std::vector<Contact> carriers(const State<2>& state) {
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    if (!structure.ok()) {
-        return {};
-    }
-    const auto& matrix = structure.value().matrix();
-    const int n = state.packing.disk_count();
-    const std::array<int, 2> walls{2 * n, 2 * n + 1};
-    const auto nonzero = sparse::structural_nonzeros(matrix.start, matrix.row, structure.value().ordering(), walls);
-    std::vector<Contact> out;
-    for (std::size_t l = 0; l < nonzero.size(); ++l) {
-        if (nonzero[l] != 0) {
-            out.push_back(structure.value().contacts()[l]);
+std::vector<double> perturbed(const std::vector<double>& radius, const GenericityOptions& options, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::map<double, double> factor_of; // of a class of equal radii
+    std::vector<double> out;
+    for (const double r : radius) {
+        const auto known = factor_of.find(r);
+        double factor = known == factor_of.end() ? 0 : known->second;
+        if (known == factor_of.end() || !options.keep_equal) {
+            factor = 1 + options.size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+            factor_of[r] = factor;
         }
+        out.push_back(r * factor);
     }
     return out;
+}
+
+/// The claims of the certificate in figures; the reason when one that makes an isostatic equilibrium is missing.
+void fill(GenericitySample& sample, const State<2>& state, const Certification& certified) {
+    const CertificateClaims& claims = certified.claims;
+    if (!claims.counting || !claims.vertex || !claims.forces || !claims.gaps || !claims.stable ||
+        claims.counting->hyperstaticity != 0 || claims.counting->hypostaticity != 0) {
+        std::string why = "no certificate";
+        for (const std::string& reason : claims.undecided) {
+            why += (why == "no certificate" ? ": " : "; ") + reason;
+        }
+        // find_vertex speaks of the stored coordinates; the true vertex may have a force of the other sign.
+        sample.failure =
+            Failure{certified.verdict == Verdict::refuted ? FailureKind::not_converged : FailureKind::undecided, why};
+        return;
+    }
+    sample.contacts = state.contacts;
+    std::vector<unsigned char> carries(state.packing.radius.size(), 0);
+    sample.min_force = std::numeric_limits<double>::infinity();
+    const std::vector<int>& zeros = claims.forces->structural_zeros;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        if (std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l))) {
+            continue;
+        }
+        const Contact& contact = state.contacts[l];
+        ++sample.carrying;
+        sample.min_force = std::min(sample.min_force, claims.forces->finite[l].lower);
+        carries[static_cast<std::size_t>(contact.i)] = 1;
+        if (contact.kind == ContactKind::disk_disk) {
+            carries[static_cast<std::size_t>(contact.j)] = 1;
+        }
+    }
+    sample.rattlers = static_cast<int>(std::count(carries.begin(), carries.end(), 0));
+    sample.min_gap = claims.gaps->smallest;
+    sample.sigma_min = certified.smallest_sigma;
+    sample.rung = std::max({claims.vertex->rung, claims.forces->rung, claims.gaps->rung});
+}
+
+bool within(const GenericitySample& sample, const State<2>& state, const std::vector<int>& zeros,
+            const std::vector<Contact>& original) {
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        if (!std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l)) &&
+            !std::binary_search(original.begin(), original.end(), state.contacts[l])) {
+            return false;
+        }
+    }
+    return !sample.failure;
 }
 
 } // namespace
@@ -59,35 +104,31 @@ Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& ori
     std::vector<Contact> sorted = original;
     std::sort(sorted.begin(), sorted.end());
     for (int s = 0; s < options.samples; ++s) {
-        GenericitySample sample;
+        GenericitySample& sample = out.samples.emplace_back();
         sample.seed = options.seed + static_cast<std::uint64_t>(s);
-        std::mt19937_64 random(sample.seed);
         Packing<2> start = packing;
-        for (double& r : start.radius) {
-            const double u = static_cast<double>(random() >> 11) * 0x1p-52 - 1;
-            r *= 1 + options.size * u;
-        }
+        start.radius = perturbed(packing.radius, options, sample.seed);
         PreparationOptions preparation;
         preparation.seed = sample.seed;
         preparation.stress = options.stress;
         PreparationReport<2> report;
-        const auto state = find_vertex<2>(start, preparation, report);
-        if (!state.ok()) {
-            sample.failure = state.failure();
-            out.samples.push_back(std::move(sample));
+        const auto found = find_vertex<2>(start, preparation, report);
+        if (found.ok() || report.candidate) {
+            const State<2>& state = found.ok() ? found.value() : *report.candidate;
+            const Certification certified = certify(state);
+            fill(sample, state, certified);
+            if (!sample.failure) {
+                sample.within_original = within(sample, state, certified.claims.forces->structural_zeros, sorted);
+            }
+        } else {
+            sample.failure = found.failure();
+        }
+        if (sample.failure) {
+            ++(sample.failure->kind == FailureKind::tie         ? out.ties
+               : sample.failure->kind == FailureKind::undecided ? out.undecided
+                                                                : out.failed);
             continue;
         }
-        sample.contacts = state.value().contacts;
-        std::sort(sample.contacts.begin(), sample.contacts.end());
-        const std::vector<Contact> carrying = carriers(state.value());
-        sample.carrying = static_cast<int>(carrying.size());
-        sample.rattlers = report.rattlers;
-        sample.min_force = report.min_force;
-        sample.min_gap = report.min_gap;
-        sample.sigma_min_bound = report.sigma_min_bound;
-        sample.within_original = std::all_of(carrying.begin(), carrying.end(), [&](const Contact& contact) {
-            return std::binary_search(sorted.begin(), sorted.end(), contact);
-        });
         ++out.proved;
         const auto known = std::find_if(out.lists.begin(), out.lists.end(),
                                         [&](const ContactListCount& list) { return list.contacts == sample.contacts; });
@@ -96,7 +137,6 @@ Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& ori
         } else {
             ++known->samples;
         }
-        out.samples.push_back(std::move(sample));
     }
     std::stable_sort(out.lists.begin(), out.lists.end(),
                      [](const ContactListCount& a, const ContactListCount& b) { return a.samples > b.samples; });

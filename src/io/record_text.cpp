@@ -25,6 +25,27 @@ std::string two_columns(const Contact& contact) {
     return fmt::format("{},{}", contact.i, none);
 }
 
+Json certificate_json(const ArcCertificate& certificate) {
+    const bool proved = certificate.verdict == Verdict::proved;
+    Json object;
+    object["verdict"] = to_string(certificate.verdict);
+    object["pieces"] = certificate.pieces;
+    object["centres"] = certificate.factorisations;
+    object["moving"] = certificate.moving;
+    if (!proved) {
+        object["reason"] = certificate.reason;
+        return object;
+    }
+    object["turning"] = certificate.turning;
+    object["tube"] = json::or_null(certificate.tube);
+    object["tube_margin"] = json::or_null(certificate.tube_margin);
+    object["gap_margin"] = json::or_null(certificate.gap_margin);
+    object["power"] = to_string(certificate.power);
+    object["power_open_start"] = certificate.power_open_start;
+    object["power_open_end"] = certificate.power_open_end;
+    return object;
+}
+
 } // namespace
 
 std::string event_line(const ArcRecord<2>& arc) {
@@ -45,6 +66,9 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["steps"] = arc.steps;
     line["margin"] = json::or_null(arc.margin);
     line["decided_by"] = to_string(arc.decided_by);
+    if (arc.certificate) {
+        line["certificate"] = certificate_json(*arc.certificate);
+    }
     return line.dump() + "\n";
 }
 
@@ -89,6 +113,7 @@ const std::vector<std::string>& equilibria_columns() {
                                                   "margin",
                                                   "decided_by",
                                                   "proved",
+                                                  "certified",
                                                   "seconds"};
     return columns;
 }
@@ -112,8 +137,9 @@ std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& 
                        record.min_gap, two_columns(record.min_gap_contact));
     row += fmt::format(",{},{},{},{},{}", record.force_bound, record.sigma_min_bound, record.balance,
                        record.virtual_power, record.gap_residual);
-    row += fmt::format(",{},{},{},{:.3f}\n", record.margin, static_cast<int>(record.decided_by),
-                       record.verdict == Verdict::proved ? 1 : 0, record.seconds);
+    const int certified = !record.certified ? -1 : *record.certified == Verdict::proved ? 1 : 0;
+    row += fmt::format(",{},{},{},{},{:.3f}\n", record.margin, static_cast<int>(record.decided_by),
+                       record.verdict == Verdict::proved ? 1 : 0, certified, record.seconds);
     return row;
 }
 
@@ -138,12 +164,36 @@ Json tally_json(const Tally& tally) {
     return object;
 }
 
+Json state_tally_json(const StateTally& tally) {
+    Json object;
+    object["proved"] = tally.proved;
+    object["refuted"] = tally.refuted;
+    object["undecided"] = tally.undecided;
+    object["seconds"] = tally.seconds;
+    return object;
+}
+
+Json arc_tally_json(const ArcTally& tally) {
+    Json object;
+    object["certified"] = tally.certified;
+    object["undecided"] = tally.undecided;
+    object["power_undecided"] = tally.power_undecided;
+    object["pieces"] = tally.pieces;
+    object["centres"] = tally.factorisations;
+    object["tube_margin"] = tally.tube_margin;
+    object["gap_margin"] = tally.gap_margin;
+    object["seconds"] = tally.seconds;
+    return object;
+}
+
 Json counters_json(const RunCounters& counters) {
     Json object;
     object["arcs"] = counters.steps;
     object["equilibria"] = counters.equilibria;
     object["seconds"] = counters.seconds;
     object["decisions"] = tally_json(counters.tally);
+    object["certified_states"] = state_tally_json(counters.states);
+    object["certified_arcs"] = arc_tally_json(counters.arcs);
     return object;
 }
 
@@ -170,6 +220,20 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.structural_ties = tally.at("ties").at("structural").integer();
     counters.tally.ties = tally.at("ties").at("other").integer();
     counters.tally.smallest_margin = tally.at("smallest_margin").number();
+    const json::Field states = field.at("certified_states");
+    counters.states.proved = states.at("proved").integer();
+    counters.states.refuted = states.at("refuted").integer();
+    counters.states.undecided = states.at("undecided").integer();
+    counters.states.seconds = states.at("seconds").number();
+    const json::Field arcs = field.at("certified_arcs");
+    counters.arcs.certified = arcs.at("certified").integer();
+    counters.arcs.undecided = arcs.at("undecided").integer();
+    counters.arcs.power_undecided = arcs.at("power_undecided").integer();
+    counters.arcs.pieces = arcs.at("pieces").integer();
+    counters.arcs.factorisations = arcs.at("centres").integer();
+    counters.arcs.tube_margin = arcs.at("tube_margin").number();
+    counters.arcs.gap_margin = arcs.at("gap_margin").number();
+    counters.arcs.seconds = arcs.at("seconds").number();
     return counters;
 }
 

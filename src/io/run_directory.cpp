@@ -3,6 +3,8 @@
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/work.hpp>
+#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
@@ -21,11 +23,37 @@ using json::Json;
 namespace fs = std::filesystem;
 
 /// Everything that a run may leave in its folder, figures apart.
-constexpr std::array<const char*, 6> run_files{"run.json",        "events.jsonl", "equilibria.csv",
-                                               "checkpoint.json", "summary.json", "start.json"};
+constexpr std::array<const char*, 7> run_files{"run.json",     "events.jsonl", "equilibria.csv", "checkpoint.json",
+                                               "summary.json", "start.json",   "work.json"};
 
 fs::path state_path(const fs::path& directory, int equilibrium) {
     return directory / "states" / fmt::format("eq_{:06}.json", equilibrium);
+}
+
+/// Digest of a list of records: each line together with the digest of those before it.
+std::string chained(const std::string& before, const std::string& line) {
+    return sha256(before + line);
+}
+std::string chained_lines(const std::string& lines) {
+    std::string digest;
+    for (std::size_t begin = 0; begin < lines.size();) {
+        const std::size_t end = std::min(lines.find('\n', begin), lines.size() - 1) + 1;
+        digest = chained(digest, lines.substr(begin, end - begin));
+        begin = end;
+    }
+    return digest;
+}
+
+/// What stands between a checkpoint and its own digest.
+constexpr const char* before_digest = ",\n\"digest\": ";
+
+void check_digest(const fs::path& path, const std::string& found, const std::string& expected) {
+    if (found != expected) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: damaged: its digest is {}, expected {} as at the checkpoint: nothing was changed; "
+                                "restore the file, or start again with --force",
+                                path.string(), found, expected));
+    }
 }
 
 std::string header_text(const RunHeader& header, const std::string& status) {
@@ -82,6 +110,7 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
         }
         fs::remove_all(directory_ / "states");
         fs::remove_all(directory_ / "figures");
+        fs::remove_all(directory_ / "certificates");
     }
     make_directory(directory_ / "states");
     fs::remove(directory_ / "summary.json"); // of the interrupted run: it must not look like that of this one
@@ -91,6 +120,7 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
     files_->equilibria = Descriptor::open(directory_ / "equilibria.csv", flags);
     if (!checkpoint_) {
         files_->equilibria.write(equilibria_header());
+        equilibria_digest_ = chained("", equilibria_header());
     }
     Json provenance;
     provenance["program"] = header_.program;
@@ -124,8 +154,11 @@ void RunDirectory::open_for_resume() {
     if (!fs::exists(path)) {
         return;
     }
-    const Json text = Field::parse(read_text(path), path.string());
+    const std::string whole = read_text(path);
+    const Json text = Field::parse(whole, path.string());
     const Field file(text, path.string());
+    const std::size_t body = whole.rfind(before_digest);
+    check_digest(path, sha256(whole.substr(0, body)), file.at("digest").string());
     if (file.at("format").string() != "isostat-checkpoint") {
         file.at("format").fail("\"isostat-checkpoint\"");
     }
@@ -139,14 +172,29 @@ void RunDirectory::open_for_resume() {
     segment_ = point.segment;
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);
+    for (const auto& [name, digest] : file.at("files").value().items()) {
+        check_digest(directory_ / name, sha256(read_text(directory_ / name)), digest.get<std::string>());
+        digests_[name] = digest.get<std::string>();
+    }
+    // Everything is checked before anything is cut.
+    std::vector<std::pair<Descriptor, long>> cut;
     for (const char* name : {"events.jsonl", "equilibria.csv"}) {
+        const fs::path records = directory_ / name;
         const long bytes = file.at("bytes").at(name).integer();
-        Descriptor records = Descriptor::open(directory_ / name, O_WRONLY);
-        if (records.size() < bytes) {
+        cut.emplace_back(Descriptor::open(records, O_WRONLY), bytes);
+        if (cut.back().first.size() < bytes) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint",
-                                    (directory_ / name).string(), records.size(), bytes));
+                        fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint: nothing was "
+                                    "changed; restore the file, or start again with --force",
+                                    records.string(), cut.back().first.size(), bytes));
         }
+        const std::string lines =
+            bytes > 0 ? read_text(records).substr(0, static_cast<std::size_t>(bytes)) : std::string();
+        std::string& digest = std::string_view(name) == "events.jsonl" ? events_digest_ : equilibria_digest_;
+        digest = chained_lines(lines);
+        check_digest(records, digest, file.at("digests").at(name).string());
+    }
+    for (auto& [records, bytes] : cut) {
         records.truncate(bytes);
     }
 }
@@ -159,8 +207,13 @@ std::optional<State<2>> RunDirectory::start() const {
     return read_state<2>(path).state;
 }
 
+void RunDirectory::keep_digest(const std::string& name) {
+    digests_[name] = sha256(read_text(directory_ / name));
+}
+
 void RunDirectory::store_start(const State<2>& state) {
     write_state<2>(directory_ / "start.json", state);
+    keep_digest("start.json");
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {
@@ -175,13 +228,17 @@ void RunDirectory::begin_segment(int number, const Segment& goal, int made, int 
 }
 
 void RunDirectory::on_arc(const ArcRecord<2>& arc) {
-    files_->events.write(event_line(arc));
+    const std::string line = event_line(arc);
+    files_->events.write(line);
+    events_digest_ = chained(events_digest_, line);
 }
 
 void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
-    files_->equilibria.write(equilibrium_row(record, state, first ? -1 : previous_));
+    const std::string row = equilibrium_row(record, state, first ? -1 : previous_);
+    files_->equilibria.write(row);
+    equilibria_digest_ = chained(equilibria_digest_, row);
     previous_ = record.number;
     made_ += first ? 0 : 1;
     last_ = state;
@@ -191,12 +248,21 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
     const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
     if (first || every || kept || segment_done()) {
-        write_state<2>(state_path(directory_, record.number), last_, last_forces_);
+        const fs::path path = state_path(directory_, record.number);
+        write_state<2>(path, last_, last_forces_);
+        keep_digest(fs::relative(path, directory_).string());
     }
     if (first) {
         return; // the start is made again from start.json: run_segment reports number 0 itself
     }
-    pending_ = Point{segment_, made_, segment_done(), counters_, files_->events.size(), files_->equilibria.size()};
+    pending_ = Point{segment_,
+                     made_,
+                     segment_done(),
+                     counters_,
+                     files_->events.size(),
+                     files_->equilibria.size(),
+                     events_digest_,
+                     equilibria_digest_};
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> interval(header_.checkpoint_seconds);
     if (pending_->segment_done || !last_checkpoint_ || now - *last_checkpoint_ >= interval) {
@@ -214,6 +280,7 @@ void RunDirectory::write_checkpoint() {
     if (!pending_) {
         return;
     }
+    count_work(Work::checkpoints);
     files_->events.sync();
     files_->equilibria.sync();
     Json object;
@@ -224,10 +291,12 @@ void RunDirectory::write_checkpoint() {
     object["segment_done"] = pending_->segment_done;
     object["counters"] = counters_json(pending_->counters);
     object["bytes"] = {{"events.jsonl", pending_->events_bytes}, {"equilibria.csv", pending_->equilibria_bytes}};
+    object["digests"] = {{"events.jsonl", pending_->events_digest}, {"equilibria.csv", pending_->equilibria_digest}};
+    object["files"] = digests_;
     std::string text = object.dump();
     text.pop_back();
-    write_atomically(directory_ / "checkpoint.json",
-                     text + ",\n\"state\": " + state_text<2>(last_, last_forces_) + "}\n");
+    text += ",\n\"state\": " + state_text<2>(last_, last_forces_);
+    write_atomically(directory_ / "checkpoint.json", text + before_digest + '"' + sha256(text) + "\"}\n");
     pending_.reset();
 }
 

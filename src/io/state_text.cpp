@@ -2,6 +2,7 @@
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/work.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -129,6 +130,7 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
 
 template <int Dim>
 void write_state(const std::filesystem::path& path, const State<Dim>& state, std::span<const double> forces) {
+    count_work(Work::states_written);
     write_atomically(path, state_text(state, forces));
 }
 

@@ -1,3 +1,4 @@
+#include <isostat/core/work.hpp>
 #include <isostat/linear/factorisation.hpp>
 
 #include <klu.h>
@@ -25,6 +26,7 @@ Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
     : implementation_(std::make_unique<Implementation>()) {
     Implementation& self = *implementation_;
     const sparse::Matrix<double>& matrix = structure.matrix();
+    count_work(Work::factorisations);
     klu_defaults(&self.common);
     // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
     self.common.scale = 0;

@@ -1,3 +1,4 @@
+#include "preparation/pivots.hpp"
 #include "preparation/polish.hpp"
 #include "preparation/programme.hpp"
 #include "preparation/random.hpp"
@@ -110,8 +111,18 @@ template <int Dim> class VertexSearch {
             // Not yet: the next programme sees the normals and the lengths of the point reached, unless it has nothing
             // new to see.
             if (step.pivots == 0 && step.largest <= converged_below * scale_.mean_radius()) {
+                // Clp sees neither forces nor gaps below its tolerances, nor that eps is infinitesimal.
+                auto pivoted = finish(step.contacts);
+                if (pivoted.ok()) {
+                    return succeed(std::move(pivoted.value()));
+                }
+                if (report_.candidate || pivoted.failure().kind == FailureKind::tie ||
+                    pivoted.failure().kind == FailureKind::interrupted) {
+                    return give_up(pivoted.failure());
+                }
                 if (divided || polished.failure().kind != FailureKind::not_converged) {
-                    return give_up(polished.failure());
+                    return give_up({polished.failure().kind, fmt::format("{}; then: {}", polished.failure().message,
+                                                                         pivoted.failure().message)});
                 }
                 weight /= weight_divisor;
                 divided = true;
@@ -121,6 +132,18 @@ template <int Dim> class VertexSearch {
     }
 
   private:
+    Result<Polished<Dim>> finish(const std::vector<Contact>& contacts) {
+        const Stopwatch watch;
+        PivotLimits limits;
+        limits.step = attempt_below * scale_.mean_radius() * scale_.unit();
+        limits.stop = options_.stop;
+        auto pivoted = pivot_to_vertex(scale_.to_user(packing_, radius_), contacts, load_, limits, newton_.iterations,
+                                       report_.candidate);
+        newton_.seconds += watch.seconds();
+        newton_.cpu_seconds += watch.cpu_seconds();
+        return pivoted;
+    }
+
     std::optional<Failure> judge(const ProgrammeStep& step, const ContactProgramme<Dim>& programme) {
         switch (step.outcome) {
         case ProgrammeStep::Outcome::optimal: return std::nullopt;
@@ -197,6 +220,7 @@ template <int Dim> class VertexSearch {
         report_.min_gap = vertex.min_gap;
         report_.sigma_min_bound = vertex.sigma_min_bound;
         report_.last.reset();
+        report_.candidate.reset();
         return std::move(vertex.state);
     }
 

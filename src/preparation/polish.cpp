@@ -16,8 +16,6 @@ namespace isostat::preparation {
 namespace {
 
 constexpr int max_newton = 30;
-/// Candidates beside the contacts; T6 allows up to 0.82.
-constexpr double candidate_fraction = 0.5;
 
 template <int Dim> double largest_gap(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     double largest = 0;
@@ -46,7 +44,8 @@ template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, con
     return std::nullopt;
 }
 
-/// Newton until the largest gap is at the grid or stops decreasing.
+} // namespace
+
 template <int Dim>
 std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>& contacts, long& iterations) {
     double before = largest_gap(packing, contacts);
@@ -74,6 +73,8 @@ std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>&
     return Failure{FailureKind::not_converged,
                    fmt::format("Newton on the gaps: still {:.3g} after {} steps", before, max_newton)};
 }
+
+namespace {
 
 /// Every candidate beside the contacts has a positive gap at the true vertex: proved, or named.
 template <int Dim>
@@ -208,6 +209,7 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
     return result;
 }
 
+template std::optional<Failure> newton<2>(Packing<2>&, const std::vector<Contact>&, long&);
 template Result<Polished<2>> polish<2>(Packing<2>, std::vector<Contact>, Load<2>, long&);
 
 } // namespace isostat::preparation

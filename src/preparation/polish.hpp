@@ -5,10 +5,19 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace isostat::preparation {
+
+/// Candidates beside the contacts, gap / smallest radius; T6 allows up to 0.82.
+inline constexpr double candidate_fraction = 0.5;
+
+/// Newton on the gaps of `contacts`, each step through a structure that was proved regular, until the largest gap is at
+/// the grid or stops decreasing. Failures: `not_isostatic`, `not_converged`.
+template <int Dim>
+std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>& contacts, long& iterations);
 
 /// The vertex and the figures of its proof.
 template <int Dim> struct Polished {
@@ -30,6 +39,7 @@ template <int Dim> struct Polished {
 template <int Dim>
 Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts, Load<Dim> load, long& iterations);
 
+extern template std::optional<Failure> newton<2>(Packing<2>&, const std::vector<Contact>&, long&);
 extern template Result<Polished<2>> polish<2>(Packing<2>, std::vector<Contact>, Load<2>, long&);
 
 } // namespace isostat::preparation

@@ -2,6 +2,8 @@
 
 #include "preparation/neighbours.hpp"
 
+#include <isostat/core/work.hpp>
+
 #include <ClpEventHandler.hpp>
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
@@ -172,6 +174,7 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
             simplex.setColumnStatus(k, static_cast<ClpSimplex::Status>(column_status_[static_cast<std::size_t>(k)]));
         }
     }
+    count_work(Work::linear_programmes);
     if (primal) {
         simplex.primal(1); // 1: start from the values given, not only from the basis
     } else {

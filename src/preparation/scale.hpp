@@ -20,7 +20,8 @@ class Scale {
         mean_ = std::frexp(sum / static_cast<double>(radius.size()), &exponent_);
     }
 
-    [[nodiscard]] double mean_radius() const { return mean_; } ///< internal unit
+    [[nodiscard]] double mean_radius() const { return mean_; }               ///< internal unit
+    [[nodiscard]] double unit() const { return std::ldexp(1.0, exponent_); } ///< in the user's
 
     template <int Dim> [[nodiscard]] Packing<Dim> to_internal(Packing<Dim> packing) const {
         multiply(packing.radius, -exponent_);

@@ -1,5 +1,7 @@
 #include "preparation/soft.hpp"
 
+#include <isostat/core/work.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -177,6 +179,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::separate(double overlap, long
     result.converged = overlap_ <= limit;
     result.interrupted = stopped();
     result.steps = step;
+    count_work(Work::dynamics_steps, step);
     return result;
 }
 
@@ -219,6 +222,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
     result.converged = reached;
     result.interrupted = stopped();
     result.steps = step;
+    count_work(Work::dynamics_steps, step);
     return result;
 }
 
@@ -289,6 +293,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
     }
     result.interrupted = stopped();
     result.steps = step;
+    count_work(Work::dynamics_steps, step);
     return result;
 }
 

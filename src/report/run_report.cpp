@@ -4,6 +4,7 @@
 #include "report/tables.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/work.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
@@ -47,9 +48,11 @@ class Writer {
             fmt::format("equilibrium {}, {} disks, \u03c3\u2082/\u03c3\u2081 = {:.6g}", state.equilibrium,
                         state.packing.disk_count(), state.load.stress[loaded] / state.load.stress[1 - loaded]);
         if (options_.pictures) {
+            count_work(Work::pictures);
             write(name + ".svg", force_picture(state, file.forces, caption));
         }
         if (options_.vtk) {
+            count_work(Work::vtk_files);
             write(name + ".vtk",
                   vtk_text(state, file.forces, fmt::format("isostat: equilibrium {}", state.equilibrium)));
         }
@@ -60,6 +63,7 @@ class Writer {
         if (!options_.charts) {
             return;
         }
+        count_work(Work::charts);
         const std::string trouble = run_gnuplot(output_, chart.name + ".gp");
         if (!trouble.empty()) {
             note(trouble);

@@ -26,33 +26,50 @@ const EquilibriumRow* find(const Index& index, int number) {
 
 } // namespace
 
-Increments stress_increments(const std::vector<EquilibriumRow>& rows) {
+std::vector<Rearrangement> rearrangements(const std::vector<EquilibriumRow>& rows) {
     const Index index = by_number(rows);
-    Increments increments;
+    std::vector<Rearrangement> list;
     for (const EquilibriumRow& row : rows) {
         const EquilibriumRow* before = find(index, row.previous);
-        if (before == nullptr || before->segment != row.segment || before->arcs == 0 || row.arcs == 0 ||
-            row.ratio == before->ratio) {
+        if (before == nullptr || row.arcs == 0) {
             continue;
         }
-        (row.ratio > before->ratio ? increments.loading : increments.unloading)
-            .push_back(std::abs(row.ratio - before->ratio));
+        Rearrangement& one = list.emplace_back();
+        one.segment = row.segment;
+        one.number = row.number;
+        one.direction = row.ratio > before->ratio ? 1 : -1;
+        one.ratio = row.ratio;
+        one.arcs = row.arcs;
+        if (before->segment == row.segment && before->arcs != 0 && row.ratio != before->ratio) {
+            one.stress_increment = std::abs(row.ratio - before->ratio);
+        }
+        if (row.strain2 != before->strain2) {
+            one.strain_increment = std::abs(row.strain2 - before->strain2);
+        }
+    }
+    return list;
+}
+
+namespace {
+
+Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> Rearrangement::*which) {
+    Increments increments;
+    for (const Rearrangement& one : rearrangements(rows)) {
+        if (const auto& value = one.*which) {
+            (one.direction > 0 ? increments.loading : increments.unloading).push_back(*value);
+        }
     }
     return increments;
 }
 
+} // namespace
+
+Increments stress_increments(const std::vector<EquilibriumRow>& rows) {
+    return collect(rows, &Rearrangement::stress_increment);
+}
+
 Increments strain_increments(const std::vector<EquilibriumRow>& rows) {
-    const Index index = by_number(rows);
-    Increments increments;
-    for (const EquilibriumRow& row : rows) {
-        const EquilibriumRow* before = find(index, row.previous);
-        if (before == nullptr || row.arcs == 0 || row.strain2 == before->strain2) {
-            continue; // nothing moved, or only rattlers did
-        }
-        (row.ratio > before->ratio ? increments.loading : increments.unloading)
-            .push_back(std::abs(row.strain2 - before->strain2));
-    }
-    return increments;
+    return collect(rows, &Rearrangement::strain_increment);
 }
 
 std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values) {

@@ -1,3 +1,4 @@
+#include <isostat/core/work.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
@@ -138,6 +139,7 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
                        fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
                                    dof_count, ordering->structural_rank())};
     }
+    count_work(Work::rank_proofs);
     // Full rank over any prime field is a proof; the small field is tried first because it costs half.
     int rank = exact::rank(
         reduced_contact_matrix(packing, *structure.dofs_, contacts, exact::mersenne31, exact::residue31), *ordering);

@@ -55,6 +55,20 @@ void add_solvers(Plan& plan, const Scene& scene) {
                        : "true stresses on a box that changes shape have no potential");
     plan.add("solver", "random choice of the contact that opens", runs && random,
              random ? "rule = \"random\"" : "the rule is deterministic: rule_seed is not used");
+    const CertifyLevel level = scene.run.certify;
+    const auto asked = [&](CertifyLevel least) {
+        return runs && level >= least ? fmt::format("certify = \"{}\"", to_string(level))
+               : runs                 ? fmt::format("certify = \"{}\": not asked for", to_string(level))
+                                      : std::string("no trajectory");
+    };
+    plan.add("proof", "decisions", runs,
+             "every comparison that steers has a bound on both sides; its cost is that of the run");
+    plan.add("proof", "states", runs && level >= CertifyLevel::states,
+             asked(CertifyLevel::states) +
+                 "; the certificate of each equilibrium in certificates/; about 10 factorisations each");
+    plan.add("proof", "arcs", runs && level >= CertifyLevel::arcs,
+             asked(CertifyLevel::arcs) + "; each arc enclosed between its events, no contact missed; about 10 "
+                                         "factorisations per arc, more for long ones");
     plan.add("solver", "multiprecision (MPFR)", false,
              "a sign that double-double leaves open ends the run as undecided");
     plan.add("solver", "fixed disks, external forces on disks", false,
@@ -75,6 +89,11 @@ void add_outputs(Plan& plan, const Scene& scene) {
                                      : fmt::format("; those that segments start from: {}", fmt::join(needed, ", ")),
                                  scene.states_every > 0 ? fmt::format("; every {}", scene.states_every) : "",
                                  "; the last one as last.json"));
+    plan.add("output", "certificates/eq_*.json", runs && scene.run.certify >= CertifyLevel::states,
+             !runs ? none
+             : scene.run.certify >= CertifyLevel::states
+                 ? fmt::format("certify = \"{}\"; `isostat verify` checks them", to_string(scene.run.certify))
+                 : "certify = \"decisions\"");
     plan.add("output", "figures/*.svg, *.png (gnuplot), force pictures", runs && scene.pictures,
              !runs            ? none
              : scene.pictures ? "pictures = true"

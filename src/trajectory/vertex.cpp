@@ -106,21 +106,6 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(co
     return gaps;
 }
 
-template <int Dim> bool Vertex<Dim>::renew(const Load<Dim>& load) {
-    InverseBoundCache nothing;
-    const InverseBound bound = bound_inverse(structure, factorisation, nothing);
-    if (bound.verdict != Verdict::proved) {
-        return false; // it was proved before: everything stays as it was
-    }
-    inverse = bound;
-    enclosure = enclose_vertex(packing, structure, inverse);
-    if (enclosure.verdict != Verdict::proved) {
-        enclosure = enclose_vertex_double_double(packing, structure, factorisation, inverse);
-    }
-    statics = Statics<Dim>(packing, load, structure, factorisation, inverse, {}, &enclosure);
-    return true;
-}
-
 template class Vertex<2>;
 
 } // namespace isostat

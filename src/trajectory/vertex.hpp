@@ -44,10 +44,6 @@ template <int Dim> class Vertex {
     /// reached.
     Result<Gaps> check_gaps(const CandidateList<Dim>& candidates);
 
-    /// Makes bounds, enclosure and statics anew with a cache that remembers nothing: what is recorded from here on does
-    /// not depend on how the vertex was reached, so a resumed run repeats it. False: the bound was not found again.
-    bool renew(const Load<Dim>& load);
-
   private:
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);
 };

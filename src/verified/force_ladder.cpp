@@ -6,6 +6,7 @@
 #include "verified/refinement.hpp"
 #include "verified/vertex_bounds.hpp"
 
+#include <isostat/core/work.hpp>
 #include <isostat/verified/force_ladder.hpp>
 
 #include <algorithm>
@@ -204,6 +205,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::extend() {
         place = here;
     }
     extended = extended_contact_matrix(*packing, *structure, at.correction);
+    count_work(Work::double_double);
     rung = Rung::double_double;
     bits = 106;
     return true;
@@ -234,6 +236,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::refine(int next) {
     }
     system.emplace(*structure, vertex != nullptr ? refined_vertex->coordinate : stored, *factorisation, sigma,
                    uncertainty, next);
+    count_work(Work::multiprecision);
     rung = Rung::multiprecision;
     bits = next;
     return true;
@@ -434,6 +437,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
             return false;
         }
     }
+    count_work(Work::exact_solutions);
     exact.emplace(*packing, *structure);
     if (!exact->regular()) {
         exact.reset();

@@ -1,5 +1,6 @@
 #include "verified/extended_cholesky.hpp"
 
+#include <isostat/core/work.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
 #include <cholmod.h>
@@ -212,6 +213,7 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
         }
         iterations = 8;
     }
+    count_work(Work::inverse_bounds);
     const double entry_error = rounding_of_entries(h);
     const double estimated = estimate(factorisation, cache.vector, iterations);
     double shift = 0.5 * estimated;

@@ -65,7 +65,8 @@ class Vertex {
             }
         }
         for (const Contact& contact : state.contacts) {
-            BOOST_REQUIRE(abs(gap(contact)) < Real("1e-80"));
+            BOOST_REQUIRE(abs(gap(contact)) <
+                          Real("1e-80") * state.packing.radius[static_cast<std::size_t>(contact.i)]);
         }
     }
 
@@ -116,12 +117,13 @@ class Vertex {
     /// than rounding to 80 digits.
     [[nodiscard]] std::pair<int, Real> limit(int direction) const {
         const Real sigma(state_.load.stress[static_cast<std::size_t>(state_.load.loaded_axis)]);
+        const Real change = abs(Real(state_.load.stress[0])) + abs(Real(state_.load.stress[1]));
         const Vector f = forces();
-        const Vector g = forces(sigma + 1);
+        const Vector g = forces(sigma + change);
         int first = -1;
         Real nearest = 0;
         for (std::size_t l = 0; l < f.size(); ++l) {
-            const Real rate = direction * (g[l] - f[l]);
+            const Real rate = direction * (g[l] - f[l]) / change;
             if (rate < -Real("1e-70") && (first < 0 || f[l] / -rate < nearest)) {
                 nearest = f[l] / -rate;
                 first = static_cast<int>(l);

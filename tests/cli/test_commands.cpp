@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
-    for (const char* name : {"prepare", "run", "inspect", "plan", "report", "convert"}) {
+    for (const char* name : {"prepare", "run", "ensemble", "inspect", "certify", "verify", "plateau", "genericity",
+                             "plan", "report", "convert"}) {
         const Outcome outcome = run({name, "--help"});
         expect(outcome, 0);
         BOOST_TEST(contains(outcome.out, "isostat " + std::string(name) + " "), name);

@@ -1,63 +1,15 @@
 // Kill, Ctrl-C and --resume.
+#include "cli/background.hpp"
 #include "cli/program.hpp"
 
 #include <isostat/io/run_directory.hpp>
 
-#include <fcntl.h>
-#include <spawn.h>
-
 #include <array>
-#include <chrono>
-#include <csignal>
-#include <thread>
-
-extern char** environ; // NOLINT(readability-redundant-declaration)
 
 using namespace program;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A program that runs by itself.
-class Background {
-  public:
-    explicit Background(std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), ISOSTAT_PROGRAM);
-        std::vector<char*> pointers;
-        for (std::string& argument : arguments) {
-            pointers.push_back(argument.data());
-        }
-        pointers.push_back(nullptr);
-        posix_spawn_file_actions_t actions;
-        posix_spawn_file_actions_init(&actions);
-        for (const int fd : {1, 2}) {
-            posix_spawn_file_actions_addopen(&actions, fd, "/dev/null", O_WRONLY, 0);
-        }
-        BOOST_REQUIRE(::posix_spawn(&pid_, pointers[0], &actions, nullptr, pointers.data(), environ) == 0);
-        posix_spawn_file_actions_destroy(&actions);
-    }
-    /// Sends a signal as soon as the file has so many lines; false when the program ended before.
-    bool signal_at(const fs::path& file, long lines, int signal) {
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-        while (std::chrono::steady_clock::now() < deadline) {
-            const std::string text = scratch::read(file);
-            if (std::count(text.begin(), text.end(), '\n') >= lines) {
-                return ::kill(pid_, signal) == 0;
-            }
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        }
-        ::kill(pid_, SIGKILL);
-        return false;
-    }
-    int wait() {
-        int status = 0;
-        ::waitpid(pid_, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    }
-
-  private:
-    pid_t pid_ = 0;
-};
 
 /// Two segments, so that a kill can come in either; vertex400 keeps it going long enough to be hit.
 const std::string programme =

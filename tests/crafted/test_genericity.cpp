@@ -38,7 +38,7 @@ BOOST_AUTO_TEST_CASE(an_isostatic_packing_keeps_its_contacts) {
         BOOST_TEST(sample.carrying == 6);
         BOOST_TEST(sample.rattlers == 0);
         BOOST_TEST(sample.min_force > 0);
-        BOOST_TEST(sample.sigma_min_bound > 0);
+        BOOST_TEST(sample.sigma_min > 0);
     }
 }
 

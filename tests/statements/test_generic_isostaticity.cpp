@@ -176,4 +176,40 @@ BOOST_AUTO_TEST_CASE(self_stresses_of_a_lattice_do_not_balance_in_the_radii) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(first_order_gaps_separate_every_tie_of_a_lattice) {
+    // P1: with N_f independent contacts kept closed under R + eps rho, the first-order gap of each other contact is
+    // minus sum f (rho_i + rho_j), f the self-stress through it.
+    std::mt19937_64 random(17);
+    for (const ExactPacking& packing :
+         {square_lattice(3, 3, false), square_lattice(4, 2, false), triangular_lattice(3, 3),
+          square_lattice(3, 3, true), apollonian_strip(2, 30)}) {
+        const auto contacts = contacts_of(packing);
+        const auto kernel = exact::kernel(gap_derivative(packing, contacts, Radii::none));
+        BOOST_REQUIRE((kernel.exact == Verdict::proved));
+        BOOST_TEST(!kernel.basis.empty());
+        const auto gap_change = [&](const std::vector<Number>& stress, const std::vector<Number>& rho) {
+            Number sum = 0;
+            for (std::size_t l = 0; l < contacts.size(); ++l) {
+                const bool pair = contacts[l].kind == ContactKind::disk_disk;
+                Number change = rho[static_cast<std::size_t>(contacts[l].i)];
+                if (pair) {
+                    change += rho[static_cast<std::size_t>(contacts[l].j)];
+                }
+                sum -= stress[l] * change;
+            }
+            return sum;
+        };
+        std::vector<Number> rho;
+        std::vector<Number> in_proportion;
+        for (const Number& r : packing.radius) {
+            rho.emplace_back(1 + static_cast<long>(random() % 1000003));
+            in_proportion.push_back(r);
+        }
+        for (const auto& stress : kernel.basis) {
+            BOOST_TEST(!gap_change(stress, rho).is_zero());
+            BOOST_TEST(gap_change(stress, in_proportion).is_zero()); // a change of scale separates nothing
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

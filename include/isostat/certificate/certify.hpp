@@ -49,7 +49,8 @@ struct Certification {
 /// 7. stability (T8): forces positive in the lexicographic order, no mechanism, dead loads.
 /// Every sign is tried in double, then with a corrected vertex in double-double, then in MPFR; `rung` of a claim is the
 /// arithmetic that proved it. States that are not isostatic, that hold coordinates, or whose stresses are true ones
-/// (no potential: no claim of stability) get the claims that can be made. Deterministic. Cost: a rank proof, two
+/// (no potential: no claim of stability) get the claims that can be made. Lengths or
+/// loads beyond 1e-100 and 1e100: no claim. Deterministic. Cost: a rank proof, two
 /// factorisations, a candidate list and ten solves in the usual case; each climb adds some solves.
 template <int Dim> Certification certify(const State<Dim>& state, const CertifyOptions& options = {});
 

@@ -4,6 +4,7 @@
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <cstdint>
@@ -14,22 +15,31 @@ namespace isostat::crafted {
 
 struct GenericityOptions {
     int samples = 100;
-    double size = 1e-6; ///< each radius is multiplied by 1 + size * u, u uniform in [-1, 1), and rounded to double
+    /// Each radius is multiplied by 1 + size * u, u uniform in [-1, 1), and rounded to double: a dyadic number, which
+    /// is then exact.
+    double size = 1e-6;
     std::uint64_t seed =
         1; ///< sample s draws its u from a 64-bit Mersenne twister seeded with seed + s: it can be repeated alone
     double stress = 1; ///< isotropic
+    /// Disks of equal radius get the same u and stay equal: the theorem on generic radii (T7) then says nothing.
+    bool keep_equal = false;
 };
 
-/// One perturbed packing, taken downhill to its vertex by `find_vertex`.
+/// One perturbed packing, taken downhill to its vertex by `find_vertex`; everything is proved by `certify`, of the true
+/// vertex.
 struct GenericitySample {
     std::uint64_t seed = 0;
-    std::optional<Failure> failure; ///< no proved vertex, and why; the rest is then empty
-    std::vector<Contact> contacts;  ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
+    /// No proved vertex, and why; the rest is then empty. `tie`: more gaps than N_f are 0 as far as double-double
+    /// arithmetic can tell, so that h > 0 is likely, and not proved. `undecided`: some sign is beyond 100 digits or has
+    /// no bound. Others: no vertex was found.
+    std::optional<Failure> failure;
+    std::vector<Contact> contacts; ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
     int carrying = 0; ///< contacts that carry a force of the applied stress (2 (n - rattlers) + 2 when isostatic)
     int rattlers = 0;
-    double min_force = 0;       ///< smallest backbone force
-    double min_gap = 0;         ///< smallest gap of a pair that is not a contact
-    double sigma_min_bound = 0; ///< proved lower bound of the smallest singular value
+    double min_force = 0;   ///< proved lower bound of the smallest backbone force
+    double min_gap = 0;     ///< proved lower bound of the smallest gap of a pair that is not a contact
+    double sigma_min = 0;   ///< proved lower bound of the smallest singular value at the true vertex
+    Rung rung = Rung::none; ///< the highest arithmetic that a sign needed
     bool within_original =
         false; ///< every contact that carries force is one of the exact contacts of the unperturbed packing
 };
@@ -43,13 +53,16 @@ struct ContactListCount {
 struct Genericity {
     std::vector<GenericitySample> samples;
     std::vector<ContactListCount> lists;
-    int proved = 0; ///< samples with a proved isostatic vertex
+    int proved = 0;    ///< samples with a proved isostatic vertex: h = k = 0
+    int ties = 0;      ///< failures `tie`
+    int undecided = 0; ///< failures `undecided`
+    int failed = 0;    ///< the others
 };
 
 /// \p packing has two fixed lower and two movable upper walls and no fixed disk (throws `Error(bad_input)` otherwise,
 /// and for options out of range); \p original are its contacts. The samples are independent; only proved vertices
 /// count. A failure says nothing of the perturbed packing's vertex but that it was not proved. Cost: one `find_vertex`
-/// per sample.
+/// and one `certify` per sample.
 Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& original,
                       const GenericityOptions& options);
 

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -53,6 +54,8 @@ const char* to_string(RunStatus status);
 ///   `checkpoint_seconds` old, at the end of every segment and by `finish`;
 /// - summary.json: written by `finish` only.
 /// After a kill at any instant, `resume` cuts events and equilibria back to the checkpoint; the run goes on from there.
+/// The checkpoint holds digests (SHA-256) of itself, of the records before it and of the stored states: a resume that
+/// finds one changed byte, or a record missing, throws `Error(bad_input)` naming the file and changes nothing.
 /// Every failure to write throws `Error(cannot_write)`, also out of the observer's calls.
 class RunDirectory final : public RunObserver<2> {
   public:
@@ -98,6 +101,7 @@ class RunDirectory final : public RunObserver<2> {
     void write_header(const std::string& status) const;
     /// Of the last equilibrium, unless it was written already.
     void write_checkpoint();
+    void keep_digest(const std::string& name);
     /// The last equilibrium completed its segment.
     [[nodiscard]] bool segment_done() const;
     void open_for_resume();
@@ -116,13 +120,17 @@ class RunDirectory final : public RunObserver<2> {
         RunCounters counters;
         long events_bytes = 0;
         long equilibria_bytes = 0;
+        std::string events_digest;
+        std::string equilibria_digest;
     };
     std::optional<Point> pending_; ///< none: checkpoint.json is up to date
     std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
     Segment goal_;
     int segment_ = 0;
     int made_ = 0;
-    int previous_ = 0; ///< equilibrium that the next one follows
+    int previous_ = 0;                              ///< equilibrium that the next one follows
+    std::string events_digest_, equilibria_digest_; ///< of all records so far: see `chained`
+    std::map<std::string, std::string> digests_;    ///< SHA-256 of the other files that a resume reads
     State<2> last_;
     std::vector<double> last_forces_;
     EquilibriumRecord<2> last_record_;
@@ -130,8 +138,9 @@ class RunDirectory final : public RunObserver<2> {
 
 /// Names of the columns of equilibria.csv, in order. Contacts are two columns, i and j: disks from 0; j = -1 left, -2
 /// bottom, -3 right, -4 top wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double, 3 mpfr, 4 exact.
-/// `proved`: 1 or 0. An unbounded interval ends at inf or -inf. `previous` is the equilibrium that this one follows on
-/// its path (-1: the start).
+/// `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was asked for. An
+/// unbounded interval ends at inf or -inf. `previous` is the equilibrium that this one follows on its path (-1: the
+/// start).
 const std::vector<std::string>& equilibria_columns();
 
 /// One equilibrium as equilibria.csv gives it back.

@@ -79,6 +79,9 @@ template <int Dim> struct PreparationReport {
     double min_force = 0;                 ///< smallest backbone force
     double min_gap = 0;                   ///< smallest gap of a pair that is not a contact
     double sigma_min_bound = 0;           ///< proved lower bound of the smallest singular value of H
+    /// After the failure `undecided` of `find_vertex`: contacts and configuration that are a vertex as far as rounded
+    /// numbers say, and that could not be proved to be one in double-double. Proves nothing; `certify` may.
+    std::optional<State<Dim>> candidate;
     std::optional<Packing<Dim>> last; ///< after a failure: the last configuration (overlaps of the dynamics included)
 };
 
@@ -102,6 +105,10 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
 /// contact. Since |d + dx| >= n.(d + dx), a step never makes an overlap. The contacts are the rows with a multiplier in
 /// the basis (Clp, warm starts); once no trust bound is in the basis there are exactly N_f = 2n + 2 of them, and Newton
 /// solves gaps = 0.
+///
+/// The multipliers of Clp say nothing below its tolerances, 1e-9: when Newton or the proofs fail at a converged basis,
+/// exchanges of one contact at a time at the true vertex (gaps and forces in double-double) go on from there, so that
+/// radii perturbed by 1e-12 are told apart.
 ///
 /// \post On success: N_f contacts, sorted, from the basis; coordinates on the grid; rank proved for the stored
 /// coordinates; a true vertex within a proved distance; every other gap proved positive there; every force proved

@@ -4,10 +4,28 @@
 
 #include <isostat/io/run_directory.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace isostat {
+
+/// What led from one equilibrium to the next: a change of sigma_2 at constant structure, then a rearrangement.
+struct Rearrangement {
+    int segment = 0;
+    int number = 0;    ///< of the equilibrium reached
+    int direction = 1; ///< +1: sigma_2 increased, -1: decreased
+    double ratio = 0;  ///< sigma_2 / sigma_1 at which it happened
+    int arcs = 0;
+    /// |sigma_2' - sigma_2| / sigma_1 since the previous rearrangement of the segment (paper, figure 4); none for the
+    /// first one of a segment, which does not begin with a rearrangement, and when nothing changed.
+    std::optional<double> stress_increment;
+    /// |eps_2' - eps_2| (paper, figure 5); none when only rattlers moved.
+    std::optional<double> strain_increment;
+};
+
+/// The rearrangements of a run in the order of the rows. A stress reached inside a supported interval is none.
+std::vector<Rearrangement> rearrangements(const std::vector<EquilibriumRow>& rows);
 
 /// Increments between equilibria, loading and unloading apart. All values are positive.
 struct Increments {

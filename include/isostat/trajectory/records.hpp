@@ -4,8 +4,10 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
+#include <isostat/motion/arc_certificate.hpp>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +32,7 @@ template <int Dim> struct ArcRecord {
     int steps = 0;                ///< predictor steps
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided)
     Rung decided_by = Rung::none; ///< highest rung that was needed
+    std::optional<ArcCertificate> certificate; ///< level `arcs` only
 };
 
 /// One equilibrium, checked.
@@ -66,6 +69,7 @@ template <int Dim> struct EquilibriumRecord {
     double margin = 0;          ///< smallest |quantity| / bound over the decisions since the previous equilibrium
     Rung decided_by = Rung::none;
     Verdict verdict = Verdict::undecided; ///< proved: every check of this record holds for the stored configuration
+    std::optional<Verdict> certified;     ///< of its certificate file, from level `states` on
     double seconds = 0;                   ///< since the start of the run
 };
 
@@ -86,6 +90,38 @@ constexpr std::string_view to_string(DecisionKind kind) {
     }
     return "equilibrium";
 }
+
+/// How much of a run is proved.
+/// - decisions: every comparison that steers, with a bound on both sides;
+/// - states: besides, a certificate file for each equilibrium (an observer writes them);
+/// - arcs: besides, each arc enclosed between its events (`certify_arc`). An arc that is not certified does not stop
+///   the run: it is counted and its record tells why.
+enum class CertifyLevel : unsigned char { decisions, states, arcs };
+
+/// "decisions", "states", "arcs".
+constexpr const char* to_string(CertifyLevel level) {
+    return level == CertifyLevel::decisions ? "decisions" : level == CertifyLevel::states ? "states" : "arcs";
+}
+
+/// Equilibria counted by what their certificates say (from level `states` on).
+struct StateTally {
+    long proved = 0;
+    long refuted = 0;
+    long undecided = 0;
+    double seconds = 0; ///< spent on the certificates
+};
+
+/// Arcs counted by what their certificates say (level `arcs`).
+struct ArcTally {
+    long certified = 0;
+    long undecided = 0;
+    long power_undecided = 0; ///< among the certified ones
+    long pieces = 0;
+    long factorisations = 0; ///< fresh centres: one rank proof, factorisation and bound of the inverse each
+    double tube_margin = 0;  ///< smallest of all certified arcs (0: none yet)
+    double gap_margin = 0;
+    double seconds = 0; ///< spent on the certificates
+};
 
 /// Decisions counted by the rung that settled them.
 struct Tally {

@@ -28,11 +28,12 @@ struct Segment {
 /// Caps and choices of a run.
 struct RunOptions {
     OpeningRule rule = OpeningRule::most_negative;
-    std::uint64_t rule_seed = 1;             ///< of `random`
-    long max_arcs = 20000;                   ///< per rearrangement; reaching it is a result: the sample fails
-    double max_strain = 0.5;                 ///< |eps_2| since the reference state
-    double step_fraction = 0.1;              ///< longest predictor step, in units of the smallest radius
-    const std::atomic<bool>* stop = nullptr; ///< set by Ctrl-C: the run ends after the current arc
+    std::uint64_t rule_seed = 1;                    ///< of `random`
+    long max_arcs = 20000;                          ///< per rearrangement; reaching it is a result: the sample fails
+    double max_strain = 0.5;                        ///< |eps_2| since the reference state
+    double step_fraction = 0.1;                     ///< longest predictor step, in units of the smallest radius
+    CertifyLevel certify = CertifyLevel::decisions; ///< `states` is the observer's work: here as `decisions`
+    const std::atomic<bool>* stop = nullptr;        ///< set by Ctrl-C: the run ends after the current arc
 };
 
 /// Counters that let an interrupted run go on with the same bits.
@@ -41,6 +42,8 @@ struct RunCounters {
     int equilibria = 0; ///< number of the last equilibrium
     double seconds = 0;
     Tally tally;
+    StateTally states;
+    ArcTally arcs;
 };
 
 /// How a segment ended.

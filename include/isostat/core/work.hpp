@@ -1,0 +1,43 @@
+#pragma once
+/// \file
+/// What the program did, counted: the evidence that a scene pays only for what it needs.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace isostat {
+
+/// Kinds of work, in the order of the rooms. Each is counted where it begins.
+enum class Work : std::uint8_t {
+    dynamics_steps,     ///< steps of the damped dynamics
+    linear_programmes,  ///< solved by Clp
+    candidate_searches, ///< regular triangulations or sweeps: complete candidates
+    overlap_proofs,     ///< certificates of non-overlap
+    rank_proofs,        ///< contact matrices sent to the prime field
+    factorisations,     ///< KLU
+    inverse_bounds,     ///< proofs of a bound of the inverse
+    double_double,      ///< climbs to double-double
+    multiprecision,     ///< climbs to MPFR or to more bits
+    exact_solutions,    ///< climbs to exact numbers
+    states_written,     ///< state files, checkpoints not counted
+    checkpoints,        ///< checkpoint.json replaced
+    pictures,           ///< force pictures drawn
+    charts,             ///< gnuplot started
+    vtk_files,          ///< ParaView files
+    count               ///< number of kinds
+};
+
+inline constexpr std::size_t work_kinds = static_cast<std::size_t>(Work::count);
+
+/// "dynamics_steps", ...: the word used in records.
+const char* to_string(Work kind);
+
+/// Adds to the counter of this process. Cost: one relaxed atomic addition; nothing reads it during a computation, so
+/// results cannot depend on it.
+void count_work(Work kind, long amount = 1);
+
+/// Since the start of the process, in the order of `Work`.
+std::array<long, work_kinds> work_done();
+
+} // namespace isostat

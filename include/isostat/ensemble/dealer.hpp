@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// Who does which sample: one process that knows them all, or several ranks that ask the first one.
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+namespace isostat {
+
+/// Gives out the numbers 0 ... count - 1, each of them once over all ranks, and hears what became of them.
+class Dealer {
+  public:
+    virtual ~Dealer() = default;
+    /// Rank 0 deals, reports and merges.
+    [[nodiscard]] virtual int rank() const = 0;
+    [[nodiscard]] virtual int ranks() const = 0;
+    /// The next number for this rank; none when all are given out (or `stop` was called).
+    virtual std::optional<std::size_t> next() = 0;
+    /// This rank has finished with a number that it was given. Rank 0 hears of it through `on_done`.
+    virtual void done(std::size_t number) = 0;
+    /// To be called often while waiting: rank 0 answers the others here.
+    virtual void idle() {}
+    /// No more numbers for anybody (rank 0) or for this rank (others).
+    virtual void stop() = 0;
+    /// Returns when every rank has called it; rank 0 goes on answering until then.
+    virtual void finish() {}
+
+    std::function<void(std::size_t)> on_done; ///< on rank 0: called for the numbers of all ranks
+};
+
+/// One process.
+class LocalDealer final : public Dealer {
+  public:
+    explicit LocalDealer(std::size_t count) : count_(count) {}
+    [[nodiscard]] int rank() const override { return 0; }
+    [[nodiscard]] int ranks() const override { return 1; }
+    std::optional<std::size_t> next() override {
+        return next_ < count_ ? std::optional<std::size_t>(next_++) : std::nullopt;
+    }
+    void done(std::size_t number) override {
+        if (on_done) {
+            on_done(number);
+        }
+    }
+    void stop() override { count_ = next_; }
+
+  private:
+    std::size_t count_;
+    std::size_t next_ = 0;
+};
+
+} // namespace isostat

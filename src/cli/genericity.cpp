@@ -1,0 +1,290 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+#include "cli/read_packing.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/genericity.hpp>
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/io/vertex_text.hpp>
+#include <isostat/rigidity/counting.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace isostat::cli {
+
+namespace {
+
+using crafted::Genericity;
+using crafted::GenericitySample;
+
+/// The unperturbed packing: its contacts, and what is known of h and k.
+struct Original {
+    Packing<2> packing;
+    std::vector<Contact> contacts;
+    int hyperstaticity = 0;
+    int mechanisms = 0;
+    Verdict exact = Verdict::undecided;
+    std::string title;
+};
+
+Original read_original(const std::string& file) {
+    const std::string text = read_text(file);
+    const std::string format = recognise_format(text);
+    Original out;
+    if (format == "packing") {
+        const crafted::PackingFile crafted = crafted::parse_packing(text, file);
+        const auto inspection = crafted::inspect(crafted.packing);
+        if (!inspection.ok()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message));
+        }
+        out.packing = crafted::approximate(crafted.packing);
+        out.contacts = inspection.value().contacts;
+        out.hyperstaticity = inspection.value().hyperstaticity;
+        out.mechanisms = inspection.value().mechanisms;
+        out.exact = inspection.value().rank_exact;
+        out.title = "exact contacts of the crafted packing";
+    } else if (format == "state" || format == "vertex") {
+        State<2> state = format == "state" ? parse_state<2>(text, file).state : parse_vertex_text(text, file);
+        const Counting counting = count_contacts(state.packing, state.contacts);
+        out.hyperstaticity = counting.hyperstaticity;
+        out.mechanisms = counting.mechanisms;
+        out.exact = counting.rank_exact;
+        out.packing = std::move(state.packing);
+        out.contacts = std::move(state.contacts);
+        out.title = "contacts of the state, stored coordinates";
+    } else {
+        throw Error(
+            ErrorKind::bad_input,
+            fmt::format("{}: not a file of this program: expected a crafted packing (TOML), a state or a vertex "
+                        "text; plateau reads files of other programs",
+                        file));
+    }
+    return out;
+}
+
+/// Smallest, median, largest of a figure over the proved samples.
+template <class Get> std::array<double, 3> spread(const Genericity& result, Get get) {
+    std::vector<double> values;
+    for (const GenericitySample& sample : result.samples) {
+        if (!sample.failure) {
+            values.push_back(get(sample));
+        }
+    }
+    if (values.empty()) {
+        return {HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    }
+    std::sort(values.begin(), values.end());
+    return {values.front(), values[values.size() / 2], values.back()};
+}
+
+int within(const Genericity& result) {
+    return static_cast<int>(std::count_if(result.samples.begin(), result.samples.end(),
+                                          [](const GenericitySample& sample) { return sample.within_original; }));
+}
+
+std::map<std::string, int> rungs(const Genericity& result) {
+    std::map<std::string, int> out;
+    for (const GenericitySample& sample : result.samples) {
+        if (!sample.failure) {
+            ++out[std::string(to_string(sample.rung))];
+        }
+    }
+    return out;
+}
+
+std::string list_text(const std::vector<Contact>& list, const std::vector<Contact>& original) {
+    std::string missing, added;
+    int lost = 0, gained = 0;
+    constexpr int most = 8;
+    for (const Contact& c : original) {
+        if (!std::binary_search(list.begin(), list.end(), c) && ++lost <= most) {
+            missing += " " + to_string<2>(c);
+        }
+    }
+    for (const Contact& c : list) {
+        if (!std::binary_search(original.begin(), original.end(), c) && ++gained <= most) {
+            added += " " + to_string<2>(c);
+        }
+    }
+    return fmt::format("without{}{}, with{}{}", lost == 0 ? " nothing less" : missing,
+                       lost > most ? fmt::format(" and {} more", lost - most) : "",
+                       gained == 0 ? " nothing new" : added,
+                       gained > most ? fmt::format(" and {} more", gained - most) : "");
+}
+
+Json sample_json(const GenericitySample& sample) {
+    Json out;
+    out["seed"] = sample.seed;
+    if (sample.failure) {
+        out["failure"] = to_string(sample.failure->kind);
+        out["reason"] = sample.failure->message;
+        return out;
+    }
+    out["h"] = 0;
+    out["k"] = 0;
+    out["N"] = sample.contacts.size();
+    out["carrying"] = sample.carrying;
+    out["rattlers"] = sample.rattlers;
+    out["min_force"] = number(sample.min_force);
+    out["min_gap"] = number(sample.min_gap);
+    out["sigma_min"] = number(sample.sigma_min);
+    out["rung"] = to_string(sample.rung);
+    out["within_original"] = sample.within_original;
+    return out;
+}
+
+Json result_json(const Genericity& result, double size, std::size_t longest) {
+    Json out;
+    out["size"] = size;
+    out["proved_isostatic"] = result.proved;
+    out["ties"] = result.ties;
+    out["undecided"] = result.undecided;
+    out["failed"] = result.failed;
+    out["within_original"] = within(result);
+    out["rungs"] = rungs(result);
+    out["distinct_lists"] = result.lists.size();
+    Json lists = Json::array();
+    for (std::size_t k = 0; k < result.lists.size() && k < longest; ++k) {
+        Json names = Json::array();
+        for (const Contact& contact : result.lists[k].contacts) {
+            names.push_back(to_string<2>(contact));
+        }
+        lists.push_back({{"samples", result.lists[k].samples}, {"contacts", std::move(names)}});
+    }
+    out["lists"] = std::move(lists);
+    Json samples = Json::array();
+    for (const GenericitySample& sample : result.samples) {
+        samples.push_back(sample_json(sample));
+    }
+    out["samples"] = std::move(samples);
+    return out;
+}
+
+std::string csv_rows(const Genericity& result, double size) {
+    std::string out;
+    for (const GenericitySample& s : result.samples) {
+        const bool ok = !s.failure;
+        out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", size, s.seed,
+                           ok ? "proved" : to_string(s.failure->kind), ok ? "0" : "", ok ? "0" : "",
+                           ok ? std::to_string(s.carrying) : "", ok ? std::to_string(s.rattlers) : "",
+                           ok ? fmt::format("{}", s.min_force) : "", ok ? fmt::format("{}", s.min_gap) : "",
+                           ok ? fmt::format("{}", s.sigma_min) : "", ok ? (s.within_original ? "1" : "0") : "");
+    }
+    return out;
+}
+
+void print_row(const Genericity& result, double size) {
+    const auto force = spread(result, [](const GenericitySample& s) { return s.min_force; });
+    const auto gap = spread(result, [](const GenericitySample& s) { return s.min_gap; });
+    const auto sigma = spread(result, [](const GenericitySample& s) { return s.sigma_min; });
+    const auto rattlers = spread(result, [](const GenericitySample& s) { return s.rattlers; });
+    std::string used;
+    for (const auto& [rung, count] : rungs(result)) {
+        used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
+    }
+    if (result.proved == 0) {
+        fmt::print("{:>8.1e} {:>7} {:>5} {:>9} {:>6}\n", size, 0, result.ties, result.undecided, result.failed);
+        return;
+    }
+    fmt::print("{:>8.1e} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} "
+               "{:>9.2e} | {}\n",
+               size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
+               result.lists.front().samples, within(result), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
+               force[1], gap[0], gap[1], sigma[0], used);
+}
+
+} // namespace
+
+int genericity(const GenericityArguments& a) {
+    const Original original = read_original(a.file);
+    crafted::GenericityOptions options;
+    options.samples = a.samples;
+    options.seed = a.seed;
+    options.stress = a.stress;
+    options.keep_equal = a.keep_equal;
+    const bool text = !a.common.json;
+    if (text) {
+        const char* bound = original.exact == Verdict::proved ? "=" : "<=";
+        fmt::print("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
+                   original.contacts.size(), original.title, bound, original.hyperstaticity, bound,
+                   original.mechanisms);
+        fmt::print("radius times 1 + size u, u uniform in [-1, 1){}; {} samples, seeds {} to {}\n\n",
+                   a.keep_equal ? ", the same u for equal radii" : "", a.samples, a.seed,
+                   a.seed + static_cast<std::uint64_t>(a.samples) - 1);
+        fmt::print("{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n",
+                   "size", "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force",
+                   "median", "min gap", "median", "min sigma", "arithmetic");
+    }
+    Json results = Json::array();
+    std::string csv = "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
+    std::vector<Genericity> all;
+    bool every = true;
+    for (const double size : a.sizes) {
+        options.size = size;
+        all.push_back(crafted::genericity(original.packing, original.contacts, options));
+        const Genericity& result = all.back();
+        every = every && result.proved == a.samples;
+        csv += csv_rows(result, size);
+        if (text) {
+            print_row(result, size);
+        } else {
+            results.push_back(result_json(result, size, static_cast<std::size_t>(a.lists)));
+        }
+    }
+    if (!a.csv.empty()) {
+        write_atomically(a.csv, csv);
+    }
+    if (!text) {
+        Json out;
+        out["format"] = "isostat-genericity 1";
+        out["program"] = program_name();
+        out["command"] = a.common.command;
+        out["file"] = a.file;
+        out["seed"] = a.seed;
+        out["samples"] = a.samples;
+        out["stress"] = number(a.stress);
+        out["keep_equal"] = a.keep_equal;
+        out["original"] = {{"N", original.contacts.size()},
+                           {"h", original.hyperstaticity},
+                           {"k", original.mechanisms},
+                           {"rank_exact", to_string(original.exact)}};
+        out["sizes"] = std::move(results);
+        fmt::print("{}\n", out.dump());
+        return every ? done : undecided;
+    }
+    fmt::print(
+        "\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 than "
+        "N_f, to double-double;\nlists: distinct contact lists, and samples in the most frequent; within: the force "
+        "network is part of the unperturbed contacts;\nmargins: proved lower bounds, smallest and median over "
+        "the samples.\n");
+    for (std::size_t s = 0; s < all.size(); ++s) {
+        for (std::size_t k = 0;
+             k < all[s].lists.size() && k < static_cast<std::size_t>(a.lists) && all[s].lists[k].samples > std::max(1, a.samples / 20); ++k) {
+            fmt::print("size {:.0e}: {} samples {}\n", a.sizes[s], all[s].lists[k].samples,
+                       list_text(all[s].lists[k].contacts, original.contacts));
+        }
+        std::map<std::string, std::pair<int, std::string>> reasons;
+        for (const GenericitySample& sample : all[s].samples) {
+            if (sample.failure) {
+                auto& reason = reasons[to_string(sample.failure->kind)];
+                if (reason.first++ == 0) {
+                    reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message);
+                }
+            }
+        }
+        for (const auto& [kind, reason] : reasons) {
+            fmt::print("size {:.0e}: {} times {}, first {}\n", a.sizes[s], reason.first, kind, reason.second);
+        }
+    }
+    return every ? done : undecided;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,48 @@
+#include <isostat/core/work.hpp>
+
+#include <atomic>
+
+namespace isostat {
+
+namespace {
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): counters of the process, read by reports only
+std::array<std::atomic<long>, work_kinds> counters{};
+
+} // namespace
+
+const char* to_string(Work kind) {
+    switch (kind) {
+    case Work::dynamics_steps: return "dynamics_steps";
+    case Work::linear_programmes: return "linear_programmes";
+    case Work::candidate_searches: return "candidate_searches";
+    case Work::overlap_proofs: return "overlap_proofs";
+    case Work::rank_proofs: return "rank_proofs";
+    case Work::factorisations: return "factorisations";
+    case Work::inverse_bounds: return "inverse_bounds";
+    case Work::double_double: return "double_double";
+    case Work::multiprecision: return "multiprecision";
+    case Work::exact_solutions: return "exact_solutions";
+    case Work::states_written: return "states_written";
+    case Work::checkpoints: return "checkpoints";
+    case Work::pictures: return "pictures";
+    case Work::charts: return "charts";
+    case Work::vtk_files: return "vtk_files";
+    case Work::count: break;
+    }
+    return "";
+}
+
+void count_work(Work kind, long amount) {
+    counters[static_cast<std::size_t>(kind)].fetch_add(amount, std::memory_order_relaxed);
+}
+
+std::array<long, work_kinds> work_done() {
+    std::array<long, work_kinds> done{};
+    for (std::size_t k = 0; k < work_kinds; ++k) {
+        done[k] = counters[k].load(std::memory_order_relaxed);
+    }
+    return done;
+}
+
+} // namespace isostat

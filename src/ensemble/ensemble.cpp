@@ -1,0 +1,173 @@
+#include "io/descriptor.hpp"
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/ensemble/ensemble.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/report/statistics.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace isostat {
+
+namespace fs = std::filesystem;
+using json::Field;
+using json::Json;
+
+namespace {
+
+constexpr std::array<const char*, 4> tables{"ensemble.json", "equilibria.csv", "increments.csv", "samples.csv"};
+
+/// The complete lines of a table without its header.
+template <class Use> void for_each_row(const std::string& text, const Use& use) {
+    for (std::size_t begin = 0, end = text.find('\n'); end != std::string::npos;
+         begin = end + 1, end = text.find('\n', begin)) {
+        const std::string_view line(text.data() + begin, end - begin);
+        if (!line.empty() && line.front() != '#') {
+            use(line);
+        }
+    }
+}
+
+std::string equilibria_header() {
+    std::vector<std::string> columns = equilibria_columns();
+    columns.pop_back(); // the time
+    return fmt::format("# seed,{}\n", fmt::join(columns, ","));
+}
+
+void append_equilibria(std::string& table, std::uint64_t seed, const std::string& text) {
+    for_each_row(
+        text, [&](std::string_view line) { table += fmt::format("{},{}\n", seed, line.substr(0, line.rfind(','))); });
+}
+
+void append_increments(std::string& table, std::uint64_t seed, const std::vector<EquilibriumRow>& rows) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    for (const Rearrangement& one : rearrangements(rows)) {
+        table += fmt::format("{},{},{},{},{},{},{},{}\n", seed, one.segment, one.number, one.direction, one.ratio,
+                             one.arcs, one.stress_increment.value_or(none), one.strain_increment.value_or(none));
+    }
+}
+
+} // namespace
+
+struct EnsembleDirectory::Lock {
+    Descriptor file;
+};
+
+EnsembleDirectory::EnsembleDirectory(fs::path directory, EnsembleHeader header, Mode mode)
+    : samples_(std::move(directory), std::move(header)), lock_(std::make_unique<Lock>()) {
+    const EnsembleHeader& asked = samples_.header();
+    (void)samples_.scene(0);
+    (void)samples_.scene(static_cast<std::size_t>(asked.samples) - 1);
+    const fs::path& path = samples_.path();
+    make_directory(path);
+    lock_->file = Descriptor::open(path / "lock", O_RDWR | O_CREAT);
+    if (!lock_->file.try_lock()) {
+        throw Error(ErrorKind::cannot_write,
+                    fmt::format("{}: another running program writes into this folder", path.string()));
+    }
+    const bool holds_one = fs::exists(path / "ensemble.json");
+    if (mode == Mode::fresh && (holds_one || fs::exists(path / "run.json"))) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: holds {} already: expected an empty folder{}", path.string(),
+                                holds_one ? "an ensemble" : "a run",
+                                holds_one ? ", --resume to go on or --force to delete it first" : ""));
+    }
+    if (mode == Mode::resume) {
+        check_resumed();
+    } else if (holds_one) {
+        fs::remove_all(path / "samples");
+        for (const char* name : tables) {
+            fs::remove(path / name);
+        }
+    }
+    write_header("running", {});
+}
+
+EnsembleDirectory::~EnsembleDirectory() = default;
+
+void EnsembleDirectory::check_resumed() const {
+    const fs::path file = samples_.path() / "ensemble.json";
+    if (!fs::exists(file)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: does not exist: there is no ensemble to resume", file.string()));
+    }
+    const Json parsed = Field::parse(read_text(file), file.string());
+    const Field old(parsed, file.string());
+    const EnsembleHeader& asked = samples_.header();
+    if (old.at("scene").string() != asked.scene_text) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: the ensemble is of another scene ({}): expected the text of "
+                                "{}",
+                                file.string(), old.at("scene_file").string(), asked.scene.string()));
+    }
+    if (old.at("first_seed").string() != std::to_string(asked.first_seed)) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: the ensemble starts at seed {}: expected {}", file.string(),
+                                                      old.at("first_seed").string(), asked.first_seed));
+    }
+    if (old.at("program").string() != asked.program) {
+        throw Error(
+            ErrorKind::bad_input,
+            fmt::format("{}: the ensemble was made by {}: expected {}, the same bits are not promised otherwise",
+                        file.string(), old.at("program").string(), asked.program));
+    }
+}
+
+void EnsembleDirectory::write_header(const std::string& status, const std::vector<Sample>& samples) const {
+    const EnsembleHeader& header = samples_.header();
+    Json object;
+    object["format"] = "isostat-ensemble";
+    object["version"] = 1;
+    object["program"] = header.program;
+    object["command"] = header.command;
+    object["status"] = status;
+    object["scene_file"] = header.scene.string();
+    object["scene"] = header.scene_text;
+    object["first_seed"] = std::to_string(header.first_seed); // text: 64 bits do not fit the numbers of every reader
+    object["samples"] = header.samples;
+    if (!samples.empty()) {
+        Json counts = Json::object();
+        Json reasons = Json::array();
+        for (const Sample& sample : samples) {
+            const char* word = to_string(sample.status);
+            counts[word] = counts.value(word, 0) + 1;
+            if (sample.status != SampleStatus::completed) {
+                reasons.push_back({{"seed", sample.seed}, {"status", word}, {"reason", sample.reason}});
+            }
+        }
+        object["counts"] = counts;
+        object["not_completed"] = reasons;
+    }
+    write_atomically(samples_.path() / "ensemble.json", object.dump(2) + "\n");
+}
+
+std::vector<Sample> EnsembleDirectory::merge() const {
+    std::string equilibria = equilibria_header();
+    std::string increments = "# seed,segment,number,direction,ratio,arcs,stress_increment,strain_increment\n";
+    std::string table = "# seed,status,equilibria,proved,arcs,seconds\n";
+    std::vector<Sample> samples;
+    for (std::size_t number = 0; number < static_cast<std::size_t>(samples_.header().samples); ++number) {
+        const Sample& one = samples.emplace_back(samples_.sample(number));
+        table += fmt::format("{},{},{},{},{},{}\n", one.seed, static_cast<int>(one.status), one.equilibria, one.proved,
+                             one.arcs, one.seconds);
+        if (one.equilibria > 0) {
+            const fs::path file = samples_.folder(number) / "equilibria.csv";
+            append_equilibria(equilibria, one.seed, read_text(file));
+            append_increments(increments, one.seed, read_equilibria(file));
+        }
+    }
+    const fs::path& path = samples_.path();
+    write_atomically(path / "equilibria.csv", equilibria);
+    write_atomically(path / "increments.csv", increments);
+    write_atomically(path / "samples.csv", table);
+    const bool all = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.finished(); });
+    write_header(all ? "completed" : "interrupted", samples);
+    return samples;
+}
+
+} // namespace isostat

@@ -1,0 +1,352 @@
+#include "motion/gap_watch.hpp"
+#include "motion/moving_part.hpp"
+#include "motion/power_watch.hpp"
+
+#include <isostat/motion/arc_certificate.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace isostat {
+
+namespace {
+
+constexpr double up = 1 + 1e-9;
+
+/// How far the true vertex may be from the stored configuration.
+double uncertainty(const VertexEnclosure& vertex) {
+    double square = 0;
+    for (const double c : vertex.correction) {
+        square += c * c;
+    }
+    return (vertex.radius + std::sqrt(square)) * up;
+}
+
+template <int Dim> class Certifier {
+  public:
+    Certifier(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
+              const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates, const ArcCertificateOptions& options)
+        : start_(start), end_(end), slot_(opened.index()), direction_(direction), candidates_(candidates),
+          options_(options), load_(power) {}
+
+    /// First with the bounds that the vertices have; when the rows of the opened and of the closed contact do not serve
+    /// (they move slowly against the rest), with the fastest coordinates in their place.
+    ArcCertificate run() {
+        if (!check_input()) {
+            return std::move(certificate_);
+        }
+        ArcCertificate best = attempt(false);
+        const bool judged = load_.load != nullptr && (load_.infinitesimal || load_.load->kind == LoadKind::nominal);
+        if (!hopeless_ && (best.verdict != Verdict::proved || (judged && best.power != Verdict::proved))) {
+            const int factorisations = best.factorisations;
+            ArcCertificate other = attempt(true);
+            if (best.verdict != Verdict::proved || other.power == Verdict::proved) {
+                best = std::move(other);
+            }
+            best.factorisations = factorisations + certificate_.factorisations;
+        }
+        return best;
+    }
+
+  private:
+    using Piece = CurvePiece<Dim>;
+
+    bool refuse(std::string reason) {
+        certificate_.reason = std::move(reason);
+        return false;
+    }
+    [[nodiscard]] const Contact& opened() const { return start_.structure.contacts()[slot_]; }
+    [[nodiscard]] const Contact& closed() const { return end_.structure.contacts()[slot_]; }
+
+    ArcCertificate attempt(bool fresh_ends);
+    bool chain();
+    bool check_input();
+    bool check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name);
+    bool prove_longest(Piece& piece, double h);
+    bool finish(const Piece& piece, double from, double to);
+    std::unique_ptr<Piece> end_piece(double forward);
+    bool arrive(const Piece& last, double from, double joint_slack);
+
+    const ArcVertex<Dim>& start_;
+    const ArcVertex<Dim>& end_;
+    std::size_t slot_;
+    int direction_;
+    CandidateList<Dim> candidates_;
+    std::vector<Contact> active_;
+    ArcCertificateOptions options_;
+    std::unique_ptr<MovingPart<Dim>> part_;
+    std::unique_ptr<Centre<Dim>> end_centre_;
+    GapWatch<Dim> watch_;
+    const PowerLoad<Dim>& load_;
+    PowerWatch<Dim>* power_ = nullptr;
+    bool fresh_ends_ = false;
+    bool hopeless_ = false; ///< fresh ends would not help
+    double end_rate_ = -1;  ///< of the free row at the end
+    ArcCertificate certificate_;
+    double start_uncertainty_ = 0;
+    double end_uncertainty_ = 0;
+};
+
+template <int Dim> bool Certifier<Dim>::check_input() {
+    const auto& a = start_.structure.contacts();
+    const auto& b = end_.structure.contacts();
+    if (start_.enclosure.verdict != Verdict::proved || end_.enclosure.verdict != Verdict::proved ||
+        start_.inverse.verdict != Verdict::proved || end_.inverse.verdict != Verdict::proved) {
+        return refuse("an end of the arc is not a proved vertex");
+    }
+    for (std::size_t l = 0; l < std::max(a.size(), b.size()); ++l) {
+        if (l >= a.size() || l >= b.size() || (l != slot_ && a[l] != b[l])) {
+            return refuse("the ends differ in more than one contact");
+        }
+        if (l != slot_ && a[l].kind == ContactKind::held) {
+            const auto k = static_cast<std::size_t>(a[l].i);
+            if (start_.packing.q[k] != end_.packing.q[k]) {
+                return refuse(fmt::format("{} is not at the same place at both ends", to_string<Dim>(a[l])));
+            }
+        }
+    }
+    if (start_.packing.radius != end_.packing.radius) {
+        return refuse("the ends differ in their radii");
+    }
+    return true;
+}
+
+/// Every candidate but the contacts has a positive gap at the true vertex; `zero` may be 0.
+template <int Dim>
+bool Certifier<Dim>::check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name) {
+    for (const Contact& contact : active_) {
+        if (contact != zero && !gap_at_vertex(vertex.packing, vertex.enclosure, contact).positive()) {
+            return refuse(fmt::format("the gap of {} is not proved positive at the {}", to_string<Dim>(contact), name));
+        }
+    }
+    return true;
+}
+
+template <int Dim> bool Certifier<Dim>::prove_longest(Piece& piece, double h) {
+    const double floor = options_.smallest_step * start_.packing.min_radius();
+    for (; h > floor; h *= 0.6) {
+        if (piece.prove(h)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Gaps and power for s in [from, to] of a proved piece.
+template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, double to) {
+    ++certificate_.pieces;
+    certificate_.tube = std::max(certificate_.tube, piece.radius());
+    certificate_.tube_margin = std::min(certificate_.tube_margin, piece.margin());
+    if (!part_->complete(piece, std::max(std::abs(from), std::abs(to)), candidates_)) {
+        candidates_ = find_candidates(piece.centre(), candidate_fraction);
+        if (!part_->complete(piece, std::max(std::abs(from), std::abs(to)), candidates_)) {
+            return refuse("the motion within one piece leaves the reach of the candidate list");
+        }
+        active_.clear();
+    }
+    if (active_.empty()) {
+        active_ = part_->watched(candidates_);
+    }
+    for (const Contact& contact : active_) {
+        if (!watch_.look(piece, contact, from, to)) {
+            const double s = watch_.where();
+            return refuse(fmt::format("the gap of {} is not proved positive in piece {} at s = {:.6g} of [{:.6g}, "
+                                      "{:.6g}] (tube {:.3g})",
+                                      to_string<Dim>(contact), certificate_.pieces, s, from, to, piece.radius()));
+        }
+    }
+    power_->look(piece, from, to);
+    return true;
+}
+
+template <int Dim> std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::end_piece(double forward) {
+    auto piece = std::make_unique<Piece>(part_->curve(), end_centre_->packing(), end_centre_->structure(),
+                                         end_centre_->factorisation(), end_centre_->sigma_min(), forward);
+    return prove_longest(*piece, piece->natural_reach()) ? std::move(piece) : nullptr;
+}
+
+/// The end vertex lies on `last`: looks at what is left and at the gaps of the end.
+template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, double joint_slack) {
+    const auto place = last.locate(end_.packing.q, end_uncertainty_);
+    if (!place) {
+        return refuse("the end vertex is not proved to lie on the curve");
+    }
+    const double to = place->s + place->slack;
+    if (!finish(last, from, std::max(to, from))) {
+        return false;
+    }
+    // The end lies ahead of the start of the piece; or this is the only piece and the closing gap, positive at the
+    // start of the arc, falls all along it.
+    const bool ahead = place->s - place->slack > from + 2 * joint_slack;
+    if (!ahead && !(certificate_.pieces == 1 && closed() != opened() && watch_.fell_all_along(closed()))) {
+        return refuse("the end is not proved to lie ahead of the start");
+    }
+    if (closed().kind != ContactKind::held && !watch_.falls(closed())) {
+        return refuse(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string<Dim>(closed())));
+    }
+    certificate_.turning = opened().kind != ContactKind::held && GapWatch<Dim>::rate_sign(last, opened(), place->s) < 0;
+    return check_vertex(end_, closed(), "end");
+}
+
+template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
+    fresh_ends_ = fresh_ends;
+    certificate_ = {};
+    certificate_.tube_margin = std::numeric_limits<double>::infinity();
+    watch_ = {};
+    active_.clear();
+    PowerWatch<Dim> power(load_);
+    power_ = &power;
+    if (chain()) {
+        certificate_.verdict = Verdict::proved;
+        power.conclude(certificate_, closed().kind == ContactKind::held);
+    }
+    certificate_.gap_margin = watch_.margin();
+    certificate_.gap_tests = watch_.tests();
+    return certificate_;
+}
+
+template <int Dim> bool Certifier<Dim>::chain() {
+    start_uncertainty_ = uncertainty(start_.enclosure);
+    end_uncertainty_ = uncertainty(end_.enclosure);
+    part_ = std::make_unique<MovingPart<Dim>>(start_, end_, slot_, start_uncertainty_, end_uncertainty_);
+    certificate_.moving = static_cast<int>(part_->curve().contacts.size());
+    hopeless_ = true;
+    if (!part_->trouble().empty()) {
+        return refuse(part_->trouble());
+    }
+    if (!candidates_.covers(start_.packing)) {
+        candidates_ = find_candidates(start_.packing, candidate_fraction);
+    }
+    // Pairs at rest keep the gap that they have at the start.
+    active_ = part_->all(candidates_);
+    if (!check_vertex(start_, opened(), "start")) {
+        return false;
+    }
+    hopeless_ = false;
+    active_.clear();
+    if (opened().kind != ContactKind::held) {
+        watch_.starts_at_zero(opened());
+    }
+    InverseBoundCache cache;
+    // A released coordinate says in which direction the curve is followed: its row stays.
+    double rate = opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0;
+    const auto with_fastest = [&](std::unique_ptr<Centre<Dim>>& vertex, double& forward) {
+        ++certificate_.factorisations;
+        vertex = vertex ? part_->with_fastest(*vertex, forward, cache) : nullptr;
+    };
+    auto start_centre = part_->at_start(cache);
+    end_centre_ = part_->at_end(cache);
+    end_rate_ = -1;
+    if (fresh_ends_ && opened().kind != ContactKind::held) {
+        with_fastest(start_centre, rate);
+    }
+    if (fresh_ends_ && closed().kind != ContactKind::held) {
+        with_fastest(end_centre_, end_rate_);
+    }
+    if (!start_centre || !end_centre_) {
+        return refuse("the grains that move are not proved isostatic at an end");
+    }
+    auto piece = std::make_unique<Piece>(part_->curve(), start_centre->packing(), start_centre->structure(),
+                                         start_centre->factorisation(), start_centre->sigma_min(), rate);
+    if (!prove_longest(*piece, piece->natural_reach())) {
+        return refuse("no tube around the start");
+    }
+    std::unique_ptr<Centre<Dim>> centre; // of the present piece, once it is a fresh one
+    std::unique_ptr<Piece> last;
+    const auto at_start = piece->locate(start_.packing.q, start_uncertainty_);
+    if (!at_start) {
+        return refuse("the start vertex is not proved to lie on the curve");
+    }
+    double from = at_start->s - at_start->slack;
+    double slack = at_start->slack;
+    while (certificate_.pieces < options_.max_pieces) {
+        const auto target = piece->locate(end_.packing.q, end_uncertainty_);
+        if (target && target->s > from) {
+            return arrive(*piece, from, slack);
+        }
+        const double to = piece->reach() * (1 - 1e-6);
+        const std::vector<double> frontier = piece->point(to);
+        double coordinate = 0;
+        for (const double x : frontier) {
+            coordinate = std::max(coordinate, std::abs(x));
+        }
+        const double open = piece->radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * coordinate;
+        if (!last || (closed().kind == ContactKind::held && last->forward() != piece->direction_along(*last, to))) {
+            if (closed().kind == ContactKind::held) {
+                end_rate_ = last                                                         ? -last->forward()
+                            : piece->slope(to)[static_cast<std::size_t>(closed().i)] > 0 ? 1
+                                                                                         : -1;
+            }
+            last = end_piece(end_rate_);
+            if (!last) {
+                return refuse("no tube around the end");
+            }
+        }
+        const auto joint = last->locate(frontier, open);
+        if (joint && joint->s + joint->slack < 0 && piece->direction_along(*last, to) == last->forward()) {
+            return finish(*piece, from, to) && arrive(*last, joint->s - joint->slack, joint->slack);
+        }
+        // A fresh centre ahead of the frontier, whose tube reaches back to it.
+        std::unique_ptr<Piece> next;
+        std::unique_ptr<Centre<Dim>> next_centre;
+        std::optional<typename Piece::Place> place;
+        const double floor = options_.smallest_step * start_.packing.min_radius();
+        std::string why = "the curve was not followed";
+        for (double ahead = 0.85 * to; ahead > floor && !place; ahead *= 0.5) {
+            auto at = piece->corrected(to + ahead);
+            if (!at) {
+                continue;
+            }
+            const std::vector<double> velocity = piece->slope(to + ahead);
+            const auto fastest = std::max_element(velocity.begin(), velocity.end(),
+                                                  [](double a, double b) { return std::abs(a) < std::abs(b); });
+            ++certificate_.factorisations;
+            next_centre = part_->centre(std::move(*at), static_cast<int>(fastest - velocity.begin()), cache);
+            if (!next_centre) {
+                why = "no bound of the inverse on the way";
+                continue;
+            }
+            next = std::make_unique<Piece>(part_->curve(), next_centre->packing(), next_centre->structure(),
+                                           next_centre->factorisation(), next_centre->sigma_min(),
+                                           *fastest > 0 ? 1.0 : -1.0);
+            if (!prove_longest(*next, next->natural_reach())) {
+                why = "no tube on the way";
+                continue;
+            }
+            place = next->locate(frontier, open);
+            if (place && piece->direction_along(*next, to) != next->forward()) {
+                place.reset();
+            }
+            why = "neighbouring pieces do not meet";
+        }
+        if (!place) {
+            return refuse(fmt::format("{} after {} pieces", why, certificate_.pieces));
+        }
+        if (!finish(*piece, from, to)) {
+            return false;
+        }
+        from = place->s - place->slack;
+        slack = place->slack;
+        piece = std::move(next);
+        centre = std::move(next_centre);
+    }
+    return refuse(fmt::format("more than {} pieces", options_.max_pieces));
+}
+
+} // namespace
+
+template <int Dim>
+ArcCertificate certify_arc(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
+                           const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates,
+                           const ArcCertificateOptions& options) {
+    return Certifier<Dim>(start, opened, direction, end, power, candidates, options).run();
+}
+
+template ArcCertificate certify_arc<2>(const ArcVertex<2>&, ContactId, int, const ArcVertex<2>&, const PowerLoad<2>&,
+                                       const CandidateList<2>&, const ArcCertificateOptions&);
+
+} // namespace isostat

@@ -1,0 +1,240 @@
+#include "motion/moving_part.hpp"
+
+#include <isostat/contact/contact_set.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+constexpr double up = 1 + 1e-9;
+
+} // namespace
+
+template <int Dim>
+std::unique_ptr<Centre<Dim>> Centre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                               InverseBoundCache& cache) {
+    auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
+    if (!structure.ok()) {
+        return nullptr;
+    }
+    auto centre = std::make_unique<Centre>();
+    centre->packing_ = std::move(packing);
+    centre->own_ = std::make_unique<Own>(std::move(structure.value()));
+    const InverseBound bound = bound_inverse(centre->own_->structure, centre->own_->factorisation, cache);
+    if (bound.verdict != Verdict::proved) {
+        return nullptr;
+    }
+    centre->sigma_min_ = bound.sigma_min;
+    return centre;
+}
+
+template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::of(const ArcVertex<Dim>& vertex) {
+    auto centre = std::make_unique<Centre>();
+    centre->packing_ = vertex.packing;
+    centre->structure_ = &vertex.structure;
+    centre->factorisation_ = &vertex.factorisation;
+    centre->sigma_min_ = vertex.inverse.sigma_min;
+    return centre;
+}
+
+template <int Dim>
+MovingPart<Dim>::MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end, std::size_t slot,
+                            double start_uncertainty, double end_uncertainty)
+    : start_(start), end_(end), slot_(slot), start_packing_(start.packing), end_packing_(end.packing) {
+    const auto n = static_cast<std::size_t>(start.structure.size());
+    std::vector<double> mechanism(n, 0.0);
+    mechanism[slot] = 1;
+    start.factorisation.solve_velocities(mechanism);
+    whole_ = !restrict_to(mechanism);
+    if (whole_) {
+        disk_moves_.assign(start_packing_.radius.size(), 1);
+        wall_moves_.assign(Dim, 1);
+        curve_ = std::make_unique<KeptCurve<Dim>>(start_packing_, start.structure.contacts(), slot, 0.0);
+        return;
+    }
+    std::vector<Contact> contacts = with_row(start.structure.contacts()[slot]);
+    curve_ = std::make_unique<KeptCurve<Dim>>(start_packing_, std::move(contacts), 0, start_uncertainty);
+    check_rest(start_uncertainty + end_uncertainty);
+}
+
+template <int Dim> bool MovingPart<Dim>::moves(const Contact& contact) const {
+    const auto i = static_cast<std::size_t>(contact.i);
+    const auto j = static_cast<std::size_t>(contact.j);
+    switch (contact.kind) {
+    case ContactKind::disk_disk: return disk_moves_[i] != 0 || disk_moves_[j] != 0;
+    case ContactKind::lower_wall: return disk_moves_[i] != 0;
+    case ContactKind::upper_wall: return disk_moves_[i] != 0 || wall_moves_[j] != 0;
+    case ContactKind::held:
+        return i / Dim < disk_moves_.size() ? disk_moves_[i / Dim] != 0
+                                            : wall_moves_[i - Dim * disk_moves_.size()] != 0;
+    }
+    return true;
+}
+
+/// The free row first, then the kept contacts that touch a moving grain.
+template <int Dim> std::vector<Contact> MovingPart<Dim>::with_row(const Contact& row) const {
+    std::vector<Contact> contacts = start_.structure.contacts();
+    contacts[slot_] = row;
+    if (whole_) {
+        return contacts;
+    }
+    std::vector<Contact> list{row};
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (l != slot_ && moves(contacts[l])) {
+            list.push_back(contacts[l]);
+        }
+    }
+    return list;
+}
+
+template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& mechanism) {
+    const DofMap<Dim>& dofs = start_.structure.dofs();
+    const std::size_t disks = start_packing_.radius.size();
+    disk_moves_.assign(disks, 0);
+    wall_moves_.assign(Dim, 0);
+    for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
+        if (mechanism[mu] != 0) {
+            const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+            (k < Dim * disks ? disk_moves_[k / Dim] : wall_moves_[k - Dim * disks]) = 1;
+        }
+    }
+    std::size_t degrees = 0;
+    for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        degrees += k < Dim * disks ? disk_moves_[k / Dim] : wall_moves_[k - Dim * disks];
+    }
+    whole_ = false;
+    const Contact& row = start_.structure.contacts()[slot_];
+    if (2 * degrees >= mechanism.size() || !moves(row) || !moves(end_.structure.contacts()[slot_]) ||
+        with_row(row).size() != degrees) {
+        whole_ = true;
+        return false;
+    }
+    std::vector<unsigned char> fixed(disks, 0);
+    for (std::size_t i = 0; i < disks; ++i) {
+        fixed[i] = disk_moves_[i] == 0 ? 1 : 0;
+        disk_moves_[i] = disk_moves_[i] != 0 && !start_packing_.is_fixed(DiskId(i)) ? 1 : 0;
+    }
+    start_packing_.fixed = fixed;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        if (wall_moves_[a] == 0 && start_packing_.walls.upper[a] == WallKind::movable) {
+            start_packing_.walls.upper[a] = WallKind::fixed;
+        }
+    }
+    end_packing_ = start_packing_;
+    const DofMap<Dim> moving(start_packing_);
+    for (int mu = 0; mu < moving.dof_count(); ++mu) {
+        const auto k = static_cast<std::size_t>(moving.coordinate_of(mu));
+        end_packing_.q[k] = end_.packing.q[k];
+    }
+    return true;
+}
+
+/// The grains at rest have the same true place at both ends: their equations have one root near the stored start.
+template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
+    double square = 0;
+    for (std::size_t i = 0; i < disk_moves_.size(); ++i) {
+        for (std::size_t a = 0; a < Dim && disk_moves_[i] == 0; ++a) {
+            const double d = end_.packing.q[Dim * i + a] - start_.packing.q[Dim * i + a];
+            square += d * d;
+        }
+    }
+    for (std::size_t a = 0; a < Dim; ++a) {
+        if (wall_moves_[a] == 0) {
+            const double d = end_.packing.length(static_cast<int>(a)) - start_.packing.length(static_cast<int>(a));
+            square += d * d;
+        }
+    }
+    const KeptCurve<Dim> all(start_.packing, start_.structure.contacts(), slot_, 0.0);
+    const double inverse = 1.003 / start_.inverse.sigma_min;
+    if (!((std::sqrt(square) + uncertainty) * inverse * all.lipschitz * up < 1)) {
+        trouble_ = "grains that do not move are not proved to be at the same place at both ends";
+    }
+}
+
+template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
+    return whole_ ? Centre<Dim>::of(start_)
+                  : Centre<Dim>::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
+}
+
+template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_end(InverseBoundCache& cache) const {
+    return whole_ ? Centre<Dim>::of(end_)
+                  : Centre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
+}
+
+template <int Dim>
+std::unique_ptr<Centre<Dim>> MovingPart<Dim>::centre(Packing<Dim> packing, int held, InverseBoundCache& cache) const {
+    return Centre<Dim>::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
+}
+
+template <int Dim>
+std::unique_ptr<Centre<Dim>> MovingPart<Dim>::with_fastest(const Centre<Dim>& vertex, double& rate,
+                                                           InverseBoundCache& cache) const {
+    std::vector<double> mechanism(static_cast<std::size_t>(vertex.structure().size()), 0.0);
+    mechanism[curve_->slot] = -rate; // approach velocity
+    vertex.factorisation().solve_velocities(mechanism);
+    const auto fastest = std::max_element(mechanism.begin(), mechanism.end(),
+                                          [](double a, double b) { return std::abs(a) < std::abs(b); });
+    rate = *fastest > 0 ? 1 : -1;
+    return centre(vertex.packing(),
+                  vertex.structure().dofs().coordinate_of(static_cast<int>(fastest - mechanism.begin())), cache);
+}
+
+template <int Dim> std::vector<Contact> MovingPart<Dim>::watched(const CandidateList<Dim>& list) const {
+    const Contact& opened = start_.structure.contacts()[slot_];
+    const ContactSet kept(start_.structure.contacts(), start_.packing.disk_count());
+    std::vector<Contact> contacts;
+    for (const Contact& c : list.contacts) {
+        if (c != opened && !kept.contains(c) && moves(c)) {
+            contacts.push_back(c);
+        }
+    }
+    if (opened.kind != ContactKind::held) {
+        contacts.push_back(opened);
+    }
+    return contacts;
+}
+
+template <int Dim> std::vector<Contact> MovingPart<Dim>::all(const CandidateList<Dim>& list) const {
+    const ContactSet kept(start_.structure.contacts(), start_.packing.disk_count());
+    std::vector<Contact> contacts;
+    std::copy_if(list.contacts.begin(), list.contacts.end(), std::back_inserter(contacts),
+                 [&](const Contact& c) { return !kept.contains(c); });
+    return contacts;
+}
+
+template <int Dim>
+bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const CandidateList<Dim>& list) const {
+    const std::vector<double>& q = piece.centre().q;
+    if (list.reference.size() != q.size()) {
+        return false;
+    }
+    const double off = piece.radius() + piece.curve().rest_radius;
+    for (std::size_t k = 0; k < q.size(); k += Dim) {
+        double moved = 0;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            moved = std::hypot(moved, q[k + a] - list.reference[k + a]);
+        }
+        double power = h;
+        for (const auto& coefficient : piece.coefficients()) {
+            double size = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                size = std::hypot(size, coefficient[k + a]);
+            }
+            moved += power * size;
+            power *= h;
+        }
+        if (!(2 * (moved + off) * up < list.reach)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+template class Centre<2>;
+template class MovingPart<2>;
+
+} // namespace isostat

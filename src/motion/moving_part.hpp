@@ -1,0 +1,89 @@
+#pragma once
+/// \file
+/// The grains that move during an arc and their equations: private to the room (statement A7, proofs/arcs.md).
+
+#include "motion/curve_piece.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/motion/arc_certificate.hpp>
+
+#include <memory>
+#include <string>
+
+namespace isostat {
+
+/// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
+template <int Dim> class Centre {
+  public:
+    /// Nothing when a step fails.
+    static std::unique_ptr<Centre> make(Packing<Dim> packing, std::vector<Contact> contacts, InverseBoundCache& cache);
+    /// The vertex itself, nothing copied but the coordinates.
+    static std::unique_ptr<Centre> of(const ArcVertex<Dim>& vertex);
+
+    [[nodiscard]] const Packing<Dim>& packing() const { return packing_; }
+    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
+    [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
+    [[nodiscard]] double sigma_min() const { return sigma_min_; }
+
+  private:
+    struct Own {
+        explicit Own(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
+        IsostaticStructure<Dim> structure;
+        Factorisation factorisation;
+    };
+    Packing<Dim> packing_;
+    std::unique_ptr<Own> own_;
+    const IsostaticStructure<Dim>* structure_ = nullptr;
+    const Factorisation* factorisation_ = nullptr;
+    double sigma_min_ = 0;
+};
+
+/// All grains, or the few that the mechanism at the start moves when the contacts that touch them are as many as their
+/// degrees of freedom.
+template <int Dim> class MovingPart {
+  public:
+    MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end, std::size_t slot, double start_uncertainty,
+               double end_uncertainty);
+    /// Empty, or why the part cannot be certified.
+    [[nodiscard]] const std::string& trouble() const { return trouble_; }
+    [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
+    /// The vertex at an end, with its own contact in the free row.
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> at_start(InverseBoundCache& cache) const;
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> at_end(InverseBoundCache& cache) const;
+    /// The same place with the coordinate that is fastest there in the free row, `rate` (of the present free row) made
+    /// the sign of that coordinate's rate.
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> with_fastest(const Centre<Dim>& vertex, double& rate,
+                                                            InverseBoundCache& cache) const;
+    /// Fresh centre with coordinate `held` in the free row.
+    [[nodiscard]] std::unique_ptr<Centre<Dim>> centre(Packing<Dim> packing, int held, InverseBoundCache& cache) const;
+    [[nodiscard]] bool whole() const { return whole_; }
+
+    /// Candidates with a grain that moves and that are not kept; the opened contact is among them.
+    [[nodiscard]] std::vector<Contact> watched(const CandidateList<Dim>& list) const;
+    /// Candidates that are not kept, moving or not.
+    [[nodiscard]] std::vector<Contact> all(const CandidateList<Dim>& list) const;
+    /// Whether the list is complete at every true point of the curve with |s| <= h on the piece.
+    [[nodiscard]] bool complete(const CurvePiece<Dim>& piece, double h, const CandidateList<Dim>& list) const;
+
+  private:
+    [[nodiscard]] bool moves(const Contact& contact) const;
+    [[nodiscard]] std::vector<Contact> with_row(const Contact& row) const;
+    bool restrict_to(const std::vector<double>& mechanism);
+    void check_rest(double uncertainty);
+
+    const ArcVertex<Dim>& start_;
+    const ArcVertex<Dim>& end_;
+    std::size_t slot_;
+    bool whole_ = true;
+    std::vector<unsigned char> disk_moves_;
+    std::vector<unsigned char> wall_moves_;
+    Packing<Dim> start_packing_; ///< grains at rest are marked fixed
+    Packing<Dim> end_packing_;
+    std::unique_ptr<KeptCurve<Dim>> curve_;
+    std::string trouble_;
+};
+
+extern template class Centre<2>;
+extern template class MovingPart<2>;
+
+} // namespace isostat

@@ -1,0 +1,233 @@
+#include "motion/power_watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr double up = 1 + 1e-9;
+constexpr int max_depth = 40;
+/// Shares of a piece beyond which an end with power 0 is not called that: they are reported whatever they are.
+constexpr double largest_open_start = 1e-2;
+constexpr double largest_open_end = 1e-4;
+
+} // namespace
+
+/// P(s) = -f_slot row . p'(s) + d/ds sum_l f_l |difference of (p - centre)|^2 / (2 d_l), up to `open(h)`, f the forces
+/// that balance the load at the centre up to a residual.
+template <int Dim> struct PowerWatch<Dim>::Power {
+    std::vector<double> c;      ///< P(s) = sum_k c_k s^k
+    std::vector<double> c_open; ///< rounding of c_k
+    std::vector<double> g;      ///< (sum (f/d)^2 |difference of a_k|^2)^(1/2), k = 1 ...
+    double apart = 0;           ///< 2-norm of the differences of q(s) - p(s)
+    double slope_apart = 0;     ///< of their derivatives
+    double heaviest = 0;        ///< largest |f| / d
+    double residual = 0;        ///< |F - H f| times the speed
+
+    /// P lies above this for s in [from, to].
+    double low(double from, double to) const {
+        const double s = 0.5 * (from + to);
+        const double half = std::max(to - s, s - from) * (1 + 4 * u);
+        const double h = std::max(std::abs(from), std::abs(to));
+        double value = 0;
+        for (std::size_t k = c.size(); k-- > 0;) {
+            value = value * s + c[k];
+        }
+        double change = 0;
+        double rounding = 0;
+        double power = 1;
+        for (std::size_t k = 0; k < c.size(); ++k) {
+            if (k >= 1) {
+                change += static_cast<double>(k) * power * std::abs(c[k]);
+                power *= h;
+            }
+            rounding += power * (c_open[k] + 4 * static_cast<double>(c.size()) * u * std::abs(c[k]));
+        }
+        double first = 0;
+        double second = 0;
+        power = 1;
+        for (std::size_t k = 1; k <= g.size(); ++k) {
+            second += static_cast<double>(k) * power * g[k - 1];
+            power *= h;
+            first += power * g[k - 1];
+        }
+        const double open = first * slope_apart + second * apart + heaviest * apart * slope_apart + residual;
+        return value - (half * change + rounding + open) * up;
+    }
+};
+
+template <int Dim> void PowerWatch<Dim>::walk(const Power& power, double from, double to, int depth) {
+    if (power.low(from, to) > 0) {
+        return;
+    }
+    const double middle = 0.5 * (from + to);
+    if (depth >= max_depth || !(middle > from && middle < to) ||
+        (depth > 12 && !(power.low(middle, middle) > 0) && !(power.low(to, to) > 0) && !(power.low(from, from) > 0))) {
+        if (!open_.empty() && open_.back().second == from) {
+            open_.back().second = to;
+        } else {
+            open_.emplace_back(from, to);
+        }
+        return;
+    }
+    walk(power, from, middle, depth + 1);
+    walk(power, middle, to, depth + 1);
+}
+
+template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, double from, double to) {
+    if (power_.load == nullptr || (!power_.infinitesimal && power_.load->kind == LoadKind::true_stress)) {
+        reason_ = power_.load == nullptr ? "no load was given" : "true stresses are not dead loads";
+        return;
+    }
+    const Packing<Dim>& at = piece.centre();
+    const KeptCurve<Dim>& curve = piece.curve();
+    const IsostaticStructure<Dim>& structure = piece.structure();
+    const sparse::Matrix<double>& h = structure.matrix();
+    const auto n = static_cast<std::size_t>(structure.size());
+    const std::vector<double> load =
+        power_.infinitesimal ? power_.load->infinitesimal : power_.load->external_force(*curve.start);
+    std::vector<double> force(n, 0.0);
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        const auto k = static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)));
+        force[mu] = k < load.size() ? load[k] : 0;
+    }
+    std::vector<double> f = force;
+    piece.factorisation().solve_forces(f);
+    std::vector<double> residual = force;
+    std::vector<double> size(n);
+    std::vector<double> terms(n, 7);
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        size[mu] = std::abs(force[mu]);
+    }
+    for (std::size_t l = 0; l < n; ++l) {
+        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+            const auto entry = static_cast<std::size_t>(e);
+            const auto mu = static_cast<std::size_t>(h.row[entry]);
+            const double term = h.value[entry] * f[l];
+            residual[mu] -= term;
+            size[mu] += std::abs(term);
+            terms[mu] += 1;
+        }
+    }
+    double square = 0;
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        const double bound = std::abs(residual[mu]) + 1.001 * terms[mu] * u * size[mu];
+        square += bound * bound;
+    }
+
+    Power power;
+    const auto& a = piece.coefficients();
+    const std::size_t order = a.size();
+    power.c.assign(2 * order, 0.0);
+    power.c_open.assign(2 * order, 0.0);
+    power.g.assign(order, 0.0);
+    const GapGradient<Dim>& row = piece.row();
+    const double f_row = f[curve.slot];
+    double speed = 0;
+    double reach_power = 1;
+    for (std::size_t k = 1; k <= order; ++k, reach_power *= piece.reach()) {
+        double sum = 0;
+        double absolute = 0;
+        for (int e = 0; e < row.count; ++e) {
+            const auto entry = static_cast<std::size_t>(e);
+            const double term = row.value[entry] * a[k - 1][static_cast<std::size_t>(row.coordinate[entry])];
+            sum += term;
+            absolute += std::abs(term);
+        }
+        const auto factor = static_cast<double>(k);
+        power.c[k - 1] -= factor * f_row * sum;
+        power.c_open[k - 1] += 24 * u * factor * std::abs(f_row) * absolute;
+        double norm = 0;
+        for (const double x : a[k - 1]) {
+            norm += x * x;
+        }
+        speed += factor * reach_power * std::sqrt(norm);
+    }
+    std::vector<std::array<double, Dim>> d(order + 1);
+    for (std::size_t l = 0; l < n; ++l) {
+        const Contact& contact = curve.contacts[l];
+        if (l == curve.slot || contact.kind != ContactKind::disk_disk) {
+            continue;
+        }
+        const auto i = static_cast<std::size_t>(Dim * contact.i);
+        const auto j = static_cast<std::size_t>(Dim * contact.j);
+        double distance = 0;
+        for (std::size_t c = 0; c < Dim; ++c) {
+            const double x = at.q[j + c] - at.q[i + c];
+            distance += x * x;
+            for (std::size_t k = 1; k <= order; ++k) {
+                d[k][c] = a[k - 1][j + c] - a[k - 1][i + c];
+            }
+        }
+        const double weight = f[l] / std::sqrt(distance);
+        power.heaviest = std::max(power.heaviest, std::abs(weight));
+        for (std::size_t k = 1; k <= order; ++k) {
+            double norm = 0;
+            for (std::size_t c = 0; c < Dim; ++c) {
+                norm += d[k][c] * d[k][c];
+            }
+            power.g[k - 1] += weight * weight * norm;
+        }
+        for (std::size_t k = 2; k <= 2 * order; ++k) {
+            double sum = 0;
+            double absolute = 0;
+            for (std::size_t p = k > order ? k - order : 1; p <= std::min(order, k - 1); ++p) {
+                for (std::size_t c = 0; c < Dim; ++c) {
+                    const double term = d[p][c] * d[k - p][c];
+                    sum += term;
+                    absolute += std::abs(term);
+                }
+            }
+            const double factor = 0.5 * static_cast<double>(k) * weight;
+            power.c[k - 1] += factor * sum;
+            power.c_open[k - 1] +=
+                (2 * static_cast<double>(k) + 24 + static_cast<double>(n)) * u * std::abs(factor) * absolute;
+        }
+    }
+    for (double& x : power.g) {
+        x = std::sqrt(x) * up;
+    }
+    const double spread = std::sqrt(2 * std::max(curve.degree, 1.0));
+    power.apart = (spread * piece.radius() + curve.rest_residual) * up;
+    power.slope_apart = spread * piece.slope_error() * up;
+    power.residual = std::sqrt(square) * (speed + piece.slope_error()) * up;
+
+    open_.clear();
+    walk(power, from, to, 0);
+    ++pieces_;
+    inner_open_ = inner_open_ || last_open_ > 0; // the piece before was not the last one
+    last_open_ = 0;
+    const double length = to - from;
+    for (const auto& [low, high] : open_) {
+        if (low == from && pieces_ == 1 && power_.starts_at_zero) {
+            first_open_ = (high - low) / length;
+        } else if (high == to) {
+            last_open_ = (high - low) / length;
+        } else {
+            inner_open_ = true;
+        }
+    }
+}
+
+template <int Dim> void PowerWatch<Dim>::conclude(ArcCertificate& certificate, bool turns) const {
+    certificate.power_reason = reason_;
+    if (!reason_.empty()) {
+        return;
+    }
+    certificate.power_open_start = first_open_;
+    certificate.power_open_end = last_open_;
+    if (inner_open_ || first_open_ > largest_open_start || last_open_ > (turns ? largest_open_end : 0)) {
+        certificate.power_reason = "the power of the load is not proved positive all along the arc";
+        return;
+    }
+    certificate.power = Verdict::proved;
+}
+
+template class PowerWatch<2>;
+
+} // namespace isostat

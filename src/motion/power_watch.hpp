@@ -1,0 +1,37 @@
+#pragma once
+/// \file
+/// Sign of the power of dead loads along a chain of proved pieces: private to the room (statement A6, proofs/arcs.md).
+
+#include "motion/curve_piece.hpp"
+
+#include <isostat/motion/arc_certificate.hpp>
+
+#include <string>
+
+namespace isostat {
+
+/// Power F . q'(s) of a load that does not change, piece by piece.
+template <int Dim> class PowerWatch {
+  public:
+    explicit PowerWatch(const PowerLoad<Dim>& power) : power_(power) {}
+    void look(const CurvePiece<Dim>& piece, double from, double to);
+    /// Fills the fields of the power. `turns`: the arc ends at a power turn.
+    void conclude(ArcCertificate& certificate, bool turns) const;
+
+  private:
+    struct Power;
+    /// Longest end [s, to] and start [from, s] on which the power is proved positive.
+    void walk(const Power& power, double from, double to, int depth);
+
+    const PowerLoad<Dim>& power_;
+    std::string reason_;
+    int pieces_ = 0;
+    double first_open_ = 0;   ///< share of the first piece, from its start
+    double last_open_ = 0;    ///< share of the last piece, to its end
+    bool inner_open_ = false; ///< not proved elsewhere
+    std::vector<std::pair<double, double>> open_;
+};
+
+extern template class PowerWatch<2>;
+
+} // namespace isostat

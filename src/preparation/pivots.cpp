@@ -1,0 +1,219 @@
+#include "preparation/pivots.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/statics/statics.hpp>
+#include <isostat/verified/configuration.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+namespace isostat::preparation {
+
+namespace {
+
+/// Entries of an exchange below this share of the largest one are not pivots: the next matrix would be so badly
+/// conditioned that Newton leaves the neighbourhood (seen at 1e-9, for lattices perturbed by 1e-9).
+constexpr double smallest_pivot = 1e-6;
+
+/// Force of a contact as it is compared: finite part, then the infinitesimal one.
+using Force = std::pair<double, double>;
+
+/// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
+template <int Dim> class Basis {
+  public:
+    Basis(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure)
+        : packing_(packing), load_(final_load(load, packing)), structure_(structure), factorisation_(structure),
+          inverse_(bound_inverse(structure, factorisation_, cache_)),
+          vertex_(enclose_vertex_double_double(packing, structure, factorisation_, inverse_)),
+          statics_(packing_, load_, structure_, factorisation_, inverse_) {
+        statics_.climb();
+        for (const Contact& candidate : find_candidates(packing, candidate_fraction).contacts) {
+            if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
+                others_.push_back(candidate);
+                gaps_.push_back(gap_at_vertex(packing, vertex_, candidate).value);
+            }
+        }
+        const double sigma = load_.stress[static_cast<std::size_t>(load_.loaded_axis)];
+        for (std::size_t l = 0; l < contacts().size(); ++l) {
+            const ContactId id(l);
+            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : statics_.force(id, sigma).value,
+                                 statics_.infinitesimal(id).value);
+        }
+    }
+
+    /// Whether the gaps and forces mean anything.
+    [[nodiscard]] bool known() const {
+        return inverse_.verdict == Verdict::proved && vertex_.verdict == Verdict::proved;
+    }
+
+    /// The most negative gap of another pair.
+    [[nodiscard]] std::optional<std::size_t> overlapping() const {
+        const auto least = std::min_element(gaps_.begin(), gaps_.end());
+        return least != gaps_.end() && *least < 0 ? std::optional(static_cast<std::size_t>(least - gaps_.begin()))
+                                                  : std::nullopt;
+    }
+
+    /// The most negative force.
+    [[nodiscard]] std::optional<std::size_t> pulling() const {
+        const auto least = std::min_element(forces_.begin(), forces_.end());
+        return least != forces_.end() && *least < Force(0, 0)
+                   ? std::optional(static_cast<std::size_t>(least - forces_.begin()))
+                   : std::nullopt;
+    }
+
+    /// Contact m = sum of a_l contacts l: as its force grows, f_l - a_l f_m reaches 0 first for the one returned.
+    [[nodiscard]] std::optional<std::size_t> leaving(std::size_t other) const {
+        std::vector<double> a(contacts().size(), 0.0);
+        const GapGradient<Dim> g = gap_gradient(packing_, others_[other]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const int dof = structure_.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            if (dof >= 0) {
+                a[static_cast<std::size_t>(dof)] = -g.value[k];
+            }
+        }
+        factorisation_.solve_forces(a);
+        const double least = smallest_pivot * largest(a);
+        std::optional<std::size_t> first;
+        Force ratio;
+        for (std::size_t l = 0; l < a.size(); ++l) {
+            if (a[l] > least) {
+                const Force f = std::max(forces_[l], Force(0, 0));
+                const Force r(f.first / a[l], f.second / a[l]);
+                if (!first || r < ratio) {
+                    first = l;
+                    ratio = r;
+                }
+            }
+        }
+        return first;
+    }
+
+    /// Velocity that opens contact l at unit rate, and the gap that it closes first.
+    struct Motion {
+        std::vector<double> velocity; ///< on the degrees of freedom
+        std::optional<std::size_t> entering;
+        double time = std::numeric_limits<double>::infinity();
+    };
+    [[nodiscard]] Motion open(std::size_t l) const {
+        Motion out;
+        out.velocity.assign(contacts().size(), 0.0);
+        out.velocity[l] = -1; // approach
+        factorisation_.solve_velocities(out.velocity);
+        const double least = smallest_pivot * largest(out.velocity);
+        for (std::size_t m = 0; m < others_.size(); ++m) {
+            const GapGradient<Dim> g = gap_gradient(packing_, others_[m]);
+            double rate = 0;
+            for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+                const int dof = structure_.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
+                rate += dof >= 0 ? g.value[k] * out.velocity[static_cast<std::size_t>(dof)] : 0.0;
+            }
+            if (rate < -least && gaps_[m] / -rate < out.time) {
+                out.time = gaps_[m] / -rate;
+                out.entering = m;
+            }
+        }
+        return out;
+    }
+
+    [[nodiscard]] const std::vector<Contact>& contacts() const { return structure_.contacts(); }
+    [[nodiscard]] const Contact& other(std::size_t m) const { return others_[m]; }
+    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return structure_; }
+    static double largest(const std::vector<double>& x) {
+        return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double y) { return std::max(m, std::abs(y)); });
+    }
+
+  private:
+    static Load<Dim> final_load(Load<Dim> load, const Packing<Dim>& packing) {
+        for (int a = 0; a < Dim; ++a) {
+            load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
+        }
+        return load;
+    }
+
+    const Packing<Dim>& packing_;
+    Load<Dim> load_;
+    const IsostaticStructure<Dim>& structure_;
+    Factorisation factorisation_;
+    InverseBoundCache cache_;
+    InverseBound inverse_;
+    VertexEnclosure vertex_;
+    Statics<Dim> statics_;
+    std::vector<Contact> others_;
+    std::vector<double> gaps_;  ///< of `others_`
+    std::vector<Force> forces_; ///< of the contacts
+};
+
+} // namespace
+
+template <int Dim>
+Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
+                                      const PivotLimits& limits, long& iterations,
+                                      std::optional<State<Dim>>& candidate) {
+    for (int pivot = 0; pivot < limits.pivots; ++pivot) {
+        if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
+            return Failure{FailureKind::interrupted, fmt::format("stopped after {} pivots", pivot)};
+        }
+        std::sort(contacts.begin(), contacts.end());
+        if (auto failure = newton(packing, contacts, iterations)) {
+            return *failure;
+        }
+        snap_to_grid(packing);
+        const auto structure = IsostaticStructure<Dim>::prove(packing, contacts);
+        if (!structure.ok()) {
+            return structure.failure();
+        }
+        const Basis<Dim> basis(packing, load, structure.value());
+        const auto overlapping = basis.overlapping();
+        const auto pulling = basis.pulling();
+        if (!basis.known() || (!overlapping && !pulling)) {
+            auto polished = polish(packing, contacts, load, iterations);
+            if (!polished.ok() && polished.failure().kind == FailureKind::undecided) {
+                candidate.emplace();
+                candidate->load = load;
+                for (int a = 0; a < Dim; ++a) {
+                    candidate->load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
+                }
+                candidate->packing = std::move(packing);
+                candidate->contacts = std::move(contacts);
+            }
+            return polished;
+        }
+        if (overlapping) {
+            const auto leaving = basis.leaving(*overlapping);
+            if (!leaving) {
+                return Failure{FailureKind::overlap,
+                               fmt::format("{} cannot be parted", to_string<Dim>(basis.other(*overlapping)))};
+            }
+            contacts[*leaving] = basis.other(*overlapping);
+            continue;
+        }
+        const auto motion = basis.open(*pulling);
+        if (!motion.entering) {
+            return Failure{FailureKind::unbounded,
+                           fmt::format("opening {} closes no gap", to_string<Dim>(contacts[*pulling]))};
+        }
+        if (motion.time * Basis<Dim>::largest(motion.velocity) > limits.step) {
+            return Failure{FailureKind::not_converged,
+                           fmt::format("opening {} moves farther ({:.3g}) than linear gaps hold",
+                                       to_string<Dim>(contacts[*pulling]),
+                                       motion.time * Basis<Dim>::largest(motion.velocity))};
+        }
+        for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
+            packing.q[static_cast<std::size_t>(basis.structure().dofs().coordinate_of(static_cast<int>(mu)))] +=
+                motion.time * motion.velocity[mu];
+        }
+        contacts[*pulling] = basis.other(*motion.entering);
+    }
+    return Failure{FailureKind::not_converged, fmt::format("no vertex after {} pivots", limits.pivots)};
+}
+
+template Result<Polished<2>> pivot_to_vertex<2>(Packing<2>, std::vector<Contact>, const Load<2>&, const PivotLimits&,
+                                                long&, std::optional<State<2>>&);
+
+} // namespace isostat::preparation

@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// The last pivots of the sequence of linear programmes, without tolerances.
+
+#include "preparation/polish.hpp"
+
+#include <atomic>
+
+namespace isostat::preparation {
+
+struct PivotLimits {
+    double step = 0; ///< longest displacement of one exchange: beyond it linear gaps are no guide
+    int pivots = 1000;
+    const std::atomic<bool>* stop = nullptr;
+};
+
+/// From a basis that is wrong only below the tolerances of a linear solver (forces and gaps near 1e-9, infinitesimal
+/// loads that are not) to the vertex. At the true vertex of the present contacts (Newton, then a correction in
+/// double-double, so that gaps and forces far below the rounding of a length have signs): a negative gap is closed
+/// (dual simplex: the contact whose force reaches 0 first, lexicographically in (f0, f1), is left); else the most
+/// negative force is opened (primal simplex: the gap that closes first is taken). The choices are made in rounded
+/// arithmetic and prove nothing; `polish` proves the end, and its failure is the answer when it cannot.
+/// When the last basis has gaps and forces of the right sign as computed and `polish` cannot prove them in
+/// double-double, the state is in `candidate`: another proof may. Failures beside those: `unbounded`, `not_converged`
+/// (limits), `interrupted`. Cost: a rank proof, a factorisation and a bound of the inverse per pivot.
+template <int Dim>
+Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
+                                      const PivotLimits& limits, long& iterations,
+                                      std::optional<State<Dim>>& candidate);
+
+extern template Result<Polished<2>> pivot_to_vertex<2>(Packing<2>, std::vector<Contact>, const Load<2>&,
+                                                       const PivotLimits&, long&, std::optional<State<2>>&);
+
+} // namespace isostat::preparation

@@ -1,0 +1,79 @@
+#include "scene/section.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/scene/scene.hpp>
+#include <isostat/scene/seed.hpp>
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+/// Byte of a position that TOML gives as line and column from 1, columns counted in code points.
+std::size_t offset_of(const std::string& text, const toml::source_position& position) {
+    std::size_t at = 0;
+    for (std::uint32_t line = 1; line < position.line; ++line) {
+        at = text.find('\n', at) + 1;
+    }
+    const auto continues = [&](std::size_t k) { return k < text.size() && (text[k] & 0xC0) == 0x80; };
+    for (std::uint32_t column = 1; column < position.column; ++column) {
+        ++at;
+        while (continues(at)) {
+            ++at;
+        }
+    }
+    return at;
+}
+
+void replace_value(std::string& text, const toml::node& value, const std::string& by) {
+    const std::size_t begin = offset_of(text, value.source().begin);
+    const std::size_t end = offset_of(text, value.source().end);
+    text.replace(begin, end - begin, by);
+}
+
+} // namespace
+
+std::string with_seed(const std::string& text, std::uint64_t seed, const std::string& source,
+                      const std::filesystem::path& folder) {
+    const Scene scene = parse_scene(text, source, folder);
+    if (!scene.start.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: file in [packing] is {}: a packing that is read has no seed and all samples would "
+                                "be the same: expected disks, radii or radii_file",
+                                source, scene.start.string()));
+    }
+    if (seed > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: seed {}: expected at most {}", source, seed,
+                                                      std::numeric_limits<std::int64_t>::max()));
+    }
+    const auto value_of = [](const toml::table& document, const char* key) { return document["packing"][key].node(); };
+    std::string result = text;
+    const toml::table original = toml::parse(text);
+    if (const toml::node* file = value_of(original, "radii_file")) {
+        const std::filesystem::path name = file->value<std::string>().value_or("");
+        replace_value(result, *file, toml_text(std::filesystem::absolute(folder / name).lexically_normal().string()));
+    }
+    const toml::table document = toml::parse(result);
+    if (const toml::node* old = value_of(document, "seed")) {
+        replace_value(result, *old, fmt::format("{}", seed));
+    } else {
+        const std::size_t header = offset_of(result, document["packing"].node()->source().begin);
+        if (result[header] != '[') {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: [packing] has no seed that could be replaced: expected seed = 1", source));
+        }
+        const std::size_t next = std::min(result.find('\n', header), result.size());
+        result.insert(next, fmt::format("\nseed = {}", seed));
+    }
+    if (parse_scene(result, source, folder).preparation.seed != seed) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: the seed of [packing] could not be replaced: expected seed "
+                                                      "= 1 on a line of its own",
+                                                      source));
+    }
+    return result;
+}
+
+} // namespace isostat

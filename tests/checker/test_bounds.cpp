@@ -1,0 +1,175 @@
+// The bounds of the inverse against a dense inverse in long double: never below it, and not much above.
+#include "checker/forces.hpp"
+#include "checker/gaps.hpp"
+#include "checker/inverse.hpp"
+#include "checker/maker.hpp"
+#include "checker/small_states.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <random>
+
+using namespace isostat;
+
+namespace {
+
+/// The derivative at the stored coordinates, walls with their weight, in real lengths.
+maker::Matrix derivative(const checker::Problem& problem) {
+    maker::Matrix a = maker::Matrix::Zero(problem.contacts(), problem.dofs());
+    for (int l = 0; l < problem.contacts(); ++l) {
+        const checker::Row& row = problem.rows[static_cast<std::size_t>(l)];
+        for (int k = 0; k < row.count; ++k) {
+            const int dof = problem.dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
+            if (dof >= 0) {
+                a(l, dof) = problem.length(problem.entry(l, k, problem.stored)).get_d();
+            }
+        }
+    }
+    return a;
+}
+
+void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
+    const checker::Problem problem(state);
+    const checker::Solver solver(problem);
+    const checker::InverseBound bound = checker::bound_inverse(problem, solver, arithmetic);
+    BOOST_REQUIRE(bound.found);
+    const maker::Matrix inverse = derivative(problem).inverse();
+    const maker::Matrix sizes = inverse.cwiseAbs();
+    const auto near = [](const checker::Rational& upper, maker::Real value) {
+        // R is the inverse to a relative 1e-9 here, and the oracle to 1e-12.
+        return upper.get_d() >= static_cast<double>(value) * (1 - 1e-9) &&
+               upper.get_d() <= static_cast<double>(value) * (1 + 1e-9);
+    };
+    BOOST_TEST(near(bound.row_sum, sizes.rowwise().sum().maxCoeff()));
+    BOOST_TEST(near(bound.column_sum_max, sizes.colwise().sum().maxCoeff()));
+    maker::Real quadratic = 0;
+    for (Eigen::Index k = 0; k < sizes.rows(); ++k) {
+        maker::Real sum = 0;
+        for (Eigen::Index l = 0; l < sizes.cols(); ++l) {
+            sum += problem.rows[static_cast<std::size_t>(l)].quadratic ? sizes(k, l) : 0;
+        }
+        quadratic = std::max(quadratic, sum);
+    }
+    BOOST_TEST((near(bound.quadratic_sum, quadratic) || quadratic == 0));
+    for (int l = 0; l < problem.contacts(); ++l) {
+        BOOST_TEST(near(bound.column_sum[static_cast<std::size_t>(l)], sizes.col(l).sum()));
+    }
+    BOOST_TEST(bound.residual_row < 1e-9);
+    BOOST_TEST(bound.residual_column < 1e-9);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(bounds_of_the_inverse_agree_with_a_dense_inverse) {
+    for (const CheckerArithmetic arithmetic :
+         {CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+        check_bounds(crafted::one_disk(1, 1), arithmetic);
+        check_bounds(crafted::three_disks(1, 1.1, 1.3, 1, 1), arithmetic);
+        check_bounds(small_states::with_a_rattler(), arithmetic);
+        check_bounds(small_states::with_a_fixed_disk(), arithmetic);
+        if (arithmetic != CheckerArithmetic::rational) {
+            check_bounds(read_state<2>(scratch::data("vertex100.txt")).state, arithmetic);
+        }
+    }
+}
+
+// A factorisation of another matrix must be noticed by the residual, whatever it is.
+BOOST_AUTO_TEST_CASE(a_wrong_factorisation_proves_nothing) {
+    const isostat::checker::Problem problem(crafted::three_disks(1, 1.1, 1.3, 1, 1));
+    const isostat::checker::Problem other(crafted::three_disks(1, 1.4, 2.3, 1, 1));
+    const isostat::checker::Solver wrong(other);
+    BOOST_TEST(!isostat::checker::bound_inverse(problem, wrong, CheckerArithmetic::fixed64).found);
+}
+
+// One disk between four walls: the two contacts along x are alone with x and the right wall, unless that is loaded.
+BOOST_AUTO_TEST_CASE(forces_vanish_by_counting_only_without_load) {
+    using namespace isostat::checker;
+    const Problem problem(crafted::one_disk(1, 1)); // contacts left, right, bottom, top; coordinates x, y, Lx, Ly
+    Forces load(4, Range(Rational(0)));
+    BOOST_TEST(vanish_structurally(problem, {0, 1}, load));
+    BOOST_TEST(!vanish_structurally(problem, {0}, load));
+    BOOST_TEST(!vanish_structurally(problem, {0, 1, 2}, load));
+    BOOST_TEST(!vary_together(problem, {0, 1}, load));
+    load[2] = Range(Rational(-1));
+    BOOST_TEST(!vanish_structurally(problem, {0, 1}, load));
+    BOOST_TEST(vary_together(problem, {0, 1}, load));
+    BOOST_TEST(vanish_structurally(problem, {2, 3}, load));
+    load[2] = Range(Rational(0), Rational(1)); // may be loaded
+    BOOST_TEST(!vanish_structurally(problem, {0, 1}, load));
+}
+
+// Brute force over all pairs, for configurations that need not be anything: the sweep must list the smallest gap.
+BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
+    using namespace isostat::checker;
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> place(0.5, 40);
+    for (int trial = 0; trial < 2000; ++trial) {
+        State<2> state = small_states::with_a_rattler();
+        const auto disks = static_cast<std::size_t>(2 + trial % 7);
+        state.contacts.clear();
+        state.packing.radius.assign(disks, 0.4);
+        state.packing.radius[0] = 3;
+        state.packing.radius[1] = 2.9;
+        state.packing.q.resize(2 * disks + 2);
+        for (double& x : state.packing.q) {
+            x = place(random);
+        }
+        state.packing.length(0) = 100;
+        state.packing.length(1) = 100;
+        const std::vector<Contact> pairs = maker::all_pairs(state);
+        state.contacts = {pairs[random() % pairs.size()], pairs[random() % pairs.size()]};
+        const Problem problem(state);
+        TrueVertex vertex;
+        vertex.middle = problem.stored;
+        vertex.radius = 0;
+        const std::vector<Gap> near = smallest_gaps(problem, state, vertex);
+        const maker::Approximation at(state);
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const Contact& pair : pairs) {
+            if (is_free_pair(state, pair)) {
+                smallest = std::min(smallest, static_cast<double>(at.gap(pair)));
+            }
+        }
+        BOOST_REQUIRE(!near.empty());
+        double found = std::numeric_limits<double>::infinity();
+        for (const Gap& gap : near) {
+            BOOST_TEST(is_free_pair(state, gap.pair));
+            BOOST_TEST(std::abs(gap.value.lower.get_d() - static_cast<double>(at.gap(gap.pair))) < 1e-12);
+            found = std::min(found, gap.value.lower.get_d());
+        }
+        BOOST_TEST(std::abs(found - smallest) < 1e-12);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(ranges_contain_what_they_must) {
+    using isostat::checker::Range;
+    using isostat::checker::Rational;
+    const Range a(Rational(-1, 3), Rational(1, 2));
+    const Range b(Rational(-5, 7), Rational(-2, 7));
+    for (const Rational& x : {a.lower, Rational(0), a.upper}) {
+        for (const Rational& y : {b.lower, Rational(-1, 2), b.upper}) {
+            const auto inside = [](const Range& range, const Rational& value) {
+                return range.lower <= value && value <= range.upper;
+            };
+            BOOST_TEST(inside(a + b, x + y));
+            BOOST_TEST(inside(a - b, x - y));
+            BOOST_TEST(inside(a * b, x * y));
+            BOOST_TEST(inside(a / b, x / y));
+        }
+    }
+    BOOST_TEST(isostat::checker::rounded_up(Rational(1, 3)) == std::nextafter(1.0 / 3, 1.0));
+    BOOST_TEST(isostat::checker::rounded_down(Rational(1, 3)) == 1.0 / 3);
+    BOOST_TEST(isostat::checker::rounded_up(Rational(-1, 3)) == -1.0 / 3);
+    BOOST_TEST(isostat::checker::rounded_up(isostat::checker::power_of_two(-3000)) > 0);
+    BOOST_TEST(isostat::checker::rounded_up(isostat::checker::power_of_two(3000)) ==
+               std::numeric_limits<double>::infinity());
+    BOOST_TEST(isostat::checker::rounded_down(isostat::checker::power_of_two(3000)) ==
+               std::numeric_limits<double>::max());
+}
+
+BOOST_AUTO_TEST_SUITE_END()

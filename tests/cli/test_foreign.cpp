@@ -1,0 +1,133 @@
+// isostat plateau and isostat genericity, as a user runs them.
+
+#include "cli/program.hpp"
+
+#include <filesystem>
+
+namespace {
+
+using program::contains;
+using program::expect;
+using program::run;
+
+const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
+
+/// The three disks of the closed form, written as another program would; 0.5 to the left and 3 below the origin.
+std::string three_disks(const std::string& header, const std::string& size) {
+    return header + "0.5,-2," + size + "\n2.5,-2," + size + "\n1.5,-0.26794919243112259," + size + "\n";
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli_foreign)
+
+BOOST_AUTO_TEST_CASE(plateau_of_a_state_and_of_a_crafted_packing) {
+    const auto state = run({"plateau", scratch::data("vertex100.txt")});
+    expect(state, 0);
+    BOOST_TEST(contains(state.out, "backbone isostatic, proved"));
+    BOOST_TEST(contains(state.out, "from N = 188 with 7 rattlers"));
+    BOOST_TEST(contains(state.out, "the contact list of the file is not used"));
+    const auto lattice = run({"plateau", packings + "square_lattice_3.toml", "--thresholds=-1e-3:1e-2"});
+    expect(lattice, 1);
+    BOOST_TEST(contains(lattice.out, "at no threshold"));
+}
+
+BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "disks.csv").string();
+    scratch::write(file, three_disks("x,y,diameter\n", "2"));
+    // 0-0-0: the box fits to rounding; the top wall touches disk 2.
+    const std::vector<std::string> command{"plateau",
+                                           file,
+                                           "--walls",
+                                           "box",
+                                           "--box=-0.5:3.5,-3:0.7320508075688774",
+                                           "--thresholds=-1e-9:1e-3",
+                                           "--csv",
+                                           (folder / "table.csv").string()};
+    auto arguments = command;
+    const auto text = run(arguments);
+    expect(text, 0);
+    BOOST_TEST(contains(text.out, "diameter from column 'diameter'"));
+    BOOST_TEST(contains(text.out, "left and bottom fixed, right and top movable"));
+    const std::string table = scratch::read(folder / "table.csv");
+    BOOST_TEST(table.starts_with("threshold,candidates,rattlers,N_f,N,rank,h,k,"));
+    arguments.emplace_back("--json");
+    const auto json = run(arguments);
+    expect(json, 0);
+    BOOST_TEST(contains(json.out, "\"format\":\"isostat-plateau 1\""));
+    BOOST_TEST(contains(json.out, "\"N\":8"));
+    BOOST_TEST(std::count(json.out.begin(), json.out.end(), '\n') == 1);
+    // The same numbers as radii: disks of twice the size overlap and leave the box of their walls.
+    arguments.emplace_back("--radius");
+    arguments.emplace_back("diameter");
+    BOOST_TEST(contains(run(arguments).out, "radius from column 'diameter', as stated"));
+}
+
+BOOST_AUTO_TEST_CASE(what_the_user_must_state_is_asked_for) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "disks.txt").string();
+    scratch::write(file, three_disks("", "1"));
+    expect(run({"plateau", file}), 65, {"disks.txt:1", "--columns x,y,r"});
+    expect(run({"plateau", file, "--columns", "x,y,r"}), 1);
+    expect(run({"plateau", file, "--columns", "x,y,s"}), 65, {"disks.txt", "--radius COLUMN"});
+    expect(run({"plateau", file, "--columns", "x,y,r", "--walls", "box"}), 65, {"--box"});
+    for (const std::vector<std::string>& wrong :
+         std::vector<std::vector<std::string>>{{"--thresholds", "1"},
+                                               {"--thresholds", "2:1"},
+                                               {"--thresholds", "a:b"},
+                                               {"--thresholds", "nan:1"},
+                                               {"--radius", "-1"},
+                                               {"--radius", "1", "--diameter", "2"},
+                                               {"--walls", "round"},
+                                               {"--box", "1:2"},
+                                               {"--frame", "-1"},
+                                               {"--frame", "1.5"},
+                                               {"--format", "pdf"},
+                                               {"--rows", "-1"}}) {
+        std::vector<std::string> arguments{"plateau", file, "--columns", "x,y,r"};
+        arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+        expect(run(arguments), 64);
+    }
+    expect(run({"plateau", scratch::data("vertex100.txt"), "--walls", "box"}), 64, {"vertex", "--walls"});
+    expect(run({"plateau", (folder / "none.txt").string()}), 65, {"none.txt"});
+    expect(run({"plateau", file, "--columns", "x,y,r", "--csv", (folder / "no/where.csv").string()}), 74);
+    BOOST_TEST(!std::filesystem::exists(folder / "no"));
+}
+
+BOOST_AUTO_TEST_CASE(genericity_of_a_lattice_of_equal_disks) {
+    const scratch::Folder folder;
+    const std::string lattice = packings + "square_lattice_3.toml";
+    const auto generic =
+        run({"genericity", lattice, "--samples", "10", "--size", "1e-3,1e-12", "--csv", (folder / "g.csv").string()});
+    expect(generic, 0);
+    BOOST_TEST(contains(generic.out, "h = 4, k = 0"));
+    const std::string table = scratch::read(folder / "g.csv");
+    BOOST_TEST(std::count(table.begin(), table.end(), '\n') == 21);
+    BOOST_TEST(contains(table, "proved"));
+    // Equal radii that stay equal: a true tie, and never called isostatic.
+    const auto equal = run({"genericity", lattice, "--samples", "3", "--size", "1e-3", "--keep-equal", "--json"});
+    expect(equal, 2);
+    BOOST_TEST(contains(equal.out, "\"proved_isostatic\":0"));
+    BOOST_TEST(contains(equal.out, "\"ties\":3"));
+}
+
+BOOST_AUTO_TEST_CASE(genericity_of_a_state_keeps_its_contacts) {
+    const auto state =
+        run({"genericity", scratch::data("vertex100.txt"), "--samples", "3", "--size", "1e-9", "--json"});
+    expect(state, 0);
+    BOOST_TEST(contains(state.out, "\"proved_isostatic\":3"));
+    BOOST_TEST(contains(state.out, "\"distinct_lists\":1"));
+    BOOST_TEST(contains(state.out, "\"within_original\":3"));
+}
+
+BOOST_AUTO_TEST_CASE(genericity_refuses_what_it_cannot_perturb) {
+    expect(run({"genericity", packings + "arch.toml"}), 65, {"movable"});
+    expect(run({"genericity", packings + "two_disks.toml", "--size", "0.7"}), 65, {"size"});
+    expect(run({"genericity", packings + "two_disks.toml", "--samples", "0"}), 65, {"samples"});
+    const scratch::Folder folder;
+    scratch::write(folder / "x.csv", "x,y,r\n1,1,1\n");
+    expect(run({"genericity", (folder / "x.csv").string()}), 65, {"plateau reads files of other programs"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()

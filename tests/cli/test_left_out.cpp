@@ -1,0 +1,61 @@
+// What `plan` says that a scene leaves out is not done, and what it says to be used is: counted by the program itself.
+#include "cli/program.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <set>
+
+using namespace program;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done) {
+    // Entries of the plan that a counter tells of.
+    const std::map<std::string, std::vector<std::string>> counters{
+        {"damped dynamics", {"dynamics_steps"}},
+        {"dual simplex (Clp)", {"linear_programmes"}},
+        {"regular triangulation (CGAL)", {"candidate_searches"}},
+        {"elimination mod 2^61 - 1", {"rank_proofs"}},
+        {"sparse LU (KLU)", {"factorisations", "inverse_bounds"}},
+        {"figures/*.svg, *.png (gnuplot), force pictures", {"pictures", "charts"}},
+        {"figures/*.vtk", {"vtk_files"}}};
+    std::set<std::string> seen_used;
+    std::set<std::string> seen_unused;
+    int runs = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(std::string(ISOSTAT_EXAMPLES) + "/plans")) {
+        if (entry.path().extension() != ".toml") {
+            continue;
+        }
+        BOOST_TEST_CONTEXT(entry.path().filename().string()) {
+            const Outcome planned = run({"plan", entry.path().string(), "--json"});
+            expect(planned, 0);
+            const json plan = json::parse(planned.out);
+            if (plan["programme"].empty()) {
+                continue; // for `isostat prepare`
+            }
+            const scratch::Folder folder;
+            expect(run({"run", entry.path().string(), "-o", (folder / "r").string(), "-q"}), 0);
+            const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
+            ++runs;
+            for (const json& part : plan["plan"]) {
+                const auto found = counters.find(part["name"].get<std::string>());
+                if (found == counters.end()) {
+                    continue;
+                }
+                (part["used"].get<bool>() ? seen_used : seen_unused).insert(found->first);
+                for (const std::string& counter : found->second) {
+                    BOOST_TEST((work[counter].get<long>() > 0) == part["used"].get<bool>(),
+                               found->first << ": " << counter << " = " << work[counter]);
+                }
+            }
+        }
+    }
+    BOOST_TEST(runs >= 10);
+    BOOST_TEST(seen_used.size() == counters.size()); // every entry was met, and each optional one both ways
+    BOOST_TEST(seen_unused.size() == 4U);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,66 @@
+#include "cli/program.hpp"
+
+#include <isostat/io/certificate_file.hpp>
+
+#include <nlohmann/json.hpp>
+
+using namespace program;
+using nlohmann::json;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
+    const scratch::Folder folder;
+    const std::string state = scratch::data("vertex100.txt");
+    const std::string good = (folder / "good.json").string();
+    expect(run({"certify", state, "-o", good}), 0);
+    expect(run({"verify", good}), 0);
+    const Outcome outcome = run({"verify", good, "--input", state, "--json"});
+    expect(outcome, 0);
+    const json answer = json::parse(outcome.out);
+    BOOST_TEST(answer["verdict"] == "proved");
+    std::vector<std::string> claims;
+    for (const json& check : answer["checks"]) {
+        claims.push_back(check["claim"]);
+        BOOST_TEST(check["verdict"] == "proved");
+    }
+    const std::vector<std::string> expected{"counting", "vertex", "forces", "gaps", "load_interval", "stable", "input"};
+    BOOST_TEST(claims == expected, boost::test_tools::per_element());
+    BOOST_TEST(answer["checks"][0]["numbers"]["rank"] == 202);
+
+    // Another input than the one that is named.
+    scratch::write(folder / "other.txt", scratch::read(state) + "\n");
+    const Outcome other = run({"verify", good, "--input", (folder / "other.txt").string()});
+    expect(other, 1);
+    BOOST_TEST(contains(other.out, "refuted"));
+}
+
+BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "certificate.json").string();
+    expect(run({"certify", scratch::data("vertex100.txt"), "-o", file}), 0);
+    const isostat::Certificate original = isostat::read_certificate(file);
+
+    scratch::write(file, scratch::replaced(isostat::certificate_text(original), "\"rank\":202", "\"rank\":201"));
+    expect(run({"verify", file}), 65, {"certificate.json", "digest", "altered"});
+
+    isostat::Certificate altered = original;
+    altered.claims.gaps->smallest *= 2;
+    isostat::write_certificate(file, altered);
+    const Outcome refuted = run({"verify", file});
+    expect(refuted, 1);
+    BOOST_TEST(contains(refuted.out, "gaps           refuted"));
+
+    altered = original;
+    altered.claims.load_interval = {};
+    isostat::write_certificate(file, altered);
+    const Outcome incomplete = run({"verify", file});
+    expect(incomplete, 2);
+    BOOST_TEST(contains(incomplete.out, "load_interval  absent"));
+
+    expect(run({"verify", scratch::data("vertex100.txt")}), 65, {"vertex100.txt", "JSON"});
+    expect(run({"verify", (folder / "nothing.json").string()}), 65, {"nothing.json"});
+    expect(run({"verify"}), 64);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

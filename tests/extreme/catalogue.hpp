@@ -1,0 +1,52 @@
+#pragma once
+// The catalogue of extreme cases: what was asked, what came out, and by what it was checked. Every case adds a row; the
+// rows become a table at the end. A wrong answer is a failed test, an honest refusal is a row.
+
+#include "oracle/dense_forces.hpp"
+
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <chrono>
+#include <string>
+
+namespace extreme {
+
+using namespace isostat;
+
+struct Row {
+    std::string family, parameter;
+    int disks = 0;
+    std::string outcome; ///< proved, refuted, undecided, refused, stopped
+    std::string reason;  ///< of everything but proved
+    std::string rung;
+    double bound = -1; ///< proved bound of the error of every force / largest force; negative: none was proved
+    double seconds = 0;
+    std::string checked; ///< by what
+};
+
+void add(Row row);
+
+class Clock {
+  public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Inspects a state and checks what was said about it:
+/// - proved: every force positive in lexicographic order, in 400 bits, and every force within its bound; no pair
+///   overlaps by more than the rounding of the coordinates;
+/// - refuted: a force that is negative in 400 bits, or a pair that overlaps, or a matrix that is singular.
+/// Adds the row. Returns the inspection, if there is one.
+std::optional<Inspection<2>> inspect(const std::string& family, const std::string& parameter, const State<2>& state);
+
+/// Prepares a packing, stopped after `limit` seconds, and inspects it as above when it has at most `dense` disks
+/// (larger ones: no overlap by brute force or by the certificate, counting). A failure is a row with its reason.
+std::optional<State<2>> prepared(const std::string& family, const std::string& parameter,
+                                 const PreparationOptions& options, double limit = 5);
+
+} // namespace extreme

@@ -1,0 +1,239 @@
+// The table and the checks that every row goes through.
+#include "extreme/catalogue.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/contact/candidates.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <condition_variable>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <thread>
+
+namespace extreme {
+
+namespace {
+
+std::vector<Row>& rows() {
+    static std::vector<Row> list;
+    return list;
+}
+
+std::string number(double value, const char* none) {
+    return value < 0 || !std::isfinite(value) ? none : fmt::format("{:.1e}", value);
+}
+
+/// A cell of a table: no bars, no line breaks, not too long.
+std::string cell(std::string text) {
+    std::replace(text.begin(), text.end(), '|', '/');
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    constexpr std::size_t longest = 140;
+    return text.size() > longest ? text.substr(0, longest - 3) + "..." : text;
+}
+
+std::string markdown() {
+    std::string text = "| family | case | disks | outcome | rung | error bound | ms | checked by |\n"
+                       "|---|---|---|---|---|---|---|---|\n";
+    std::map<std::string, int> counts;
+    for (const Row& row : rows()) {
+        ++counts[row.outcome];
+        text += fmt::format("| {} | {} | {} | {}{} | {} | {} | {:.2f} | {} |\n", row.family, row.parameter, row.disks,
+                            row.outcome, row.reason.empty() ? "" : ": " + cell(row.reason), row.rung,
+                            number(row.bound, "–"), 1000 * row.seconds, row.checked);
+    }
+    text += fmt::format("\n{} cases:", rows().size());
+    for (const auto& [outcome, count] : counts) {
+        text += fmt::format(" {} {},", count, outcome);
+    }
+    text.back() = '.';
+    return text + "\n";
+}
+
+std::string csv() {
+    std::string text = "# family,case,disks,outcome,rung,error_bound,seconds,checked_by,reason\n";
+    const auto quoted = [](std::string word) {
+        std::replace(word.begin(), word.end(), '"', '\'');
+        return '"' + word + '"';
+    };
+    for (const Row& row : rows()) {
+        text += fmt::format("{},{},{},{},{},{},{:.6f},{},{}\n", quoted(row.family), quoted(row.parameter), row.disks,
+                            row.outcome, row.rung, number(row.bound, "nan"), row.seconds, quoted(row.checked),
+                            quoted(row.reason));
+    }
+    return text;
+}
+
+/// Writes the table when everything is done: NAME.md and NAME.csv, NAME from the environment.
+struct Table {
+    ~Table() {
+        const char* name = std::getenv("ISOSTAT_EXTREMES"); // NOLINT(concurrency-mt-unsafe): one thread is left
+        if (name != nullptr) {
+            scratch::write(std::string(name) + ".md", markdown());
+            scratch::write(std::string(name) + ".csv", csv());
+        }
+    }
+};
+BOOST_TEST_GLOBAL_FIXTURE(Table);
+
+/// Overlaps of any pair beyond the rounding of the stored coordinates.
+bool admissible(const State<2>& state) {
+    return certify_admissible(state.packing, 8 * grid_step(state.packing)).verdict == Verdict::proved;
+}
+
+/// Sets a flag after some seconds, unless it is not needed any more.
+class Watchdog {
+  public:
+    explicit Watchdog(double seconds)
+        : thread_([this, seconds] {
+              std::unique_lock lock(mutex_);
+              if (!done_.wait_for(lock, std::chrono::duration<double>(seconds), [this] { return over_; })) {
+                  stop_ = true;
+              }
+          }) {}
+    ~Watchdog() {
+        {
+            const std::lock_guard lock(mutex_);
+            over_ = true;
+        }
+        done_.notify_all();
+        thread_.join();
+    }
+    Watchdog(const Watchdog&) = delete;
+    Watchdog& operator=(const Watchdog&) = delete;
+    [[nodiscard]] const std::atomic<bool>* stop() const { return &stop_; }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable done_;
+    bool over_ = false;
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+constexpr int dense = 64; // disks: 400-bit elimination of larger ones takes seconds
+
+void check_proved(const State<2>& state, const Inspection<2>& inspection, Row& row) {
+    BOOST_TEST(inspection.record.hyperstaticity == 0);
+    BOOST_TEST(inspection.record.mechanisms == 0);
+    BOOST_TEST(admissible(state));
+    if (state.packing.disk_count() > dense) {
+        row.checked = "exact non-overlap of all pairs";
+        return;
+    }
+    const auto truth = oracle::forces(state);
+    BOOST_REQUIRE_MESSAGE(truth, "proved, but the matrix is singular");
+    const std::vector<int> signs = oracle::signs(*truth);
+    for (std::size_t l = 0; l < truth->size(); ++l) {
+        BOOST_TEST(signs[l] == 1, "contact " << to_string<2>(state.contacts[l]));
+        const double error = abs((*truth)[l].first - oracle::Real(inspection.forces[l])).convert_to<double>();
+        const double rounding = std::abs(inspection.forces[l]) * 0x1p-53; // of the printed double
+        BOOST_TEST(error <= inspection.record.force_bound + rounding, "contact " << to_string<2>(state.contacts[l]));
+    }
+    row.checked = "forces in 400 bits, exact non-overlap of all pairs";
+}
+
+void check_refuted(const State<2>& state, Row& row) {
+    const auto truth = oracle::forces(state);
+    bool right = !truth || !admissible(state);
+    if (truth) {
+        const std::vector<int> signs = oracle::signs(*truth);
+        right = right || std::find(signs.begin(), signs.end(), -1) != signs.end();
+    }
+    BOOST_TEST(right, "refuted, but every force is positive and nothing overlaps");
+    row.checked = "forces in 400 bits";
+}
+
+} // namespace
+
+void add(Row row) {
+    rows().push_back(std::move(row));
+}
+
+std::optional<Inspection<2>> inspect(const std::string& family, const std::string& parameter, const State<2>& state) {
+    BOOST_TEST_CONTEXT(family << ", " << parameter) {
+        Row row;
+        row.family = family;
+        row.parameter = parameter;
+        row.disks = state.packing.disk_count();
+        const Clock clock;
+        auto result = inspect_vertex(state);
+        row.seconds = clock.seconds();
+        if (!result.ok()) {
+            const FailureKind kind = result.failure().kind;
+            row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
+            row.reason = fmt::format("{}: {}", to_string(kind), result.failure().message);
+            row.rung = "none";
+            row.checked = "no claim";
+            if (kind == FailureKind::not_isostatic && state.packing.disk_count() <= dense) {
+                BOOST_TEST(!oracle::forces(state), "not isostatic, but the matrix is square and regular");
+                row.checked = "rank in 400 bits";
+            }
+            add(row);
+            return std::nullopt;
+        }
+        Inspection<2>& inspection = result.value();
+        const EquilibriumRecord<2>& record = inspection.record;
+        row.outcome = to_string(record.verdict);
+        row.reason = record.verdict == Verdict::proved ? "" : inspection.remark;
+        if (row.reason.empty() && record.mechanisms > 0) {
+            row.reason = fmt::format("not isostatic: {} mechanisms", record.mechanisms);
+        }
+        row.rung = to_string(record.decided_by);
+        row.checked = "no claim";
+        if (record.verdict == Verdict::proved) {
+            double largest = 0;
+            for (const double f : inspection.forces) {
+                largest = std::max(largest, std::abs(f));
+            }
+            row.bound = record.force_bound / largest;
+            check_proved(state, inspection, row);
+        } else if (record.verdict == Verdict::refuted && state.packing.disk_count() <= dense) {
+            check_refuted(state, row);
+        }
+        add(row);
+        return inspection;
+    }
+    return std::nullopt;
+}
+
+std::optional<State<2>> prepared(const std::string& family, const std::string& parameter,
+                                 const PreparationOptions& options, double limit) {
+    Row row;
+    row.family = family;
+    row.parameter = parameter;
+    row.disks = options.radii.empty() ? options.disks : static_cast<int>(options.radii.size());
+    const Clock clock;
+    const Watchdog watchdog(limit);
+    PreparationOptions watched = options;
+    watched.stop = watchdog.stop();
+    PreparationReport<2> report;
+    const auto result = prepare<2>(watched, report);
+    if (result.ok()) {
+        const double seconds = clock.seconds();
+        const auto inspection = inspect(family, parameter, result.value());
+        BOOST_TEST_CONTEXT(family << ", " << parameter) {
+            BOOST_TEST((inspection && inspection->equilibrium)); // a preparation promises nothing less
+        }
+        rows().back().seconds = seconds;
+        return result.value();
+    }
+    row.seconds = clock.seconds();
+    const Failure& failure = result.failure();
+    row.outcome = failure.kind == FailureKind::interrupted                                     ? "stopped"
+                  : failure.kind == FailureKind::undecided || failure.kind == FailureKind::tie ? "undecided"
+                                                                                               : "refused";
+    row.reason = fmt::format("{}: {}", to_string(failure.kind), failure.message);
+    row.rung = "none";
+    row.checked = "no claim";
+    BOOST_TEST(report.last.has_value()); // nothing is lost
+    add(row);
+    return std::nullopt;
+}
+
+} // namespace extreme

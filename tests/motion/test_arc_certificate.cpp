@@ -1,0 +1,213 @@
+// Certificates of arcs with known answers: a free disk rolls over a fixed one past obstacles.
+#include "support/crafted.hpp"
+
+#include <isostat/motion/arc_certificate.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <numbers>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+/// A vertex with all that a certificate needs of it.
+struct Known {
+    Packing<2> packing;
+    IsostaticStructure<2> structure;
+    Factorisation factorisation;
+    InverseBound inverse;
+    VertexEnclosure enclosure;
+
+    Known(Packing<2> p, IsostaticStructure<2> s)
+        : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
+        InverseBoundCache cache;
+        inverse = bound_inverse(structure, factorisation, cache);
+        enclosure = enclose_vertex(packing, structure, inverse);
+    }
+    static Known of(Packing<2> packing, const std::vector<Contact>& contacts) {
+        snap_to_grid(packing);
+        auto proved = IsostaticStructure<2>::prove(packing, contacts);
+        BOOST_REQUIRE_MESSAGE(proved.ok(), (proved.ok() ? std::string() : proved.failure().message));
+        return {std::move(packing), std::move(proved.value())};
+    }
+    [[nodiscard]] ArcVertex<2> vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
+};
+
+constexpr double start_angle = 0.2;
+constexpr double stop_angle = 2;
+
+/// Disk 0 fixed at the origin, disk 2 free on it, disk 1 fixed where disk 2 starts, disk 3 fixed where it stops; all of
+/// radius 1. Disk 4, if any, is an obstacle. No walls.
+struct Rolling {
+    Packing<2> packing;
+    Load<2> load;
+
+    explicit Rolling(double fx = -1, double fy = 0.1) {
+        packing.walls = Walls<2>::none();
+        const auto touching = [](double angle, double side) {
+            return std::array{2 * std::cos(angle) + side * 2 * std::sin(angle),
+                              2 * std::sin(angle) - side * 2 * std::cos(angle)};
+        };
+        const auto first = touching(start_angle, 1);
+        const auto second = touching(stop_angle, -1);
+        packing.radius = {1, 1, 1, 1};
+        packing.q = {0, 0, first[0], first[1], 0, 0, second[0], second[1], 0, 0};
+        packing.fixed = {1, 1, 0, 1};
+        load.disk_force = {0, 0, 0, 0, fx, fy, 0, 0};
+        put(start_angle);
+    }
+    /// The rolling disk at `angle`.
+    void put(double angle) {
+        packing.q[4] = 2 * std::cos(angle);
+        packing.q[5] = 2 * std::sin(angle);
+    }
+    void obstacle(double angle, double radius, double clearance) {
+        const double distance = 3 + radius + clearance;
+        packing.q.insert(packing.q.end() - 2, {distance * std::cos(angle), distance * std::sin(angle)});
+        packing.radius.push_back(radius);
+        packing.fixed.push_back(1);
+        load.disk_force.insert(load.disk_force.end(), {0.0, 0.0});
+    }
+    [[nodiscard]] Known start() { return at(start_angle, pair(1, 2)); }
+    [[nodiscard]] Known stop() { return at(stop_angle, pair(2, 3)); }
+    [[nodiscard]] Known at(double angle, const Contact& second) {
+        put(angle);
+        return Known::of(packing, {pair(0, 2), second});
+    }
+    /// Whatever a path follower may have said: from the start straight to `end`.
+    [[nodiscard]] ArcCertificate certify(const Known& from, const Known& end) const {
+        const CandidateList<2> candidates = find_candidates(from.packing, candidate_fraction);
+        return certify_arc(from.vertex(), ContactId(1), +1, end.vertex(), PowerLoad<2>{&load, false, false},
+                           candidates);
+    }
+    ArcCertificate certify() { return certify(start(), stop()); }
+};
+
+bool proved(const ArcCertificate& certificate) {
+    return certificate.verdict == Verdict::proved;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(motion)
+
+BOOST_AUTO_TEST_CASE(an_arc_between_two_known_contacts_is_certified) {
+    Rolling rolling;
+    const ArcCertificate certificate = rolling.certify();
+    BOOST_TEST(proved(certificate), certificate.reason);
+    BOOST_TEST((certificate.power == Verdict::proved), certificate.power_reason);
+    BOOST_TEST(certificate.pieces > 3);
+    BOOST_TEST(certificate.moving == 2);
+    BOOST_TEST(certificate.tube < 1e-12);
+    BOOST_TEST(certificate.tube_margin > 1e6);
+    BOOST_TEST(certificate.gap_margin > 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_contact_that_was_missed_inside_an_arc_is_not_certified) {
+    // The end of the arc is the same, and admissible, on both sides: only the way there tells.
+    for (const double clearance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+        for (const double sign : {+1.0, -1.0}) {
+            Rolling rolling;
+            rolling.obstacle(1.0, 0.25, sign * clearance);
+            const ArcCertificate certificate = rolling.certify();
+            BOOST_TEST(proved(certificate) == (sign > 0), "clearance " << sign * clearance << certificate.reason);
+            if (sign < 0) {
+                BOOST_TEST(certificate.reason.find("2-4") != std::string::npos, certificate.reason);
+            }
+        }
+    }
+    Rolling grazing;
+    grazing.obstacle(1.0, 0.25, 0);
+    BOOST_TEST(!proved(grazing.certify()));
+}
+
+BOOST_AUTO_TEST_CASE(an_end_behind_the_first_contact_is_not_certified) {
+    Rolling rolling; // past disk 3, to a contact with disk 4 that it would have met later
+    const double later = 3.8;
+    auto& q = rolling.packing.q;
+    q.insert(q.end() - 2, {2 * std::cos(later) - 2 * std::sin(later), 2 * std::sin(later) + 2 * std::cos(later)});
+    rolling.packing.radius.push_back(1);
+    rolling.packing.fixed.push_back(1);
+    rolling.load.disk_force.insert(rolling.load.disk_force.end(), {0.0, 0.0});
+    const Known start = rolling.start();
+    BOOST_TEST(proved(rolling.certify(start, rolling.stop())));
+    const ArcCertificate certificate = rolling.certify(start, rolling.at(later, pair(2, 4)));
+    BOOST_TEST(!proved(certificate));
+    BOOST_TEST(certificate.reason.find("2-3") != std::string::npos, certificate.reason);
+}
+
+BOOST_AUTO_TEST_CASE(an_end_on_another_curve_is_not_certified) {
+    Rolling rolling;
+    const Known start = rolling.start();
+    Rolling inner; // the same contacts, but the fixed disk is a little smaller
+    inner.packing.radius[0] = 1 - 1e-7;
+    const double d = 2 - 1e-7;
+    inner.packing.q[4] = d * std::cos(stop_angle);
+    inner.packing.q[5] = d * std::sin(stop_angle);
+    inner.packing.q[6] = inner.packing.q[4] - 2 * std::sin(stop_angle);
+    inner.packing.q[7] = inner.packing.q[5] + 2 * std::cos(stop_angle);
+    BOOST_TEST(!proved(rolling.certify(start, Known::of(inner.packing, {pair(0, 2), pair(2, 3)}))));
+}
+
+BOOST_AUTO_TEST_CASE(ends_that_are_not_proved_vertices_certify_nothing) {
+    Rolling rolling;
+    const Known start = rolling.start();
+    Known end = rolling.stop();
+    BOOST_TEST(proved(rolling.certify(start, end)));
+    end.enclosure.verdict = Verdict::undecided;
+    BOOST_TEST(!proved(rolling.certify(start, end)));
+    end.enclosure.verdict = Verdict::proved;
+    end.enclosure.radius = 0.1; // a vertex, but nobody knows where
+    BOOST_TEST(!proved(rolling.certify(start, end)));
+}
+
+BOOST_AUTO_TEST_CASE(the_power_is_judged_apart_from_the_contacts) {
+    Rolling pushed;
+    BOOST_TEST((pushed.certify().power == Verdict::proved));
+    Rolling pulled(+1, 0.1); // the load works against the motion
+    const ArcCertificate against = pulled.certify();
+    BOOST_TEST(proved(against), against.reason);
+    BOOST_TEST((against.power == Verdict::undecided));
+    Rolling over(0, 1); // power cos(angle): turns at pi / 2, before the stop
+    BOOST_TEST((over.certify().power == Verdict::undecided));
+    Rolling before(0, 1);
+    const Known start = before.start();
+    const Known turn = before.at(std::numbers::pi / 2, Contact{ContactKind::held, 4, 0});
+    const ArcCertificate certificate = before.certify(start, turn);
+    BOOST_TEST(proved(certificate), certificate.reason);
+    BOOST_TEST((certificate.power == Verdict::proved), certificate.power_reason);
+    BOOST_TEST(certificate.power_open_end > 0);
+    BOOST_TEST(certificate.power_open_end < 1e-6);
+    const Known beyond = before.at(std::numbers::pi / 2 + 1e-3, Contact{ContactKind::held, 4, 0});
+    BOOST_TEST((before.certify(start, beyond).power == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_goes) {
+    Rolling rolling;
+    const Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
+    const Known stop = rolling.stop();
+    const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
+    const PowerLoad<2> power{&rolling.load, false, false};
+    const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
+    BOOST_TEST(proved(down), down.reason); // x falls on the way to the stop
+    const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
+    BOOST_TEST(!proved(up)); // to disk 1 first
+    const Known back = rolling.start();
+    const auto returned = certify_arc(turn.vertex(), ContactId(1), +1, back.vertex(), power, candidates);
+    BOOST_TEST(proved(returned), returned.reason);
+}
+
+BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_after_a_whole_turn) {
+    Rolling rolling;
+    rolling.packing.q[6] = 40; // no stop
+    const double line = start_angle - std::numbers::pi / 4;
+    const double back = line - std::numbers::pi / 4 + 2 * std::numbers::pi; // on the other side of disk 1
+    const Known start = rolling.start();
+    const ArcCertificate certificate = rolling.certify(start, rolling.at(back, pair(1, 2)));
+    BOOST_TEST(proved(certificate), certificate.reason);
+    BOOST_TEST(certificate.pieces > 20);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

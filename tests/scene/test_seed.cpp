@@ -1,0 +1,60 @@
+#include "support/scratch.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/scene/scene.hpp>
+#include <isostat/scene/seed.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+
+namespace {
+
+std::string seeded(const std::string& text, std::uint64_t seed) {
+    return with_seed(text, seed, "s.toml", "/somewhere");
+}
+
+void refused(const std::string& text, std::uint64_t seed, const std::string& word) {
+    BOOST_CHECK_EXCEPTION(seeded(text, seed), Error, [&](const Error& error) {
+        return error.kind() == ErrorKind::bad_input && std::string(error.what()).find(word) != std::string::npos;
+    });
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(scene)
+
+BOOST_AUTO_TEST_CASE(only_the_seed_of_the_packing_changes) {
+    const std::string text =
+        "# größe\n[packing] # here\ndisks = 7\n  seed = 12 # of the sample\n[run]\nrule_seed = 12\n";
+    BOOST_TEST(seeded(text, 345) ==
+               "# größe\n[packing] # here\ndisks = 7\n  seed = 345 # of the sample\n[run]\nrule_seed = 12\n");
+    BOOST_TEST(seeded(text, 12) == text);
+    BOOST_TEST(seeded("packing = {seed = 1_0, disks = 3}", 2) == "packing = {seed = 2, disks = 3}");
+    BOOST_TEST(seeded("packing.\"disks\" = 3\npacking.seed = 0x1F", 2) == "packing.\"disks\" = 3\npacking.seed = 2");
+    BOOST_TEST(seeded("[\"packing\"]\n\"seed\"=1\ndisks = 3", 9223372036854775807U) ==
+               "[\"packing\"]\n\"seed\"=9223372036854775807\ndisks = 3");
+}
+
+BOOST_AUTO_TEST_CASE(a_missing_seed_is_added) {
+    BOOST_TEST(seeded("[packing] # ö\ndisks = 3\n", 4) == "[packing] # ö\nseed = 4\ndisks = 3\n");
+    refused("packing = {disks = 3}", 4, "seed");
+}
+
+BOOST_AUTO_TEST_CASE(a_list_of_radii_is_found_from_another_folder) {
+    const scratch::Folder folder;
+    scratch::write(folder / "radii.txt", "1\n2\n");
+    const std::string text = "[packing]\nradii_file = \"radii.txt\"\nseed = 3\n";
+    const std::string expected = "[packing]\nradii_file = \"" + (folder / "radii.txt").string() + "\"\nseed = 5\n";
+    BOOST_TEST(with_seed(text, 5, "s.toml", folder.path()) == expected);
+    BOOST_TEST(parse_scene(expected, "s.toml", "/elsewhere").preparation.radii.size() == 2U);
+}
+
+BOOST_AUTO_TEST_CASE(scenes_without_samples_are_refused) {
+    refused("[packing]\nfile = \"start.json\"\n", 2, "start.json");
+    refused("[packing]\ndisks = 3\nseed = 1\n", 9223372036854775808U, "9223372036854775808");
+    refused("[packing]\ndisks = 3\nfly = 1\n", 2, "fly");
+    refused("[packing\n", 2, "TOML");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

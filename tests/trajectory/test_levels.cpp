@@ -1,0 +1,106 @@
+// The level `arcs`: every arc of a run with its own proof, and what a path follower that misses contacts would meet.
+#include "support/crafted.hpp"
+
+#include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto result = prepare<2>(options, report);
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message));
+    return result.value();
+}
+
+RunOptions with_arcs() {
+    RunOptions options;
+    options.certify = CertifyLevel::arcs;
+    return options;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
+    for (const std::uint64_t seed : {2U, 5U, 7U}) {
+        const Played run = play(prepared(60, seed), +1, 8, {}, with_arcs());
+        BOOST_TEST(run.records.arcs.size() > 8U);
+        long pieces = 0;
+        for (const auto& arc : run.records.arcs) {
+            BOOST_TEST_REQUIRE(arc.certificate.has_value());
+            const ArcCertificate& c = *arc.certificate;
+            BOOST_TEST((c.verdict == Verdict::proved), "seed " << seed << " arc " << arc.step << ": " << c.reason);
+            BOOST_TEST((c.power == Verdict::proved),
+                       "seed " << seed << " arc " << arc.step << ": " << c.power_reason << c.power_open_start);
+            BOOST_TEST(c.tube < 1e-8);
+            BOOST_TEST(c.tube_margin > 1);
+            BOOST_TEST(c.gap_margin > 1);
+            pieces += c.pieces;
+        }
+        const ArcTally& tally = run.counters.arcs;
+        BOOST_TEST(tally.certified == static_cast<long>(run.records.arcs.size()));
+        BOOST_TEST(tally.undecided == 0);
+        BOOST_TEST(tally.pieces == pieces);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
+    const State<2> start = prepared(50, 3);
+    const Played plain = play(start, +1, 6);
+    const Played proved = play(start, +1, 6, {}, with_arcs());
+    BOOST_TEST((plain.state.packing.q == proved.state.packing.q));
+    BOOST_TEST_REQUIRE(plain.records.arcs.size() == proved.records.arcs.size());
+    for (std::size_t k = 0; k < plain.records.arcs.size(); ++k) {
+        BOOST_TEST(!plain.records.arcs[k].certificate.has_value());
+        BOOST_TEST((plain.records.arcs[k].closed == proved.records.arcs[k].closed));
+        BOOST_TEST(plain.records.arcs[k].displacement == proved.records.arcs[k].displacement);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rattlers_are_certified_in_their_own_degrees_of_freedom) {
+    int rattlers = 0;
+    for (const std::uint64_t seed : {1U, 4U, 6U}) {
+        const Played run = play(prepared(60, seed), +1, 12, {}, with_arcs());
+        for (const auto& arc : run.records.arcs) {
+            if (arc.kind == "rattler") {
+                ++rattlers;
+                BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
+                BOOST_TEST((arc.certificate->power == Verdict::proved), arc.certificate->power_reason);
+                BOOST_TEST(arc.certificate->moving < 30);
+            }
+        }
+    }
+    BOOST_TEST(rattlers > 0);
+}
+
+BOOST_AUTO_TEST_CASE(two_disks_are_certified_around_the_hysteresis_loop) {
+    const State<2> start = two_disks(1, 1.5, 1, 1);
+    for (const int direction : {+1, -1}) {
+        const Played run = play(start, direction, 1, {}, with_arcs());
+        for (const auto& arc : run.records.arcs) {
+            BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(true_stresses_leave_the_power_undecided_and_the_contacts_proved) {
+    State<2> start = prepared(40, 9);
+    start.load.kind = LoadKind::true_stress;
+    const Played run = play(start, +1, 3, {}, with_arcs());
+    BOOST_TEST(!run.records.arcs.empty());
+    for (const auto& arc : run.records.arcs) {
+        BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
+        BOOST_TEST((arc.certificate->power == Verdict::proved) == (arc.kind == "rattler"));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -70,15 +70,15 @@ std::string mutated(std::string text, Random& random) {
     return text;
 }
 
-struct Tally {
+struct Mutations {
     int accepted = 0, refused = 0;
 };
 
 /// `read` throws, or says whether what it read is sound.
-Tally fuzz(const std::string& name, const std::string& text, int samples,
-           const std::function<bool(const std::string&)>& read) {
+Mutations fuzz(const std::string& name, const std::string& text, int samples,
+               const std::function<bool(const std::string&)>& read) {
     Random random(2024);
-    Tally tally;
+    Mutations tally;
     BOOST_REQUIRE_MESSAGE(read(text), name + ": the original is read");
     for (int s = 0; s < samples; ++s) {
         const std::string changed = mutated(text, random);
@@ -152,23 +152,26 @@ BOOST_AUTO_TEST_CASE(mutated_foreign_packings_are_refused_by_name_or_are_sound) 
     for (const auto& [format, text] :
          {std::pair{"lammps-dump", dump}, {"lammps-data", data_file}, {"xyz", xyz}, {"table", table}, {"table", csv}}) {
         for (const char* stated : {format, ""}) {
-            const Tally tally = fuzz(std::string(format) + " " + stated, text, 1500, [&](const std::string& changed) {
-                ForeignOptions options;
-                options.format = stated;
-                // Without a stated format the mutant may look like one of ours.
-                const std::string found = recognise_format(changed);
-                if (*stated == '\0' && (found == "state" || found == "vertex" || found == "packing" || found.empty())) {
-                    return true;
-                }
-                const ForeignPacking packing = parse_foreign(changed, "FILE", options);
-                options.walls = ForeignWalls::box;
-                options.box = {-1e30, 1e30, -1e30, 1e30};
-                bool inside = true;
-                for (const double x : packing.packing.q) {
-                    inside = inside && std::abs(x) < 1e30;
-                }
-                return sound(packing.packing) && (!inside || sound(parse_foreign(changed, "FILE", options).packing));
-            });
+            const Mutations tally =
+                fuzz(std::string(format) + " " + stated, text, 1500, [&](const std::string& changed) {
+                    ForeignOptions options;
+                    options.format = stated;
+                    // Without a stated format the mutant may look like one of ours.
+                    const std::string found = recognise_format(changed);
+                    if (*stated == '\0' &&
+                        (found == "state" || found == "vertex" || found == "packing" || found.empty())) {
+                        return true;
+                    }
+                    const ForeignPacking packing = parse_foreign(changed, "FILE", options);
+                    options.walls = ForeignWalls::box;
+                    options.box = {-1e30, 1e30, -1e30, 1e30};
+                    bool inside = true;
+                    for (const double x : packing.packing.q) {
+                        inside = inside && std::abs(x) < 1e30;
+                    }
+                    return sound(packing.packing) &&
+                           (!inside || sound(parse_foreign(changed, "FILE", options).packing));
+                });
             BOOST_TEST(tally.refused > 100);
             BOOST_TEST(tally.accepted > 10);
         }
@@ -216,7 +219,7 @@ BOOST_AUTO_TEST_CASE(mutated_certificates_are_refused_by_their_digest) {
     certificate.program = "test";
     certificate.claims.counting = CountingClaim{4, 4, 4, 0, 0, Rung::exact};
     const std::string text = certificate_text(certificate);
-    const Tally tally = fuzz("certificate", text, 1500, [&](const std::string& changed) {
+    const Mutations tally = fuzz("certificate", text, 1500, [&](const std::string& changed) {
         const Certificate read = parse_certificate(changed, "FILE");
         // What is accepted says what the original said: white space, or a mutation that undid itself.
         return certificate_text(read) == text;

@@ -321,6 +321,8 @@ class Analysis {
                         -1.2, -1.1, "literature, from memory: -1.16 ± 0.04"});
         list.push_back({"the same, n ≥ 484", "", exponent(sizes_, 484, in_window), -1.2, -1.1,
                         "literature, from memory: -1.16 ± 0.04"});
+        list.push_back({"the same, n ≥ 1024", "", exponent(sizes_, 1024, in_window), -1.2, -1.1,
+                        "literature, from memory: -1.16 ± 0.04"});
         list.push_back({"the same, σ₂/σ₁ < 1.05, n ≥ 225", "", exponent(sizes_, 225, in_large_window), -1.2, -1.1,
                         "literature, from memory: -1.16 ± 0.04"});
         list.push_back({"median strain increment ~ n^a, all sizes", "", exponent(sizes_, 0, mid), NAN, NAN, "none"});
@@ -337,6 +339,20 @@ class Analysis {
                                                                             1000 * low);
                                     }),
                             1.2, 1.5, "literature, from memory: 1.46 ± 0.03"});
+        }
+        for (const Size& size : sizes_) {
+            std::vector<double> fraction;
+            std::vector<double> rattlers;
+            for (const Sample& sample : size.samples) {
+                fraction.push_back(sample.rows.front().solid_fraction);
+                rattlers.push_back(static_cast<double>(sample.rows.front().rattlers) / size.disks);
+            }
+            const std::string at = fmt::format(" at the start (Student), n = {}", size.disks);
+            const double known = size.disks == 100 ? 0.802 : size.disks == 1936 ? 0.8355 : NAN;
+            list.push_back({"solid fraction" + at, "", isostat::mean_with_t(fraction, level), known - 0.001,
+                            known + 0.001, std::isnan(known) ? "none" : "an independent program"});
+            list.push_back({"share of rattlers" + at, "", isostat::mean_with_t(rattlers, level), 0.05, 0.07,
+                            "an independent program: 5 to 7 %"});
         }
         for (const Size& size : sizes_) {
             if (size.disks < 400 || size.samples.size() < 2) {

@@ -69,8 +69,8 @@ void add_solvers(Plan& plan, const Scene& scene) {
     plan.add("proof", "arcs", runs && level >= CertifyLevel::arcs,
              asked(CertifyLevel::arcs) + "; each arc enclosed between its events, no contact missed; 3 to 5 "
                                          "factorisations per arc, more for long ones");
-    plan.add("solver", "multiprecision (MPFR)", false,
-             "a sign that double-double leaves open ends the run as undecided");
+    plan.add("solver", "multiprecision (MPFR), exact numbers", true,
+             "only where double-double does not decide a sign or an order");
     plan.add("solver", "fixed disks, external forces on disks", false,
              "a scene has none; a start file in the state format may");
 }

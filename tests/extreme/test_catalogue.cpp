@@ -118,6 +118,11 @@ class Watchdog {
 
 constexpr int dense = 64; // disks: 400-bit elimination of larger ones takes seconds
 
+std::string reason_of(const Failure& failure, const std::string& outcome) {
+    const std::string kind = to_string(failure.kind);
+    return kind == outcome ? failure.message : kind + ": " + failure.message;
+}
+
 void check_proved(const State<2>& state, const Inspection<2>& inspection, Row& row) {
     BOOST_TEST(inspection.record.hyperstaticity == 0);
     BOOST_TEST(inspection.record.mechanisms == 0);
@@ -167,7 +172,7 @@ std::optional<Inspection<2>> inspect(const std::string& family, const std::strin
         if (!result.ok()) {
             const FailureKind kind = result.failure().kind;
             row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
-            row.reason = fmt::format("{}: {}", to_string(kind), result.failure().message);
+            row.reason = reason_of(result.failure(), row.outcome);
             row.rung = "none";
             row.checked = "no claim";
             if (kind == FailureKind::not_isostatic && state.packing.disk_count() <= dense) {
@@ -228,7 +233,7 @@ std::optional<State<2>> prepared(const std::string& family, const std::string& p
     row.outcome = failure.kind == FailureKind::interrupted                                     ? "stopped"
                   : failure.kind == FailureKind::undecided || failure.kind == FailureKind::tie ? "undecided"
                                                                                                : "refused";
-    row.reason = fmt::format("{}: {}", to_string(failure.kind), failure.message);
+    row.reason = reason_of(failure, row.outcome);
     row.rung = "none";
     row.checked = "no claim";
     BOOST_TEST(report.last.has_value()); // nothing is lost

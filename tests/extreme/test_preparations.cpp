@@ -60,7 +60,8 @@ BOOST_AUTO_TEST_CASE(one_huge_disk_among_small_ones) {
         for (int i = 0; i < 40; ++i) {
             options.radii.push_back(0.5 + 0.5 * std::fmod(i * 0.618033988749895, 1.0));
         }
-        extreme::prepared("one huge disk", fmt::format("radius {:g} among 40 of 0.5 to 1", huge), options);
+        const std::string name = fmt::format("radius {:g} among 40 of 0.5 to 1", huge);
+        extreme::prepared("one huge disk", name, options);
     }
 }
 

@@ -90,8 +90,8 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
     if (rule == OpeningRule::random) {
         // Ordered by identity, so that the choice does not depend on the order of the contact list.
         std::sort(negative.begin(), negative.end(), [&](const Contender& a, const Contender& b) {
-            const auto& list = statics.structure().contacts();
-            return list[a.contact.index()] < list[b.contact.index()];
+            const auto& contacts = statics.structure().contacts();
+            return contacts[a.contact.index()] < contacts[b.contact.index()];
         });
         const Contender& chosen = negative[random_bits % negative.size()];
         return Opening{chosen.contact, false, chosen.force, +1, chosen.margin, statics.rung()};
@@ -111,9 +111,6 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         }
         return e;
     };
-    const auto& contacts = statics.structure().contacts();
-    const bool at_turn =
-        std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.kind == ContactKind::held; });
     std::size_t best = 0;
     for (std::size_t k = 1; k < negative.size(); ++k) {
         if (negative[k].key.value < negative[best].key.value) {
@@ -129,14 +126,6 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         std::optional<std::size_t> better;
         for (std::size_t k = 0; k < negative.size() && !better; ++k) {
             if (k == best) {
-                continue;
-            }
-            // A held coordinate stands where the power of the load vanished, located to its last bits and no better:
-            // what agrees that closely there is a tie, and is not ordered by where the turn was rounded to.
-            const Enclosure gap_of_keys = negative[k].key - negative[best].key;
-            if (at_turn && std::abs(gap_of_keys.value) <= 0x1p-46 * std::abs(negative[best].key.value)) {
-                tied += fmt::format("; {} (f = {:.17g}): they agree to 46 bits at a power turn",
-                                    name(statics, negative[k].contact), negative[k].force.value);
                 continue;
             }
             Order order =

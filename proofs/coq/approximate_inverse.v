@@ -1,4 +1,5 @@
-(** Statement V2 (../bounds.md), in the infinity norm: an approximate inverse R proves that H is regular and bounds the solutions of H x = b.
+(** Statement V2 (../bounds.md), in the infinity norm: an approximate inverse R proves that H is regular and bounds
+  the solutions of H x = b.
     For the 1 norm apply it to the transposed matrices. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 Set Implicit Arguments.

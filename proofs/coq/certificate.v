@@ -1,7 +1,9 @@
 (** A checker for certificates of full rank, and its correctness (statement T4, ../rank_mod_p.md).
 
-    The certificate of a square integer matrix A is a modulus p > 1 and a matrix B with A B = 1 modulo p. The check uses binary integers
-    and lists only, so that it can be run inside Coq. Nothing is asked of p but p > 1: primality would only help to find B. *)
+    The certificate of a square integer matrix A is a modulus p > 1 and a matrix B with A B = 1 modulo p. The check
+      uses binary integers
+    and lists only, so that it can be run inside Coq. Nothing is asked of p but p > 1: primality would only help to
+      find B. *)
 From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
 From mathcomp Require Import ssrZ zify.
@@ -22,7 +24,8 @@ Definition entry_ok (p : Z) (i j : nat) (row column : seq Z) : bool :=
   Z.eqb (Z.modulo (Z.sub (dot row column) (if i == j then Zpos xH else Z0)) p) Z0.
 
 Definition check (n : nat) (p : Z) (rows columns : table) : bool :=
-  [&& Z.ltb (Zpos xH) p, size rows == n, size columns == n, all (fun r => size r == n) rows, all (fun c => size c == n) columns
+  [&& Z.ltb (Zpos xH) p, size rows == n, size columns == n, all (fun r => size r == n) rows, all (fun c =>
+    size c == n) columns
     & all (fun i => all (fun j => entry_ok p i j (nth [::] rows i) (nth [::] columns j)) (iota 0 n)) (iota 0 n)].
 
 Local Open Scope ring_scope.

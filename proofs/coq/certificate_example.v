@@ -1,5 +1,7 @@
-(** The checker at work. Two disks, R1 = 1 and R2 = 4, in their box: centres (1, 1) and (5, 4), Lx = 9, Ly = 8. Contacts: disk 1 with left wall,
-    bottom and disk 2, disk 2 with right wall, top and bottom; row of the pair: x_j - x_i instead of the unit normal. p = 2^31 - 1. *)
+(** The checker at work. Two disks, R1 = 1 and R2 = 4, in their box: centres (1, 1) and (5, 4), Lx = 9,
+  Ly = 8. Contacts: disk 1 with left wall,
+    bottom and disk 2, disk 2 with right wall, top and bottom;
+      row of the pair: x_j - x_i instead of the unit normal. p = 2^31 - 1. *)
 From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra ssrZ.
 From Isostat Require Import certificate.

@@ -1,8 +1,11 @@
-(** Certificates that the program writes for a packing in the box: the contact matrix of the stored coordinates is regular
+(** Certificates that the program writes for a packing in the box: the contact matrix of the stored coordinates is
+  regular
     (statement T4, ../rank_mod_p.md).
 
-    Data: the coordinates x_0 y_0 x_1 y_1 ... Lx Ly as integer multiples of one dyadic unit, the contacts, a modulus p > 1 and the rows of a
-    matrix B. The contact matrix A is built *here* from coordinates and contacts; the check is that A B = 1 modulo p. A is kept sparse, so
+    Data: the coordinates x_0 y_0 x_1 y_1 ... Lx Ly as integer multiples of one dyadic unit, the contacts,
+      a modulus p > 1 and the rows of a
+    matrix B. The contact matrix A is built *here* from coordinates and contacts;
+      the check is that A B = 1 modulo p. A is kept sparse, so
     that the check costs about four products of rows of B per contact. *)
 From Coq Require Import ZArith List.
 From mathcomp Require Import all_ssreflect all_algebra.
@@ -25,7 +28,8 @@ Definition difference (i j a : nat) : Z := Z.sub (coordinate (j.*2 + a)) (coordi
 (** Minus the gradient of the gap, multiplied by the distance of the centres: approach velocity times distance. *)
 Definition sparse_row (c : contact) : seq (nat * Z) :=
   match c with
-  | Disks i j => [:: (i.*2, difference i j 0); (i.*2 + 1, difference i j 1); (j.*2, difference j i 0); (j.*2 + 1, difference j i 1)]
+  | Disks i j => [:: (i.*2, difference i j 0); (i.*2 + 1, difference i j 1); (j.*2, difference j i 0);
+    (j.*2 + 1, difference j i 1)]
   | Lower i a => [:: (i.*2 + a, Zneg xH)]
   | Upper i a => [:: (i.*2 + a, Zpos xH); (n.*2 + a, Zneg xH)]
   end%N.
@@ -73,7 +77,8 @@ by split=> // j; rewrite e0 entry big_cons.
 Qed.
 
 Lemma certified_inverse p (B : table) (l j : 'I_N) : certified p B ->
-  Z.modulo (Z.sub ((integer_matrix *m \matrix_(k, m) nth 0 (nth [::] B k) m) l j) (if l == j then Zpos xH else Z0)) p = Z0.
+  Z.modulo (Z.sub ((integer_matrix *m \matrix_(k, m) nth 0 (nth [::] B k) m) l j) (if l == j then Zpos xH else Z0)) p
+    = Z0.
 Proof.
 case/and5P=> _ /eqP sC /eqP sB aB /(all_nthP (0%N, contact0)) rows.
 have := rows l; rewrite size_zip size_iota sC minnn => /(_ (ltn_ord l)).
@@ -81,7 +86,8 @@ rewrite nth_zip ?size_iota // nth_iota // add0n; set r := sparse_row _; case/and
 have [sr entry] := combination_entry sB aB rN.
 have := unit j; rewrite size_zip size_iota sr minnn => /(_ (ltn_ord j)).
 rewrite nth_zip ?size_iota // nth_iota // add0n.
-rewrite -[fst _]/(nth 0 _ _) -[snd _]/(nat_of_ord j) -[nat_of_ord l == j]/(l == j) => /Z.eqb_eq zero; rewrite -[RHS]zero; congr (Z.modulo (Z.sub _ _) _).
+rewrite -[fst _]/(nth 0 _ _) -[snd _]/(nat_of_ord j) -[nat_of_ord l == j]/(l == j) => /Z.eqb_eq zero;
+  rewrite -[RHS]zero; congr (Z.modulo (Z.sub _ _) _).
 rewrite entry !mxE; under eq_bigr => k _ do rewrite !mxE /sparse_entry -/r mulr_suml.
 rewrite (exchange_big_dep xpredT) //=; apply: eq_big_seq => e er.
 have eN : (e.1 < N)%N by move/allP: rN => /(_ _ er).
@@ -122,7 +128,8 @@ by split=> // load f; apply: forces_exist_and_are_unique.
 Qed.
 (** Two different centres: a boolean that can be evaluated. *)
 Definition distinct_centres : bool :=
-  all (fun c => if c is Disks i j then ~~ (Z.eqb (difference i j 0) Z0 && Z.eqb (difference i j 1) Z0) else true) contacts.
+  all (fun c => if c is Disks i j then ~~ (Z.eqb (difference i j 0) Z0 && Z.eqb (difference i j 1) Z0) else true)
+    contacts.
 
 Lemma distinct_centres_have_lengths : size contacts = N -> distinct_centres ->
   forall l : 'I_N, length_of (nth contact0 contacts l) != 0.
@@ -137,7 +144,8 @@ have : (int_of_Z x)%:~R ^+ 2 + (int_of_Z y)%:~R ^+ 2 == 0 :> F by rewrite eq_le 
 by rewrite paddr_eq0 ?sqr_ge0 // => /andP[/eqP/zero ? /eqP/zero ?].
 Qed.
 
-(** What a certificate file concludes: in the box, the structure made of these contacts at these coordinates is isostatic. *)
+(** What a certificate file concludes: in the box, the structure made of these contacts at these coordinates is
+  isostatic. *)
 Corollary certified_packing_is_isostatic p B :
   certified p B -> distinct_centres ->
   [/\ contact_matrix \in unitmx, \rank (kermx contact_matrix) = 0%N, \rank (kermx contact_matrix^T) = 0%N

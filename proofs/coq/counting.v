@@ -77,7 +77,8 @@ by rewrite -colE !mxE => ->.
 Qed.
 End Counting.
 
-(** Over an ordered field S0 and C are supplementary: their intersection is zero (their dimensions add up by counting). *)
+(** Over an ordered field S0 and C are supplementary: their intersection is zero (their dimensions add up by
+  counting). *)
 Theorem self_stresses_meet_compatible_in_zero (F : realFieldType) N Nf (G : 'M[F]_(N, Nf)) (s : 'rV_N) (v : 'cV_Nf) :
   s *m G = 0 -> s^T = G *m v -> s = 0.
 Proof.

@@ -1,4 +1,5 @@
-(** Statement T10 (../descent.md), the parts that are algebra: first-order decrease, the pivot of the simplex method, and the
+(** Statement T10 (../descent.md), the parts that are algebra: first-order decrease, the pivot of the simplex method,
+  and the
     uniqueness of the forces of an equilibrium among all vertices under small displacements. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 From Isostat Require Import statics.
@@ -22,7 +23,8 @@ Section SmallDisplacements.
 Variables (F : realFieldType) (m n : nat) (A : 'M[F]_(m, n)) (g0 : 'cV[F]_m) (load : 'rV[F]_n).
 Definition gaps (u : 'cV[F]_n) := g0 - A *m u.
 Definition admissible (u : 'cV[F]_n) := forall l, 0 <= gaps u l 0.
-(** Equilibrium under Signorini's conditions: compressive forces that balance the load, and only where the gap is closed. *)
+(** Equilibrium under Signorini's conditions: compressive forces that balance the load,
+  and only where the gap is closed. *)
 Definition equilibrium (u : 'cV[F]_n) (f : 'rV[F]_m) :=
   [/\ admissible u, forall l, 0 <= f 0 l, f *m A = load & forall l, f 0 l * gaps u l 0 = 0].
 
@@ -60,7 +62,8 @@ move=> l; move/eqP: zero; rewrite psumr_eq0 => [|i _]; last by rewrite mulr_ge0 
 by move=> /allP/(_ l (mem_index_enum _))/eqP.
 Qed.
 
-(** Uniqueness: if the contacts that carry a positive force determine the displacement (k = 0 on the backbone), the displacement is unique. *)
+(** Uniqueness: if the contacts that carry a positive force determine the displacement (k = 0 on the backbone),
+  the displacement is unique. *)
 Theorem equilibrium_displacement_is_unique u f u' f' :
   equilibrium u f -> equilibrium u' f' ->
   (forall v : 'cV_n, (forall l, 0 < f 0 l -> (A *m v) l 0 = 0) -> v = 0) -> u' = u.
@@ -76,7 +79,8 @@ have -> : (A *m (u' - u)) l 0 = gaps u l 0 - gaps u' l 0.
 by rewrite g g' subr0.
 Qed.
 
-(** The pivot of the simplex method: the motion that opens l0 at unit rate and keeps the other contacts with a force raises the work of the
+(** The pivot of the simplex method: the motion that opens l0 at unit rate and keeps the other contacts with a force
+  raises the work of the
     load in proportion to the length of the step, as long as the force in l0 is a traction. *)
 Theorem pivot_increases_the_work (f : 'rV[F]_m) (u v : 'cV_n) (l0 : 'I_m) (t : F) :
   f *m A = load -> (forall l, l != l0 -> f 0 l != 0 -> (A *m v) l 0 = 0) -> (A *m v) l0 0 = -1 ->
@@ -91,7 +95,8 @@ by rewrite mulr_gt0 // oppr_gt0.
 Qed.
 End SmallDisplacements.
 
-(** No structure comes back along a path on which the work of the load (minus the potential) increases: the path is finite. For the simplex
+(** No structure comes back along a path on which the work of the load (minus the potential) increases: the path is
+  finite. For the simplex
     method [T] are the bases, for arcs the isolated vertices. *)
 Theorem increasing_work_repeats_nothing (F : realFieldType) (T : finType) (work : T -> F) (x : T) (path_of : seq T) :
   path (fun a b => work a < work b) x path_of -> uniq (x :: path_of) /\ (size path_of < #|T|)%N.

@@ -1,4 +1,5 @@
-(** Statement T3 (../exchange.md): exchanging one contact multiplies the determinant by the closing speed of the new gap. *)
+(** Statement T3 (../exchange.md): exchanging one contact multiplies the determinant by the closing speed of the new
+  gap. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 Set Implicit Arguments.
 Unset Strict Implicit.

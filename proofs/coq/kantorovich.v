@@ -1,7 +1,9 @@
 (** Statements T9 and V4 (../bounds.md): a true configuration near the stored one.
 
-    The gaps as quadratics: F x - F y = J ((x + y) / 2) (x - y) with the derivative J, and J is Lipschitz. The code accepts when
-    h = beta K eta <= 1/4 and then uses the radius 2 eta; for this the chord iteration x -> x - R (F x), R the inverse of J c, contracts. *)
+    The gaps as quadratics: F x - F y = J ((x + y) / 2) (x - y) with the derivative J,
+      and J is Lipschitz. The code accepts when
+    h = beta K eta <= 1/4 and then uses the radius 2 eta; for this the chord iteration x ->
+      x - R (F x), R the inverse of J c, contracts. *)
 From mathcomp Require Import all_ssreflect all_algebra ring.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -83,7 +85,8 @@ Qed.
 Theorem chord_stays_near x : near x -> near (chord x).
 Proof.
 move=> nx; apply: le_trans (norm_sub _ (chord c) _) _.
-have -> : radius = half * radius + eta by rewrite {1}/radius mulr_natl mulr2n {1 2}(_ : eta = half * radius) // /radius mulrA mulVf ?mul1r // pnatr_eq0.
+have -> : radius = half * radius + eta by rewrite {1}/radius mulr_natl mulr2n {1 2}(_ : eta = half * radius) //
+  /radius mulrA mulVf ?mul1r // pnatr_eq0.
 apply: ler_add.
   by apply: le_trans (chord_contracts nx near_c) _; apply: ler_wpmul2l.
 by rewrite /chord addrC addKr norm_opp.
@@ -141,7 +144,8 @@ by have := norm_eq0 fixed; rewrite /chord addrC addKr => /eqP; rewrite oppr_eq0 
 Qed.
 End Chord.
 
-(** The quadratic of a contact has this form: its difference is its derivative in the middle, applied to the difference. *)
+(** The quadratic of a contact has this form: its difference is its derivative in the middle,
+  applied to the difference. *)
 Lemma quadratic_of_a_contact_at_the_middle (K : fieldType) (D x1 x2 y1 y2 : K) : 2%:R != 0 :> K -> D != 0 ->
   (x1 ^+ 2 + x2 ^+ 2 - D ^+ 2) / (2%:R * D) - (y1 ^+ 2 + y2 ^+ 2 - D ^+ 2) / (2%:R * D)
     = 2%:R^-1 * (x1 + y1) / D * (x1 - y1) + 2%:R^-1 * (x2 + y2) / D * (x2 - y2).

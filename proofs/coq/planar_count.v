@@ -1,9 +1,13 @@
-(** Statement T7 (a), steps 4 to 6 (../generic_isostaticity.md): there is no sign pattern with four changes around each disk and two around
+(** Statement T7 (a), steps 4 to 6 (../generic_isostaticity.md): there is no sign pattern with four changes around
+  each disk and two around
     each wall on the contact graph of a packing.
 
-    The plane graph is given by its darts (an edge with a direction): [e] reverses a dart, [n] turns to the next dart around the vertex where
-    it starts, and [face] walks along the boundary of a face. Vertices and faces are the orbits of [n] and [face]; [froots] has one dart of
-    each. That the drawing is plane and connected is Euler's formula, a hypothesis; everything else that the count needs is derived. *)
+    The plane graph is given by its darts (an edge with a direction): [e] reverses a dart,
+      [n] turns to the next dart around the vertex where
+    it starts, and [face] walks along the boundary of a face. Vertices and faces are the orbits of [n] and [face];
+      [froots] has one dart of
+    each. That the drawing is plane and connected is Euler's formula, a hypothesis;
+      everything else that the count needs is derived. *)
 From mathcomp Require Import all_ssreflect zify.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -49,7 +53,8 @@ Qed.
 Lemma changes_are_even (g : D -> D) (r : D) : injective g -> ~~ odd (changes g r).
 Proof.
 move=> gi; rewrite /changes (big_morph odd oddD (erefl : odd 0 = false)).
-have -> : \big[addb/false]_(d | fconnect g r d) odd (s d != s (g d)) = \big[addb/false]_(d | fconnect g r d) (s d (+) s (g d)).
+have -> : \big[addb/false]_(d | fconnect g r d) odd (s d != s (g d)) = \big[addb/false]_(d | fconnect g r d) (s d (+)
+  s (g d)).
   by apply: eq_bigr => d _; case: (s d); case: (s (g d)).
 rewrite big_split /= [X in X (+) _](reindex_inj gi) /=.
 have -> : \big[addb/false]_(d | fconnect g r (g d)) s (g d) = \big[addb/false]_(d | fconnect g r d) s (g d).
@@ -90,10 +95,12 @@ Lemma unbounded_face_passes_all_walls : 2 * #|[pred r in froots n | wall r]| <= 
 Proof.
 have sym := fconnect_sym n_injective.
 pose T := [pred d | fconnect face outer d && wall d].
-have wall_orbit d d' : fconnect n d d' -> wall d' = wall d by move=> /iter_findex <-; elim: (findex _ _ _) => //= m; rewrite wall_vertex.
+have wall_orbit d d' : fconnect n d d' -> wall d' = wall d by move=> /iter_findex <-; elim: (findex _ _ _) => //= m;
+  rewrite wall_vertex.
 have few : #|[pred r in froots n | wall r]| <= #|T|.
   apply: leq_trans (leq_image_card (froot n) T); apply: subset_leq_card; apply/subsetP => r /andP[/eqP rr wr].
-  have [d nd fd] := walls_outside wr; apply/imageP; exists d; last by rewrite -rr; apply/eqP; rewrite (root_connect sym).
+  have [d nd fd] := walls_outside wr; apply/imageP; exists d; last by rewrite -rr; apply/eqP;
+    rewrite (root_connect sym).
   by rewrite inE fd /= (wall_orbit r d).
 have next d : d \in T -> face d \notin T.
   by rewrite !inE => /andP[_ wd]; rewrite negb_and /face wall_vertex (negPf (walls_apart wd)) orbT.
@@ -110,7 +117,8 @@ Qed.
 
 Theorem no_such_sign_pattern : False.
 Proof.
-pose V := #|froots n|; pose W := #|[pred r in froots n | wall r]|; pose F := #|froots face|; pose C := \sum_d (s d != s (n d) : nat).
+pose V := #|froots n|; pose W := #|[pred r in froots n | wall r]|; pose F := #|froots face|;
+  pose C := \sum_d (s d != s (n d) : nat).
 have vertices : 4 * V <= C + 2 * W.
   rewrite /C (sum_by_orbit _ n_injective) /V /W -!sum1_card !big_distrr /= [X in _ + X]big_mkcondr -big_split /=.
   apply: leq_sum => r _; case E : (wall r) => /=.
@@ -126,9 +134,11 @@ have faces : C + 4 * F + order face outer <= 2 * #|D| + 4.
   have same : order face outer = order face r0.
     by apply: eq_card => d; apply: same_connect => //; apply: connect_root.
   rewrite same big_distrr /= (bigD1 r0 r0in) /= [X in _ <= X + _](bigD1 r0 r0in) /=.
-  have others : \sum_(r in froots face | r != r0) (changes face r + 4 * 1) <= \sum_(r in froots face | r != r0) 2 * order face r.
+  have others : \sum_(r in froots face | r != r0) (changes face r + 4 * 1) <= \sum_(r in froots face | r != r0) 2 *
+    order face r.
     apply: leq_sum => r _; rewrite muln1.
-    exact: changes_of_a_closed_walk (changes_are_even r f_injective) (changes_at_most_degree face r) (faces_have_three_sides r).
+    exact: changes_of_a_closed_walk (changes_are_even r f_injective) (changes_at_most_degree face r)
+      (faces_have_three_sides r).
   have sum (c o x y : nat) : c <= o -> x <= y -> c + 4 * 1 + x + o <= 2 * o + y + 4 by lia.
   exact: sum (changes_at_most_degree face r0) others.
 have := unbounded_face_passes_all_walls; rewrite -/W; move: euler vertices faces; rewrite -/V -/F; lia.

@@ -1,7 +1,9 @@
 (** Statement T5 (../contact_candidates.md): the argument with power cells, in the plane over a real closed field.
 
-    A disk is a centre and a radius >= 0. [inside i x] says that x belongs to the power cell of disk i among all disks. The regular
-    triangulation enters through one hypothesis, which holds when no vertex is hidden: the cell of i is cut out by the edges of i alone. *)
+    A disk is a centre and a radius >= 0. [inside i x] says that x belongs to the power cell of disk i among all
+      disks. The regular
+    triangulation enters through one hypothesis, which holds when no vertex is hidden: the cell of i is cut out by the
+      edges of i alone. *)
 From mathcomp Require Import all_ssreflect all_algebra ring.
 Set Implicit Arguments.
 Unset Strict Implicit.

@@ -1,4 +1,5 @@
-(** Statement T4 (../rank_mod_p.md): the rank does not increase under a ring morphism, hence full rank modulo p is full rank. *)
+(** Statement T4 (../rank_mod_p.md): the rank does not increase under a ring morphism,
+  hence full rank modulo p is full rank. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -59,7 +60,8 @@ Theorem rank_mod_p_is_a_lower_bound (p m n : nat) (A : 'M[int]_(m, n)) :
   (\rank (map_mx (intr : int -> 'F_p) A) <= \rank (map_mx (intr : int -> rat) A))%N.
 Proof. exact: (@rank_does_not_increase _ _ _ [rmorphism of intr] [rmorphism of intr] (@intr_inj _)). Qed.
 
-(** Rows multiplied by numbers that are not zero (lengths of the centre lines): the rank is that of the unit-normal matrix. *)
+(** Rows multiplied by numbers that are not zero (lengths of the centre lines): the rank is that of the unit-normal
+  matrix. *)
 Theorem rank_of_scaled_rows (F : fieldType) (m n : nat) (A : 'M[F]_(m, n)) (d : 'rV[F]_m) :
   (forall i, d 0 i != 0) -> \rank (diag_mx d *m A) = \rank A.
 Proof.

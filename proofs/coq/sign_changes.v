@@ -1,7 +1,9 @@
 (** Statement T7, step 1 (../generic_isostaticity.md): no line separates the contacts that push from those that pull.
 
-    A null vector f of the gaps' derivative with respect to positions and radii satisfies, at each disk, sum f_l n_l = 0 and sum f_l = 0.
-    If some line a . n = c left every n_l with f_l > 0 on one closed side and every n_l with f_l < 0 on the other, all of them would lie
+    A null vector f of the gaps' derivative with respect to positions and radii satisfies, at each disk,
+      sum f_l n_l = 0 and sum f_l = 0.
+    If some line a . n = c left every n_l with f_l > 0 on one closed side and every n_l with f_l < 0 on the other,
+      all of them would lie
     on the line. On a circle a line cuts two arcs: with at most two sign changes around the disk such a line exists. *)
 From mathcomp Require Import all_ssreflect all_algebra zify ring.
 Set Implicit Arguments.
@@ -22,7 +24,8 @@ move/eqP: total; rewrite psumr_eq0 => [|i _]; last exact: side.
 by move=> /allP/(_ l (mem_index_enum _)); rewrite /= mulf_eq0 (negPf fl) subr_eq0 => /eqP.
 Qed.
 
-(** Around a wall all normals are equal; what is left is sum f = 0: both signs occur as soon as one force is not zero. *)
+(** Around a wall all normals are equal; what is left is sum f = 0: both signs occur as soon as one force is not zero.
+  *)
 Theorem both_signs_at_a_wall (F : realFieldType) (z : nat) (f : 'I_z -> F) (l : 'I_z) :
   \sum_l f l = 0 -> f l != 0 -> (exists i, 0 < f i) /\ (exists j, f j < 0).
 Proof.
@@ -101,9 +104,11 @@ Lemma weakly_separated (f : 'I_z -> F) (p q : 'I_z) : null f ->
   (forall l, 0 <= f l * - orient p q l) -> forall l, orient p q l = 0.
 Proof.
 move=> [s0 s1 s2 nz] side l.
-have E m : (n2 q - n2 p) * n1 m + - (n1 q - n1 p) * n2 m - ((n2 q - n2 p) * n1 p - (n1 q - n1 p) * n2 p) = - orient p q m.
+have E m : (n2 q - n2 p) * n1 m + - (n1 q - n1 p) * n2 m - ((n2 q - n2 p) * n1 p - (n1 q - n1 p) * n2 p) = - orient p
+  q m.
   by rewrite /orient; ring.
-have := @no_separating_line F z n1 n2 f _ _ _ s0 s1 s2 (fun m => eq_ind_r (fun x => 0 <= f m * x) (side m) (E m)) l (nz l).
+have := @no_separating_line F z n1 n2 f _ _ _ s0 s1 s2 (fun m => eq_ind_r (fun x =>
+  0 <= f m * x) (side m) (E m)) l (nz l).
 by move/eqP; rewrite -subr_eq0 E oppr_eq0 => /eqP.
 Qed.
 
@@ -117,7 +122,8 @@ have inblock := block i; rewrite fi in inblock; have c0 : (0 < c)%N by move: inb
 have outside : ~~ (a <= j < a + c)%N by rewrite -block -leNgt ltW.
 have az : (a < z)%N by lia.
 pose p := Ordinal az.
-have side (q : 'I_z) : (forall l : 'I_z, (a <= l < a + c)%N -> orient p q l <= 0) -> (forall l : 'I_z, ~~ (a <= l < a + c)%N -> 0 <= orient p q l) ->
+have side (q : 'I_z) : (forall l : 'I_z, (a <= l < a + c)%N -> orient p q l <= 0) ->
+  (forall l : 'I_z, ~~ (a <= l < a + c)%N -> 0 <= orient p q l) ->
     forall l, orient p q l = 0.
   move=> inside out; apply: (weakly_separated nf) => l; rewrite mulrN -mulNr.
   case E : (a <= l < a + c)%N; last by rewrite mulr_ge0 ?out ?E // oppr_ge0 ltW ?negative ?E.

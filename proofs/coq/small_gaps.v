@@ -1,7 +1,9 @@
 (** Statement T6 (../contact_candidates.md): a pair with a small gap is an edge of the regular triangulation.
 
-    Disks (c, a) and (c', b) with gap g >= 0, g (2 (a + b) + g) < 2 m (a + b), m a lower bound of the radii (so g < 2 (sqrt 2 - 1) m will do: it is
-    the case a = b = m). The point [between] has the same power p for both, and a greater one for every other disk that overlaps neither:
+    Disks (c, a) and (c', b) with gap g >= 0, g (2 (a + b) + g) < 2 m (a + b),
+      m a lower bound of the radii (so g < 2 (sqrt 2 - 1) m will do: it is
+    the case a = b = m). The point [between] has the same power p for both,
+      and a greater one for every other disk that overlaps neither:
     the segment between the two lifted points is then an edge of the lower hull. *)
 From mathcomp Require Import all_ssreflect all_algebra ring.
 From Isostat Require Import power_cells.
@@ -26,7 +28,8 @@ Let d0 : 0 < d. Proof. by rewrite dE ltr_spaddl. Qed.
 Let d2 : d ^+ 2 = dist2 c c'. Proof. by rewrite sqr_sqrtr ?dist2_ge0. Qed.
 Let dn : d != 0. Proof. by rewrite gt_eqF. Qed.
 
-Let weights : 2%:R * d ^+ 2 * w = (2%:R * a + g) * (a + b) + g * d /\ 2%:R * d ^+ 2 * (1 - w) = (2%:R * b + g) * (a + b) + g * d.
+Let weights : 2%:R * d ^+ 2 * w = (2%:R * a + g) * (a + b) + g * d /\ 2%:R * d ^+ 2 * (1 - w) = (2%:R * b + g) * (a +
+  b) + g * d.
 Proof.
 have e : 2%:R * d ^+ 2 * w = d ^+ 2 + a ^+ 2 - b ^+ 2.
   by rewrite /w mulrC divfK // mulf_neq0 ?expf_neq0 // pnatr_eq0.
@@ -60,7 +63,8 @@ rewrite pE; have -> : power c' b between = (1 - w) ^+ 2 * d ^+ 2 - b ^+ 2 by rew
 have e := proj1 weights.
 have e2 : 2%:R * d ^+ 2 * w = d ^+ 2 + a ^+ 2 - b ^+ 2 by rewrite e dE; ring.
 apply/eqP; rewrite -subr_eq0; apply/eqP.
-have -> : (1 - w) ^+ 2 * d ^+ 2 - b ^+ 2 - (w ^+ 2 * d ^+ 2 - a ^+ 2) = d ^+ 2 + a ^+ 2 - b ^+ 2 - 2%:R * d ^+ 2 * w by ring.
+have -> : (1 - w) ^+ 2 * d ^+ 2 - b ^+ 2 - (w ^+ 2 * d ^+ 2 - a ^+ 2) = d ^+ 2 + a ^+ 2 - b ^+ 2 - 2%:R * d ^+ 2 * w
+  by ring.
 by rewrite e2 subrr.
 Qed.
 
@@ -72,7 +76,8 @@ have D : d != 0 := dn.
 have -> : 2%:R * (2%:R * d ^+ 2 * (m * ((1 - w) * a + w * b) - p))
    = (2%:R * a + g) * (2%:R * b + g) * (2%:R * m * (a + b) - g * (2%:R * (a + b) + g)).
   have -> : 2%:R * (2%:R * d ^+ 2 * (m * ((1 - w) * a + w * b) - p))
-      = 2%:R * m * ((2%:R * d ^+ 2 * (1 - w)) * a + (2%:R * d ^+ 2 * w) * b) - (2%:R * d * w) ^+ 2 * d ^+ 2 + 2%:R ^+ 2 * d ^+ 2 * a ^+ 2.
+      = 2%:R * m * ((2%:R * d ^+ 2 * (1 - w)) * a + (2%:R * d ^+ 2 * w) * b) - (2%:R * d * w) ^+ 2 * d ^+ 2 + 2%:R ^+
+        2 * d ^+ 2 * a ^+ 2.
     by rewrite pE; ring.
   have -> : (2%:R * d * w) ^+ 2 * d ^+ 2 = (2%:R * d ^+ 2 * w) ^+ 2 by ring.
   by rewrite e1 e2 dE; ring.
@@ -83,7 +88,8 @@ Theorem pair_with_small_gap_is_an_edge (x : point F) (r : F) :
   m <= r -> apart x r c a -> apart x r c' b -> p < power x r between.
 Proof.
 move=> mr ai bj.
-have -> : power x r between = (1 - w) * dist2 x c + w * dist2 x c' - w * (1 - w) * d ^+ 2 - r ^+ 2 by rewrite /power stewart.
+have -> : power x r between = (1 - w) * dist2 x c + w * dist2 x c' - w * (1 - w) * d ^+ 2 - r ^+ 2 by rewrite /power
+  stewart.
 have low : (1 - w) * (r + a) ^+ 2 + w * (r + b) ^+ 2 <= (1 - w) * dist2 x c + w * dist2 x c'.
   by apply: ler_add; apply: ler_wpmul2l.
 apply: lt_le_trans (_ : p < (1 - w) * (r + a) ^+ 2 + w * (r + b) ^+ 2 - w * (1 - w) * d ^+ 2 - r ^+ 2) _; last first.
@@ -103,7 +109,8 @@ End SmallGaps.
 
 (** The constant: g < 2 (sqrt 2 - 1) m is enough for all radii above m. *)
 Theorem constant_of_small_gaps (F : rcfType) (a b m g : F) :
-  0 < m -> m <= a -> m <= b -> 0 <= g -> g < 2%:R * (Num.sqrt 2%:R - 1) * m -> g * (2%:R * (a + b) + g) < 2%:R * m * (a + b).
+  0 < m -> m <= a -> m <= b -> 0 <= g -> g < 2%:R * (Num.sqrt 2%:R - 1) * m ->
+    g * (2%:R * (a + b) + g) < 2%:R * m * (a + b).
 Proof.
 move=> m0 ma mb g0 gm.
 set k : F := Num.sqrt 2%:R in gm; have k2 : k ^+ 2 = 2%:R by rewrite sqr_sqrtr ?ler0n.
@@ -116,7 +123,8 @@ have sq : (g + 2%:R * m) ^+ 2 < (2%:R * k * m) ^+ 2.
   by rewrite ltr_pexpn2r ?nnegrE // ?addr_ge0 ?mulr_ge0 ?sqrtr_ge0 ?ler0n ?(ltW m0).
 have base : g * (2%:R * (2%:R * m) + g) < 2%:R * m * (2%:R * m).
   rewrite -subr_gt0; rewrite -subr_gt0 in sq.
-  have -> : 2%:R * m * (2%:R * m) - g * (2%:R * (2%:R * m) + g) = (2%:R * k * m) ^+ 2 - (g + 2%:R * m) ^+ 2 - 4%:R * (k ^+ 2 - 2%:R) * m ^+ 2 by ring.
+  have -> : 2%:R * m * (2%:R * m) - g * (2%:R * (2%:R * m) + g) = (2%:R * k * m) ^+ 2 - (g + 2%:R * m) ^+ 2 - 4%:R *
+    (k ^+ 2 - 2%:R) * m ^+ 2 by ring.
   by rewrite k2 subrr mulr0 mul0r subr0.
 have gle : g <= m.
   rewrite leNgt; apply/negP => mg; move: base; rewrite ltNge => /negP; apply.

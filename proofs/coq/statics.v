@@ -1,4 +1,5 @@
-(** Statement T2 (../statics.md): forces of an isostatic structure, their dependence on the load, the opening direction. *)
+(** Statement T2 (../statics.md): forces of an isostatic structure, their dependence on the load,
+  the opening direction. *)
 From mathcomp Require Import all_ssreflect all_algebra.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -36,7 +37,8 @@ rewrite /forces mulmxDl -!scalemxAl.
 by rewrite mxE [X in X + _ = _]mxE [X in _ + X = _]mxE [s1 * _]mulrC [(s2 - s1) * _]mulrC.
 Qed.
 
-(** The motion with prescribed approach velocities is unique; with dV_l = 0 for l <> l0 it is the multiple [c] of one vector. *)
+(** The motion with prescribed approach velocities is unique;
+  with dV_l = 0 for l <> l0 it is the multiple [c] of one vector. *)
 Definition opening (l0 : 'I_n) : 'cV[F]_n := - (invmx G *m delta_mx l0 0).
 
 Theorem opening_direction_is_unique (l0 : 'I_n) (v : 'cV[F]_n) :
@@ -61,7 +63,8 @@ rewrite power_identity mxE (bigD1 l0) //= opening_has_unit_rate eqxx mulrN1 big1
 by move=> l /negPf nl; rewrite opening_has_unit_rate nl oppr0 mulr0.
 Qed.
 
-(** What every coordinate-free choice of the code relies on: the force in l is the displacement response of the load (reciprocity). *)
+(** What every coordinate-free choice of the code relies on: the force in l is the displacement response of the load
+  (reciprocity). *)
 Theorem reciprocity (l mu : 'I_n) : forces (delta_mx 0 mu) 0 l = - opening l mu 0.
 Proof.
 by rewrite /forces /opening -rowE -colE !mxE opprK.
@@ -84,7 +87,8 @@ Qed.
 Lemma nonnegative_up_to_the_ratio (a b t : F) : b < 0 -> (0 <= a + b * t) = (t <= a / - b).
 Proof. by move=> b0; rewrite ler_pdivl_mulr ?oppr_gt0 // -[RHS]subr_ge0 mulrN opprK mulrC. Qed.
 
-(** The supported loads are an intersection of half-lines; in the direction of increasing s a limit [s0 - a l0 / b l0] (distance from the
+(** The supported loads are an intersection of half-lines; in the direction of increasing s a limit [s0 - a l0 / b l0]
+  (distance from the
     present load) that is not above the ratio of any other decreasing force bounds it exactly. *)
 Theorem supported_interval_ends_at_the_smallest_ratio (n : nat) (a b : 'I_n -> F) (l0 : 'I_n) (t : F) :
   (forall l, 0 <= a l) -> b l0 < 0 ->
@@ -96,7 +100,8 @@ case: (lerP 0 (b l)) => [bl|bl]; first by rewrite addr_ge0 ?a0 ?mulr_ge0.
 by rewrite nonnegative_up_to_the_ratio // (le_trans tle) ?least.
 Qed.
 
-(** Signorini (paper, section 2.3): at a limit load only l0 carries no force; a motion that closes nothing and in which the load
+(** Signorini (paper, section 2.3): at a limit load only l0 carries no force;
+  a motion that closes nothing and in which the load
     does not resist opens l0 only. *)
 Theorem only_the_unloaded_contact_opens (n : nat) (f : 'rV[F]_n) (dV : 'cV[F]_n) (l0 : 'I_n) :
   (forall l, l != l0 -> 0 < f 0 l) -> f 0 l0 = 0 ->
@@ -114,7 +119,8 @@ have /eqP := sum0; rewrite psumr_eq0; last by move=> i _; rewrite oppr_ge0.
 move=> /allP/(_ l (mem_index_enum _)); rewrite /= oppr_eq0 mulf_eq0.
 by rewrite (gt_eqF (pos l nl)) => /eqP.
 Qed.
-(** T8, first order: with all forces positive every motion that closes no contact works against the load (W increases). *)
+(** T8, first order: with all forces positive every motion that closes no contact works against the load (W
+  increases). *)
 Theorem every_admissible_motion_works_against_the_load (n : nat) (G : 'M[F]_n) (load : 'rV[F]_n) (v : 'cV[F]_n) :
   G \in unitmx -> (forall l, 0 < forces G load 0 l) -> (forall l, (G *m v) l 0 <= 0) -> v != 0 -> (load *m v) 0 0 < 0.
 Proof.

@@ -1,7 +1,9 @@
 (** Statement T11 (a) (../structural_zeros.md): forces that no loaded row reaches vanish.
 
-    [M] matches rows to columns. [column] are the reached columns, [row r] says that the column matched to r is reached. The two hypotheses
-    are what the search of the code ensures: entries of reached columns lie in their rows only, and the load acts on these rows only. *)
+    [M] matches rows to columns. [column] are the reached columns,
+      [row r] says that the column matched to r is reached. The two hypotheses
+    are what the search of the code ensures: entries of reached columns lie in their rows only,
+      and the load acts on these rows only. *)
 From mathcomp Require Import all_ssreflect fingroup perm all_algebra.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -24,7 +26,8 @@ rewrite mxrankMfree ?row_free_unit //.
 have -> : unreached_rows = perm_mx M *m unreached_columns *m perm_mx M^-1%g.
   rewrite -row_permE -col_permE; apply/matrixP=> r s.
   by rewrite !mxE (inj_eq perm_inj) /row.
-by rewrite mxrankMfree ?row_free_unit ?unitmx_perm // -mxrank_tr trmx_mul mxrankMfree ?mxrank_tr // row_free_unit unitmx_tr unitmx_perm.
+by rewrite mxrankMfree ?row_free_unit ?unitmx_perm // -mxrank_tr trmx_mul mxrankMfree ?mxrank_tr // row_free_unit
+  unitmx_tr unitmx_perm.
 Qed.
 
 Let inside : (unreached_rows *m A <= unreached_columns)%MS.
@@ -40,10 +43,12 @@ Proof.
 move=> Ax nc.
 have eqm : (unreached_rows *m A == unreached_columns)%MS by rewrite -(mxrank_leqif_eq inside) same_rank.
 have : ((delta_mx 0 c : 'rV[F]_n) <= unreached_rows *m A)%MS.
-  case/andP: eqm => _; move=> back; apply: submx_trans back; have -> : delta_mx 0 c = delta_mx 0 c *m unreached_columns :> 'rV_n; last exact: submxMl.
+  case/andP: eqm => _; move=> back; apply: submx_trans back; have ->
+    : delta_mx 0 c = delta_mx 0 c *m unreached_columns :> 'rV_n; last exact: submxMl.
   apply/rowP=> k; rewrite mul_mx_diag !mxE eqxx /=.
   by case: eqP => [->|_]; rewrite ?nc ?mulr1 ?mul0r.
-case/submxP=> y E; have : ((delta_mx 0 c : 'rV[F]_n) *m x) 0 0 = (y *m (unreached_rows *m b)) 0 0 by rewrite E -Ax !mulmxA.
+case/submxP=> y E; have : ((delta_mx 0 c : 'rV[F]_n) *m x) 0 0 = (y *m (unreached_rows *m b)) 0 0 by rewrite E -Ax
+  !mulmxA.
 rewrite -rowE mxE => ->.
 have -> : unreached_rows *m b = 0; last by rewrite mulmx0 mxE.
 apply/colP=> r; rewrite mul_diag_mx !mxE.

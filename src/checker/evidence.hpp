@@ -55,6 +55,8 @@ ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, 
 ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool& exists);
 ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim);
 ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim);
+/// One end of the interval; direction 1 is the upper one. `text`: what was found.
+Verdict judge_load_end(const Evidence& evidence, const LoadEndClaim& claim, int direction, std::string& text);
 ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim);
 ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimCheck>& others);
 

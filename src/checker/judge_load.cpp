@@ -96,6 +96,13 @@ struct End {
 
 } // namespace
 
+Verdict judge_load_end(const Evidence& evidence, const LoadEndClaim& claim, int direction, std::string& text) {
+    End end{evidence, claim, direction};
+    const Verdict verdict = end.judge();
+    text = end.text;
+    return verdict;
+}
+
 ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim) {
     ClaimCheck check{.claim = "load_interval", .claimed = true};
     End low{evidence, claim.low, -1};

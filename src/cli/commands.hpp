@@ -81,8 +81,8 @@ int convert(const ConvertArguments& arguments);
 
 struct VerifyArguments {
     Common common;
-    std::string certificate;
-    std::string input; ///< empty, or the file that the certificate speaks of
+    std::string certificate; ///< or the folder of a run
+    std::string input;       ///< empty, or the file that the certificate speaks of
 };
 /// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
 /// equilibrium is there and proved.

@@ -131,7 +131,7 @@ Json sample_json(const GenericitySample& sample) {
     out["h"] = 0;
     out["k"] = 0;
     out["N"] = sample.contacts.size();
-    out["carrying"] = sample.carrying;
+    out["carrying"] = sample.carrying.size();
     out["rattlers"] = sample.rattlers;
     out["min_force"] = number(sample.min_force);
     out["min_gap"] = number(sample.min_gap);
@@ -150,7 +150,7 @@ Json result_json(const Genericity& result, double size, std::size_t longest) {
     out["failed"] = result.failed;
     out["within_original"] = within(result);
     out["rungs"] = rungs(result);
-    out["distinct_lists"] = result.lists.size();
+    out["distinct_networks"] = result.lists.size();
     Json lists = Json::array();
     for (std::size_t k = 0; k < result.lists.size() && k < longest; ++k) {
         Json names = Json::array();
@@ -159,7 +159,7 @@ Json result_json(const Genericity& result, double size, std::size_t longest) {
         }
         lists.push_back({{"samples", result.lists[k].samples}, {"contacts", std::move(names)}});
     }
-    out["lists"] = std::move(lists);
+    out["networks"] = std::move(lists);
     Json samples = Json::array();
     for (const GenericitySample& sample : result.samples) {
         samples.push_back(sample_json(sample));
@@ -174,7 +174,7 @@ std::string csv_rows(const Genericity& result, double size) {
         const bool ok = !s.failure;
         out += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", size, s.seed,
                            ok ? "proved" : to_string(s.failure->kind), ok ? "0" : "", ok ? "0" : "",
-                           ok ? std::to_string(s.carrying) : "", ok ? std::to_string(s.rattlers) : "",
+                           ok ? std::to_string(s.carrying.size()) : "", ok ? std::to_string(s.rattlers) : "",
                            ok ? fmt::format("{}", s.min_force) : "", ok ? fmt::format("{}", s.min_gap) : "",
                            ok ? fmt::format("{}", s.sigma_min) : "", ok ? (s.within_original ? "1" : "0") : "");
     }
@@ -262,12 +262,14 @@ int genericity(const GenericityArguments& a) {
     }
     fmt::print(
         "\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 than "
-        "N_f, to double-double;\nlists: distinct contact lists, and samples in the most frequent; within: the force "
+        "N_f, to double-double;\nlists: distinct networks of force-carrying contacts, and samples in the most "
+        "frequent; within: the force "
         "network is part of the unperturbed contacts;\nmargins: proved lower bounds, smallest and median over "
         "the samples.\n");
     for (std::size_t s = 0; s < all.size(); ++s) {
-        for (std::size_t k = 0;
-             k < all[s].lists.size() && k < static_cast<std::size_t>(a.lists) && all[s].lists[k].samples > std::max(1, a.samples / 20); ++k) {
+        for (std::size_t k = 0; k < all[s].lists.size() && k < static_cast<std::size_t>(a.lists) &&
+                                all[s].lists[k].samples > std::max(1, a.samples / 20);
+             ++k) {
             fmt::print("size {:.0e}: {} samples {}\n", a.sizes[s], all[s].lists[k].samples,
                        list_text(all[s].lists[k].contacts, original.contacts));
         }

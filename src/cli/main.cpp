@@ -236,14 +236,20 @@ struct Program {
     void add_verify(const std::string& line) {
         VerifyArguments& a = verify_arguments;
         CLI::App& command =
-            add("verify", "re-checks a certificate with separate code: proved, refuted or undecided for every claim",
+            add("verify",
+                "re-checks a certificate, or the records of a run, with separate code: proved, refuted or undecided",
                 "The checker shares only the reader of the file with the program that made the certificate, and needs "
                 "nothing of a run.\n"
                 "Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a "
                 "claim is\n"
                 "undecided or absent.\n"
-                "Example: isostat verify certificate.json --input state.json");
-        command.add_option("certificate", a.certificate, "certificate (JSON)")->required()->type_name("CERT.json");
+                "Of the folder of a run every arc and every equilibrium is replayed; the first wrong record is named. "
+                "Runs with\n"
+                "states_every = 1 can be taken up again after an arc that the replay cannot follow.\n"
+                "Examples: isostat verify certificate.json --input state.json\n          isostat verify out");
+        command.add_option("certificate", a.certificate, "certificate (JSON), or folder of a run")
+            ->required()
+            ->type_name("CERT.json|DIR");
         command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
             ->type_name("FILE");
         add_common(command, a.common, false);

@@ -1,7 +1,10 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/progress.hpp"
 
 #include <isostat/checker/verify.hpp>
+#include <isostat/checker/verify_run.hpp>
+#include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
@@ -45,9 +48,47 @@ Json json_of(const ClaimCheck& check) {
     return object;
 }
 
+/// A finished run from its records alone.
+int verify_folder(const VerifyArguments& arguments) {
+    StatusLine line(arguments.common.json);
+    const RunVerification run = verify_run(arguments.certificate, [&line](int equilibrium) {
+        line.show(fmt::format("verify: equilibrium {}", equilibrium));
+    });
+    line.clear();
+    if (arguments.common.json) {
+        Json object;
+        object["folder"] = arguments.certificate;
+        object["arcs"] = run.arcs;
+        object["arcs_proved"] = run.arcs_proved;
+        object["equilibria"] = run.equilibria;
+        object["equilibria_proved"] = run.equilibria_proved;
+        object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
+        object["undecided"] = run.undecided;
+        object["verdict"] = to_string(run.verdict);
+        fmt::print("{}\n", object.dump());
+        return status_of_verdict(run.verdict);
+    }
+    fmt::print("arcs           {} of {} proved\n", run.arcs_proved, run.arcs);
+    fmt::print("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
+    for (const std::string& open : run.undecided) {
+        fmt::print("undecided      {}\n", open);
+    }
+    if (!run.wrong.empty()) {
+        fmt::print("first wrong    {}\n", run.wrong);
+    }
+    fmt::print("run            {}\n", to_string(run.verdict));
+    return status_of_verdict(run.verdict);
+}
+
 } // namespace
 
 int verify(const VerifyArguments& arguments) {
+    if (std::filesystem::is_directory(arguments.certificate)) {
+        if (!arguments.input.empty()) {
+            throw Error(ErrorKind::usage, "--input belongs to a certificate, not to the folder of a run");
+        }
+        return verify_folder(arguments);
+    }
     const Certificate certificate = read_certificate(arguments.certificate);
     Verification verification = isostat::verify(certificate);
     if (!arguments.input.empty()) {

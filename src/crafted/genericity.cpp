@@ -71,7 +71,7 @@ void fill(GenericitySample& sample, const State<2>& state, const Certification& 
             continue;
         }
         const Contact& contact = state.contacts[l];
-        ++sample.carrying;
+        sample.carrying.push_back(contact);
         sample.min_force = std::min(sample.min_force, claims.forces->finite[l].lower);
         carries[static_cast<std::size_t>(contact.i)] = 1;
         if (contact.kind == ContactKind::disk_disk) {
@@ -82,17 +82,6 @@ void fill(GenericitySample& sample, const State<2>& state, const Certification& 
     sample.min_gap = claims.gaps->smallest;
     sample.sigma_min = certified.smallest_sigma;
     sample.rung = std::max({claims.vertex->rung, claims.forces->rung, claims.gaps->rung});
-}
-
-bool within(const GenericitySample& sample, const State<2>& state, const std::vector<int>& zeros,
-            const std::vector<Contact>& original) {
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (!std::binary_search(zeros.begin(), zeros.end(), static_cast<int>(l)) &&
-            !std::binary_search(original.begin(), original.end(), state.contacts[l])) {
-            return false;
-        }
-    }
-    return !sample.failure;
 }
 
 } // namespace
@@ -118,7 +107,10 @@ Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& ori
             const Certification certified = certify(state);
             fill(sample, state, certified);
             if (!sample.failure) {
-                sample.within_original = within(sample, state, certified.claims.forces->structural_zeros, sorted);
+                sample.within_original =
+                    std::all_of(sample.carrying.begin(), sample.carrying.end(), [&](const Contact& contact) {
+                        return std::binary_search(sorted.begin(), sorted.end(), contact);
+                    });
             }
         } else {
             sample.failure = found.failure();
@@ -131,9 +123,9 @@ Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& ori
         }
         ++out.proved;
         const auto known = std::find_if(out.lists.begin(), out.lists.end(),
-                                        [&](const ContactListCount& list) { return list.contacts == sample.contacts; });
+                                        [&](const ContactListCount& list) { return list.contacts == sample.carrying; });
         if (known == out.lists.end()) {
-            out.lists.push_back({sample.contacts, 1});
+            out.lists.push_back({sample.carrying, 1});
         } else {
             ++known->samples;
         }

@@ -134,6 +134,9 @@ class Inspector {
             }
             judge_zeros();
             out_.support = least > 0 ? Support::positive : (least == 0 ? Support::with_zeros : Support::none);
+            if (least >= 0) {
+                judge_disks();
+            }
             return;
         }
         if (!affordable(out_.self_stresses.size() + 1, contact_count() + 1)) {
@@ -165,6 +168,23 @@ class Inspector {
             out_.support = point.feasible ? Support::with_zeros : Support::none;
             if (point.feasible) {
                 out_.forces = point.solution;
+            }
+        }
+    }
+
+    void judge_disks() {
+        std::vector<unsigned char> carries(packing_.radius.size(), 0);
+        for (std::size_t l = 0; l < contact_count(); ++l) {
+            if (!out_.forces[l].is_zero()) {
+                carries[static_cast<std::size_t>(out_.contacts[l].i)] = 1;
+                if (out_.contacts[l].kind == ContactKind::disk_disk) {
+                    carries[static_cast<std::size_t>(out_.contacts[l].j)] = 1;
+                }
+            }
+        }
+        for (int i = 0; i < packing_.disk_count(); ++i) {
+            if (carries[static_cast<std::size_t>(i)] == 0 && !packing_.is_fixed(i)) {
+                out_.without_force.push_back(i);
             }
         }
     }

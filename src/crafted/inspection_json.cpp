@@ -57,6 +57,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["one_sign_stress"] = entries(inspection.one_sign.combination, contacts);
     out["support"] = to_string(inspection.support);
     out["forces_unique"] = inspection.forces_unique;
+    out["without_force"] = inspection.without_force;
     out["forces"] = entries(inspection.forces, contacts);
     out["structural_zeros"] = Json::array();
     for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {

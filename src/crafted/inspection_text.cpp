@@ -122,6 +122,10 @@ std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
     line("special position", std::string(to_string(inspection.special_position)));
     line("rattlers", number_list(disks_with(inspection, DiskHold::rattler)));
     line("bridges", number_list(disks_with(inspection, DiskHold::bridge)));
+    if (inspection.forces_unique &&
+        (inspection.support == Support::positive || inspection.support == Support::with_zeros)) {
+        line("disks without force", number_list(inspection.without_force));
+    }
     std::vector<std::string> idle;
     for (std::size_t l = 0; l < contact_names.size(); ++l) {
         if (inspection.carrying[l] == 0) {
@@ -199,7 +203,7 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
                 mismatch(entry, entry.values[0][0], word->second);
             }
         } else if (entry.key == "contacts" || entry.key == "rattlers" || entry.key == "bridges" ||
-                   entry.key == "structural_zeros") {
+                   entry.key == "without_force" || entry.key == "structural_zeros") {
             std::vector<std::string> wanted, found;
             for (const auto& row : entry.values) {
                 wanted.insert(wanted.end(), row.begin(), row.end());
@@ -213,6 +217,13 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
                     if (inspection.structural_zero[l] != 0) {
                         found.push_back(to_string<2>(inspection.contacts[l]));
                     }
+                }
+            } else if (entry.key == "without_force") {
+                for (const int i : inspection.without_force) {
+                    found.push_back(std::to_string(i));
+                }
+                if (!inspection.forces_unique) {
+                    found.emplace_back("forces that are not unique");
                 }
             } else {
                 for (const int i :
@@ -253,7 +264,7 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
             }
         } else {
             bad(entry, "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
-                       "forces, rattlers, bridges, structural_zeros, "
+                       "forces, rattlers, bridges, without_force, structural_zeros, "
                        "one_sign, support, second_order or stable");
         }
     }

@@ -304,12 +304,10 @@ RankBound rank_bound(const NumberMatrix& matrix) {
     using Entries = std::vector<std::pair<int, std::uint64_t>>;
     std::vector<Entries> pivot(rows); // by leading row, leading value 1
     std::vector<std::uint64_t> work(rows, 0);
-    RankBound out{0, field.prime()};
+    RankBound out{0, field.prime(), {}, {}};
     const int full = std::min(matrix.rows, matrix.cols());
-    for (const auto& column : matrix.column) {
-        if (out.rank == full) {
-            break;
-        }
+    for (int number = 0; number < matrix.cols() && out.rank < full; ++number) {
+        const auto& column = matrix.column[static_cast<std::size_t>(number)];
         int first = matrix.rows, last = -1;
         for (const auto& [i, value] : column) {
             work[static_cast<std::size_t>(i)] = reduction.residue(value);
@@ -331,6 +329,7 @@ RankBound rank_bound(const NumberMatrix& matrix) {
                     }
                 }
                 ++out.rank;
+                out.columns.push_back(number);
                 placed = true;
                 continue;
             }
@@ -343,6 +342,11 @@ RankBound rank_bound(const NumberMatrix& matrix) {
         }
         for (int i = std::max(first, 0); i <= last; ++i) {
             work[static_cast<std::size_t>(i)] = 0;
+        }
+    }
+    for (int i = 0; i < matrix.rows; ++i) {
+        if (pivot[static_cast<std::size_t>(i)].empty()) {
+            out.free_rows.push_back(i);
         }
     }
     return out;

@@ -208,6 +208,39 @@ template <int Dim> class Follower {
         return sum;
     }
 
+    /// First place inside a step of length s where the power seems to be negative although both ends are positive: the
+    /// cubic with its value and its first two derivatives at q_, and its value at the end.
+    std::optional<double> power_dip(double p_start, double p_end, double s) {
+        const auto third = [&](const Contact& c) { // kept gaps: n . third derivative = -3 (t . curvature) / d
+            if (c.kind != ContactKind::disk_disk) {
+                return 0.0;
+            }
+            const auto i = static_cast<std::size_t>(Dim * c.i);
+            const auto j = static_cast<std::size_t>(Dim * c.j);
+            double product = 0;
+            double square = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const double d = q_.q[j + a] - q_.q[i + a];
+                square += d * d;
+                product += (tangent_[j + a] - tangent_[i + a]) * (curvature_[j + a] - curvature_[i + a]);
+            }
+            return 3 * product / std::sqrt(square);
+        };
+        const double p1 = s * power_of(q_, curvature_);
+        chord(
+            third, [&](const Vector& v) { return v[fastest_]; }, 0.0);
+        const double p2 = 0.5 * s * s * power_of(q_, y_);
+        const double p3 = p_end - p_start - p1 - p2;
+        constexpr int samples = 32;
+        for (int k = 1; k < samples; ++k) {
+            const double x = static_cast<double>(k) / samples;
+            if (p_start + x * (p1 + x * (p2 + x * p3)) < 0) {
+                return x * s;
+            }
+        }
+        return std::nullopt;
+    }
+
     /// The factors of the start are stale: prove and factorise the structure that holds the fastest coordinate, here.
     std::optional<Failure> renew() {
         std::vector<Contact> contacts = structure_->contacts();
@@ -263,6 +296,12 @@ template <int Dim> class Follower {
 
     Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power) {
         Arc<Dim> arc;
+        for (const Contact& contact : structure_->contacts()) {
+            if (contact.kind == ContactKind::held && contact != opened_ && &contact != &structure_->contacts()[slot_]) {
+                const auto k = static_cast<std::size_t>(contact.i);
+                end.q[k] = start_.q[k]; // held means held, rounding apart
+            }
+        }
         for (std::size_t k = 0; k < end.q.size(); ++k) {
             arc.displacement = std::max(arc.displacement, std::abs(end.q[k] - start_.q[k]));
         }
@@ -426,6 +465,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     const double noise = 16 * grid_step(start_);
     double shrink = 1;
     double forced_step = infinity; // a step cut at a dip
+    double power_step = infinity;  // for the rest of an arc whose power comes near 0
     double p_start = power_.starts_at_zero ? 0.0 : infinity;
     const auto narrow = [&]() -> std::optional<Failure> {
         // Stale factors first, then shorter steps.
@@ -438,13 +478,14 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         return std::nullopt;
     };
     bool renewed_here = false;
+    bool moved = false; // q_ is no longer the start
     while (steps_ < options_.max_steps) {
         choose_fastest();
         if (!std::isfinite(tangent_[fastest_])) {
             return Failure{FailureKind::not_converged, "the mechanism is not finite"};
         }
         list_candidates();
-        const bool at_start = steps_ == 0;
+        const bool at_start = !moved;
         chord([&](const Contact& c) { return gap_curvature(q_, c, tangent_.data()); },
               [&](const Vector& v) { return v[fastest_]; }, 0.0);
         curvature_ = y_;
@@ -471,7 +512,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         }
         // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
         const double reach = 0.9 * reach_left() / (1.3 * std::sqrt(static_cast<double>(Dim)));
-        const double s_max = std::min({step_limit_ * shrink, reach, forced_step});
+        const double s_max = std::min({step_limit_ * shrink, reach, forced_step, power_step});
         ++steps_;
         bool accepted = false;
 
@@ -561,6 +602,16 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
         // in the new contact.
         const bool judged = !(power_.starts_at_zero && at_start);
+        if (!judged && p_end < 0 && s > 1e-6 * step_limit_) {
+            forced_step = 0.25 * s; // it may have grown and turned within the step
+            continue;
+        }
+        if (p_end > 0 && s > 1e-6 * step_limit_) {
+            if (const auto dip = power_dip(p_start, p_end, s)) {
+                power_step = std::min(power_step, 0.5 * *dip);
+                continue;
+            }
+        }
         if (judged && p_end < 0 && p_start > 0) {
             return power_turn(0.0, p_start, s, p_end);
         }
@@ -574,6 +625,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         if (try_event) {
             return finish(std::move(point->at), ArcEnd::contact, closing, p_end);
         }
+        moved = true;
         q_ = std::move(point->at);
         tangent_ = std::move(point->tangent);
         p_start = p_end;

@@ -14,7 +14,7 @@ constexpr double up = 1 + 1e-9;
 constexpr int max_depth = 40;
 /// Shares of a piece beyond which an end with power 0 is not called that: they are reported whatever they are.
 constexpr double largest_open_start = 1e-2;
-constexpr double largest_open_end = 1e-4;
+constexpr double largest_open_end = 1e-2;
 
 } // namespace
 

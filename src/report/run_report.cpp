@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace isostat {
 
@@ -98,6 +99,30 @@ class Writer {
 
 } // namespace
 
+namespace {
+
+/// Decisions by kind and by the rung that settled them.
+std::string decision_table(const json::Field& decisions) {
+    constexpr std::array<const char*, 5> rungs{"combinatorial", "double", "double-double", "mpfr", "exact"};
+    std::string text = fmt::format("\n{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15}\n", "decisions", rungs[0], rungs[1],
+                                   rungs[2], rungs[3], rungs[4], "smallest margin");
+    const auto row = [&](const std::string& name, const json::Field& counts) {
+        text += fmt::format("{:<20} {:>13} {:>9} {:>13} {:>7} {:>7} {:>15.3g}\n", name, counts.at(rungs[0]).integer(),
+                            counts.at(rungs[1]).integer(), counts.at(rungs[2]).integer(), counts.at(rungs[3]).integer(),
+                            counts.at(rungs[4]).integer(), counts.at("smallest_margin").number());
+    };
+    for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
+        row(kind, decisions.at("kinds").at(kind));
+    }
+    row("all", decisions);
+    text += fmt::format("undecided            {} (ties {}); structural ties ordered by the infinitesimal loads {}\n",
+                        decisions.at("undecided").integer(), decisions.at("ties").at("other").integer(),
+                        decisions.at("ties").at("structural").integer());
+    return text;
+}
+
+} // namespace
+
 ReportResult report_run(const fs::path& directory, const fs::path& output, const ReportOptions& options) {
     const fs::path run = directory / "run.json";
     if (!fs::exists(run)) {
@@ -132,7 +157,12 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
             writer.picture(path, "forces_" + path.stem().string());
         }
     }
-    const std::string text = run_tables(rows, names, header.at("status").string());
+    std::string text = run_tables(rows, names, header.at("status").string());
+    const fs::path summary = directory / "summary.json"; // of runs that ended
+    if (fs::exists(summary)) {
+        const json::Json ended = json::Field::parse(read_text(summary), summary.string());
+        text += decision_table(json::Field(ended, summary.string()).at("counters").at("decisions"));
+    }
     writer.write("report.txt", text);
     return writer.take(text);
 }

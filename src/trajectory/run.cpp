@@ -298,8 +298,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                    : opening.infinitesimal                                                       ? "rattler"
                                                                                                  : "tension";
     }
-    // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh factors
-    // and bound. A resumed run starts from the same bits.
+    // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh
+    // factors and bound. A resumed run starts from the same bits.
     fresh_caches(here->packing);
     auto anew = Vertex<Dim>::make(here->packing, here->structure.contacts(), load, bound_cache_);
     if (!anew.ok()) {
@@ -312,6 +312,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
     }
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
+    // The questions that `start` asks after a resume: the statics then stand on the same rung.
+    (void)decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0);
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();
@@ -376,6 +378,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
     if (counters_.equilibria != 0 || counters_.steps != 0) {
+        // The same questions as when the equilibrium was found: the statics then stand on the same rung, and the run
+        // goes on with the same bits.
+        (void)decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), 0);
         auto described = describe(*vertex_, state_.load);
         if (!described.ok()) {
             return located(described.failure(), "start");

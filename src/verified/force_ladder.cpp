@@ -80,8 +80,8 @@ double length_of(const std::vector<double>& correction) {
     return norm_above(size);
 }
 
-/// Norm of the components of normals that the pattern leaves out because they are 0 in the stored configuration:
-/// `moved(j, i)` is a bound of what they are at other coordinates.
+/// Norm of the components of normals that the matrix of the structure leaves out because they are 0 in the stored
+/// configuration: `moved(j, i)` is a bound of what they are at other coordinates.
 template <int Dim, class Moved>
 double left_out(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Moved moved) {
     std::vector<double> parts;
@@ -164,9 +164,7 @@ const typename ForceLadder<Dim>::Implementation::Place& ForceLadder<Dim>::Implem
 }
 
 template <int Dim> double ForceLadder<Dim>::Implementation::stored_uncertainty() const {
-    const double away = where().away;
-    return normals() * away +
-           left_out(*packing, structure->contacts(), [away](std::size_t, std::size_t) { return 1.5 * away; });
+    return normals() * where().away; // components that are 0 in the stored configuration included
 }
 
 /// The bound of a solution at the place of the rung becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H* - H|),
@@ -207,6 +205,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::extend() {
         place = here;
     }
     extended = extended_contact_matrix(*packing, *structure, at.correction);
+    count_work(Work::double_double);
     rung = Rung::double_double;
     count_work(Work::double_double);
     bits = 106;
@@ -224,17 +223,10 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::refine(int next) {
         if (found.verdict != Verdict::proved) {
             return false;
         }
-        Real difference(64);
         Place here;
         here.shift = found.shift;
         here.away = (found.shift + found.radius.above()) * (1 + 4 * u);
-        // May be far below the range of double: the part of the rate in MPFR, what the pattern leaves out added to it.
-        mpfr_mul_d(uncertainty.get(), found.radius.get(), normals(), MPFR_RNDU);
-        here.uncertainty = left_out(*packing, structure->contacts(), [&](std::size_t j, std::size_t i) {
-            mpfr_sub(difference.get(), found.coordinate[j].get(), found.coordinate[i].get(), MPFR_RNDA);
-            return std::abs(mpfr_get_d(difference.get(), MPFR_RNDA)) + 1.5 * found.radius.above();
-        });
-        mpfr_add_d(uncertainty.get(), uncertainty.get(), here.uncertainty, MPFR_RNDU);
+        mpfr_mul_d(uncertainty.get(), found.radius.get(), normals(), MPFR_RNDU); // may be far below the range of double
         sigma = (sigma - normals() * here.shift - uncertainty.above()) * (1 - 8 * u);
         if (!(sigma > 0)) {
             return false;
@@ -245,6 +237,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::refine(int next) {
     }
     system.emplace(*structure, vertex != nullptr ? refined_vertex->coordinate : stored, *factorisation, sigma,
                    uncertainty, next);
+    count_work(Work::multiprecision);
     rung = Rung::multiprecision;
     count_work(Work::multiprecision);
     bits = next;

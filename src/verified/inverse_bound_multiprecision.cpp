@@ -112,14 +112,12 @@ double sigma_by_rows(const sparse::Matrix<Real>& h, const sparse::Ordering& orde
 template <int Dim>
 InverseBound bound_inverse_multiprecision(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                           int size_limit, int max_bits) {
-    const sparse::Matrix<double>& pattern = structure.matrix();
-    if (pattern.rows > size_limit) {
+    if (structure.size() > size_limit) {
         return {};
     }
     const std::vector<Real> coordinates = exact_coordinates(packing.q, {});
     for (int bits = 128; bits <= max_bits; bits *= 2) {
-        const sparse::Matrix<Real> h{pattern.rows, pattern.cols, pattern.start, pattern.row,
-                                     precise_contact_matrix(structure, coordinates, bits)};
+        const sparse::Matrix<Real> h = precise_contact_matrix(structure, coordinates, bits);
         const double sigma = sigma_by_rows(h, structure.ordering(), bits);
         if (sigma > 0) {
             return {Verdict::proved, sigma, InverseBound::Route::multiprecision};

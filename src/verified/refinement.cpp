@@ -18,13 +18,13 @@ template <int Dim>
 RefinedSystem<Dim>::RefinedSystem(const IsostaticStructure<Dim>& structure, const std::vector<Real>& coordinate,
                                   const Factorisation& factorisation, double sigma_min, Real uncertainty,
                                   mpfr_prec_t bits)
-    : pattern_(&structure.matrix()), factorisation_(&factorisation), sigma_min_(sigma_min),
-      uncertainty_(std::move(uncertainty)), bits_(bits), entry_(precise_contact_matrix(structure, coordinate, bits)) {}
+    : factorisation_(&factorisation), sigma_min_(sigma_min), uncertainty_(std::move(uncertainty)), bits_(bits),
+      matrix_(precise_contact_matrix(structure, coordinate, bits)) {}
 
 template <int Dim>
 RefinedVector RefinedSystem<Dim>::solve(const std::vector<Real>& b, const std::vector<Real>& start, bool transposed,
                                         const Real& b_error) const {
-    const sparse::Matrix<double>& h = *pattern_;
+    const sparse::Matrix<Real>& h = matrix_;
     const std::size_t n = b.size();
     std::vector<Real> x;
     x.reserve(n);
@@ -53,7 +53,7 @@ RefinedVector RefinedSystem<Dim>::solve(const std::vector<Real>& b, const std::v
                 const auto e = static_cast<std::size_t>(k);
                 const auto row = static_cast<std::size_t>(h.row[e]);
                 const std::size_t i = transposed ? j : row;
-                mpfr_mul(product.get(), entry_[e].get(), x[transposed ? row : j].get(), MPFR_RNDN);
+                mpfr_mul(product.get(), h.value[e].get(), x[transposed ? row : j].get(), MPFR_RNDN);
                 mpfr_sub(r[i].get(), r[i].get(), product.get(), MPFR_RNDN);
                 mpfr_abs(upper.get(), product.get(), MPFR_RNDU);
                 mpfr_add(size[i].get(), size[i].get(), upper.get(), MPFR_RNDU);

@@ -21,7 +21,7 @@ struct RefinedVector {
 template <int Dim> class RefinedSystem {
   public:
     /// `sigma_min` > 0: a proved lower bound of the smallest singular value of the matrix H* that is meant, with
-    /// |H* - H|_2 <= uncertainty, H that of the coordinates (in the pattern of the structure).
+    /// |H* - H|_2 <= uncertainty, H that of the coordinates.
     RefinedSystem(const IsostaticStructure<Dim>& structure, const std::vector<Real>& coordinate,
                   const Factorisation& factorisation, double sigma_min, Real uncertainty, mpfr_prec_t bits);
 
@@ -34,12 +34,11 @@ template <int Dim> class RefinedSystem {
     [[nodiscard]] mpfr_prec_t bits() const { return bits_; }
 
   private:
-    const sparse::Matrix<double>* pattern_;
     const Factorisation* factorisation_;
     double sigma_min_;
     Real uncertainty_;
     mpfr_prec_t bits_;
-    std::vector<Real> entry_;
+    sparse::Matrix<Real> matrix_;
 };
 
 extern template class RefinedSystem<2>;

@@ -117,7 +117,7 @@ BOOST_AUTO_TEST_CASE(genericity_of_a_state_keeps_its_contacts) {
         run({"genericity", scratch::data("vertex100.txt"), "--samples", "3", "--size", "1e-9", "--json"});
     expect(state, 0);
     BOOST_TEST(contains(state.out, "\"proved_isostatic\":3"));
-    BOOST_TEST(contains(state.out, "\"distinct_lists\":1"));
+    BOOST_TEST(contains(state.out, "\"distinct_networks\":1"));
     BOOST_TEST(contains(state.out, "\"within_original\":3"));
 }
 

@@ -63,4 +63,28 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
     expect(run({"verify"}), 64);
 }
 
+BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
+    const scratch::Folder folder;
+    scratch::write(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    const std::string out = (folder / "out").string();
+    expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
+    const Outcome good = run({"verify", out, "--json"});
+    expect(good, 0);
+    const json answer = json::parse(good.out);
+    BOOST_TEST(answer["verdict"] == "proved");
+    BOOST_TEST(answer["arcs_proved"] == answer["arcs"]);
+    BOOST_TEST(answer["equilibria_proved"] == 7);
+
+    const std::string events = scratch::read(folder / "out/events.jsonl");
+    scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"opened\":\"", "\"opened\":\"1"));
+    const Outcome wrong = run({"verify", out});
+    expect(wrong, 1);
+    BOOST_TEST(contains(wrong.out, "events.jsonl:1"));
+    BOOST_TEST(contains(wrong.out, "refuted"));
+
+    scratch::write(folder / "out/events.jsonl", events.substr(0, events.size() / 2));
+    expect(run({"verify", out}), 65, {"events.jsonl:", "truncated"});
+    expect(run({"verify", folder.path().string()}), 65, {"run.json"});
+}
+
 BOOST_AUTO_TEST_SUITE_END()

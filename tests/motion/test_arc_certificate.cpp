@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(the_power_is_judged_apart_from_the_contacts) {
     BOOST_TEST((certificate.power == Verdict::proved), certificate.power_reason);
     BOOST_TEST(certificate.power_open_end > 0);
     BOOST_TEST(certificate.power_open_end < 1e-6);
-    const Known beyond = before.at(std::numbers::pi / 2 + 1e-3, Contact{ContactKind::held, 4, 0});
+    const Known beyond = before.at(std::numbers::pi / 2 + 2e-2, Contact{ContactKind::held, 4, 0});
     BOOST_TEST((before.certify(start, beyond).power == Verdict::undecided));
 }
 

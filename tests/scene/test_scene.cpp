@@ -87,6 +87,7 @@ rule_seed = 4
 max_arcs = 11
 max_strain = 0.25
 step_fraction = 0.5
+certify = "arcs"
 [output]
 states_every = 10
 checkpoint_seconds = 2.5
@@ -119,12 +120,13 @@ vtk = true
     BOOST_TEST(scene.run.max_arcs == 11);
     BOOST_TEST(scene.run.max_strain == 0.25);
     BOOST_TEST(scene.run.step_fraction == 0.5);
+    BOOST_TEST((scene.run.certify == CertifyLevel::arcs));
     BOOST_TEST(scene.states_every == 10);
     BOOST_TEST(scene.checkpoint_seconds == 2.5);
     BOOST_TEST(!scene.pictures);
     BOOST_TEST(scene.vtk);
     // Nothing of this scene is a default: a key that was read but not recorded would be missing here.
-    BOOST_TEST(scene.settings.size() == 32U);
+    BOOST_TEST(scene.settings.size() == 33U);
     for (const Setting& setting : scene.settings) {
         BOOST_TEST((setting.line > 0 || setting.key == "name"), setting.section << "." << setting.key);
     }

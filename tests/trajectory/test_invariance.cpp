@@ -200,7 +200,7 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_noise_far_below_the_marg
         State<2> noisy = start;
         std::mt19937 random(11);
         for (double& r : noisy.packing.radius) {
-            r *= 1 + noise * (2.0 * random() / 4294967295.0 - 1);
+            r *= 1 + noise * (2.0 * static_cast<double>(random()) / 4294967295.0 - 1);
         }
         RunOptions options;
         options.certify = CertifyLevel::arcs;

@@ -103,4 +103,30 @@ BOOST_AUTO_TEST_CASE(true_stresses_leave_the_power_undecided_and_the_contacts_pr
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_the_step,
+                     *boost::unit_test::label("slow")) {
+    // At equilibrium 59 the power of a limit arc grows from 0 and turns within a tenth of a radius.
+    std::vector<std::pair<Contact, Contact>> events;
+    for (const double fraction : {0.1, 0.01}) {
+        RunOptions options;
+        options.step_fraction = fraction;
+        Played run = play(prepared(100, 1), +1, 40, {}, options);
+        Segment down;
+        down.direction = -1;
+        down.equilibria = 20;
+        options.max_strain = 1e9;
+        const auto outcome = run_segment<2>(run.state, down, 1, options, run.counters, run.records);
+        BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message : std::string()));
+        std::vector<std::pair<Contact, Contact>> list;
+        for (const auto& arc : run.records.arcs) {
+            list.emplace_back(arc.opened, arc.closed);
+        }
+        BOOST_TEST((events.empty() || events == list));
+        events = list;
+        BOOST_TEST(std::any_of(run.records.arcs.begin(), run.records.arcs.end(), [](const auto& arc) {
+            return arc.power_turn && arc.opened == Contact{ContactKind::disk_disk, 17, 69};
+        }));
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

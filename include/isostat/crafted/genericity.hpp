@@ -34,7 +34,7 @@ struct GenericitySample {
     /// no bound. Others: no vertex was found.
     std::optional<Failure> failure;
     std::vector<Contact> contacts; ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
-    int carrying = 0; ///< contacts that carry a force of the applied stress (2 (n - rattlers) + 2 when isostatic)
+    std::vector<Contact> carrying; ///< those that carry a force of the applied stress: 2 (n - rattlers) + 2 of them
     int rattlers = 0;
     double min_force = 0;   ///< proved lower bound of the smallest backbone force
     double min_gap = 0;     ///< proved lower bound of the smallest gap of a pair that is not a contact
@@ -44,7 +44,8 @@ struct GenericitySample {
         false; ///< every contact that carries force is one of the exact contacts of the unperturbed packing
 };
 
-/// A contact list and how many samples ended in it, most frequent first.
+/// A network of force-carrying contacts and how many samples ended in it, most frequent first. (On which contacts the
+/// rattlers lie depends on the infinitesimal loads, which are drawn anew for every sample.)
 struct ContactListCount {
     std::vector<Contact> contacts;
     int samples = 0;

@@ -74,6 +74,9 @@ struct Inspection {
     Support support = Support::no_load;
     bool forces_unique = false; ///< h = 0 and the load is balanced
     std::vector<Number> forces; ///< one equilibrium (the only one when unique); may have both signs
+    /// Disks that can move and carry no force of the load: rattlers by forces, where `hold` says rattlers by the
+    /// position of the normals. Filled when the forces are unique and none is negative.
+    std::vector<int> without_force;
     /// Per contact, when the forces are unique and generic coordinates balance the load too (else empty): 1 = the force
     /// is 0 here and, under the same load, for random coordinates of the same contact graph too (wrong with a chance of
     /// about N / 2^61). A force 0 without this mark is 0 by position: generic coordinates, proved, give it a value.
@@ -114,8 +117,8 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing);
 
 /// Compares with `[expected]`; one message per entry that does not hold, empty = all hold. Keys: N_f, N, rank, h, k,
 /// rigid_motions, generic_rank, special, verdict, contacts = ["0-1", "0-left", ..], forces = [["0-1", "1/2"], ..] (any
-/// subset; they must be unique), rattlers = [3], bridges, one_sign, support, second_order, stable. Throws
-/// `Error(bad_input)` with file and line for an unknown key.
+/// subset; they must be unique), rattlers = [3], bridges, without_force, one_sign, support, second_order, stable.
+/// Throws `Error(bad_input)` with file and line for an unknown key.
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source);
 

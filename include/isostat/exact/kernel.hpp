@@ -27,6 +27,9 @@ std::vector<Number> product(const NumberMatrix& matrix, const std::vector<Number
 struct RankBound {
     int rank = 0;
     std::uint64_t prime = 0;
+    std::vector<int> columns;   ///< `rank` columns, greedy in their order; with the rows that are not in `free_rows`
+                                ///< they are a regular submatrix: proved independent
+    std::vector<int> free_rows; ///< the other rows
 };
 
 /// Sparse elimination, one matrix column after the other; stops as soon as the rank is min(rows, cols).

@@ -32,7 +32,7 @@ struct ArcCertificateOptions {
 ///   refutation.
 /// The power is judged apart: `power` proved: it is positive all along the arc, but for the shares of the arc (in the
 /// parameter of the first and of the last piece) `power_open_start` at the start of an arc at a limit load, where it
-/// grows from 0 (at most 1e-2), and `power_open_end` before a power turn, where it ends at 0 (at most 1e-4). Under
+/// grows from 0, and `power_open_end` before a power turn, where it ends at 0 (at most 1e-2 each). Under
 /// `true_stress` nothing is claimed.
 struct ArcCertificate {
     Verdict verdict = Verdict::undecided;

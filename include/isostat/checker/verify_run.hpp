@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// Re-checks a finished run from its records alone. Shares with the program that made the run only data and readers of
+/// JSON, states and files. What is proved and what is only compared: proofs/checker.md, "Runs".
+
+#include <isostat/core/verdict.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What became of the records of a run.
+struct RunVerification {
+    /// refuted: `wrong` is the first record that does not follow from those before it. undecided: none is wrong as far
+    /// as was seen, and `undecided` lists what could not be checked. proved: every arc and every equilibrium was
+    /// checked.
+    Verdict verdict = Verdict::undecided;
+    std::string wrong; ///< file, record, what is wrong with it
+    std::vector<std::string> undecided;
+    int arcs = 0;              ///< records of arcs
+    int arcs_proved = 0;       ///< opening proved by the rule, end proved to be an admissible vertex, W proved to fall
+    int equilibria = 0;        ///< rows of equilibria.csv
+    int equilibria_proved = 0; ///< all forces, gaps, ends of the load interval and the rank proved to be as recorded
+};
+
+/// Replays events.jsonl and equilibria.csv from states/eq_000000.json. An arc that cannot be followed (a held
+/// coordinate, a Newton iteration that goes elsewhere) is undecided, and the replay goes on at the next stored state
+/// (`states_every = 1` stores all). `progress` is called after each record with the number of the equilibrium. Throws
+/// `Error(bad_input)` when a file is missing, cannot be read, or has unknown or missing columns. Cost: one certificate
+/// check per arc.
+RunVerification verify_run(const std::filesystem::path& directory, const std::function<void(int)>& progress = {});
+
+} // namespace isostat

@@ -1,0 +1,282 @@
+// The numbers of records against the vertices of a replay.
+#include "checker/gaps.hpp"
+#include "checker/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace isostat::checker {
+
+namespace {
+
+/// Strains are differences of lengths that are known to a few units in the last place: compared to 1e-12.
+constexpr double strain_size = 1e-3;
+
+/// A recorded number against what was found, to `record_tolerance` of `size`.
+Objections compare(const char* name, double recorded, const Range& found, double size) {
+    const Rational room = Rational(record_tolerance) * Rational(std::max(size, 1e-300));
+    if (std::isfinite(recorded) && Rational(recorded) >= found.lower - room &&
+        Rational(recorded) <= found.upper + room) {
+        return {};
+    }
+    return Objection{true, fmt::format("{} is {}, found {}", name, recorded, shown(found))};
+}
+
+Objections compare(const char* name, int recorded, int found) {
+    if (recorded == found) {
+        return {};
+    }
+    return Objection{true, fmt::format("{} is {}, found {}", name, recorded, found)};
+}
+
+/// Work of a load between two vertices.
+Range work(const Place& from, const Place& to, const Forces& load, double& size) {
+    Range sum(Rational(0));
+    size = 0;
+    for (std::size_t j = 0; j < load.size(); ++j) {
+        if (load[j].lower == 0 && load[j].upper == 0) {
+            continue;
+        }
+        const auto k = static_cast<std::size_t>(from.evidence->problem.coordinate_of[j]);
+        sum = sum + load[j] * (to.coordinate(k) - from.coordinate(k));
+        size += std::abs(load[j].lower.get_d() * to.coordinate(k).lower.get_d());
+    }
+    return sum;
+}
+
+/// The largest |force|.
+double largest_force(const Evidence& e) {
+    double largest = 0;
+    for (const Range& force : e.forces) {
+        largest = std::max({largest, std::abs(force.lower.get_d()), std::abs(force.upper.get_d())});
+    }
+    return largest;
+}
+
+int rattlers(const Place& place) {
+    std::vector<bool> carries(static_cast<std::size_t>(place.evidence->problem.disks), false);
+    for (std::size_t l = 0; l < place.state->contacts.size(); ++l) {
+        if (!std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l))) {
+            const Contact& c = place.state->contacts[l];
+            carries[static_cast<std::size_t>(c.i)] = true;
+            if (c.kind == ContactKind::disk_disk) {
+                carries[static_cast<std::size_t>(c.j)] = true;
+            }
+        }
+    }
+    return static_cast<int>(std::count(carries.begin(), carries.end(), false));
+}
+
+Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
+    const std::vector<Gap> near = smallest_gaps(place.evidence->problem, *place.state, place.evidence->vertex);
+    if (near.empty()) {
+        return {};
+    }
+    const auto pair = contact_of_columns(line.at("min_gap_i"), line.at("min_gap_j"), place.state->packing);
+    if (!pair && std::isinf(line.at("min_gap"))) {
+        return {}; // a run looks at near pairs only, and there was none
+    }
+    for (const Gap& gap : near) {
+        if (pair && gap.pair == *pair) {
+            return compare("min_gap", line.at("min_gap"), gap.value, place.state->packing.max_radius());
+        }
+    }
+    return Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
+                                       pair ? to_string<2>(*pair) : "no pair", to_string<2>(near[0].pair))};
+}
+
+Objections check_smallest_force(const Place& place, const EquilibriumLine& line) {
+    const Evidence& e = *place.evidence;
+    std::optional<std::size_t> smallest;
+    for (std::size_t l = 0; l < e.forces.size(); ++l) {
+        const bool zero = std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l));
+        if (!zero && (!smallest || e.forces[l].lower < e.forces[*smallest].lower)) {
+            smallest = l;
+        }
+    }
+    if (!smallest) {
+        return {};
+    }
+    const double size = 100 * largest_force(e);
+    if (Objections wrong = compare("min_force", line.at("min_force"), e.forces[*smallest], size)) {
+        return wrong;
+    }
+    const auto named = contact_of_columns(line.at("min_force_i"), line.at("min_force_j"), place.state->packing);
+    const auto& contacts = place.state->contacts;
+    const auto at = named ? std::find(contacts.begin(), contacts.end(), *named) : contacts.end();
+    if (at == contacts.end()) {
+        return Objection{true, "min_force is said to be of what is no contact"};
+    }
+    return compare("min_force", line.at("min_force"), e.forces[static_cast<std::size_t>(at - contacts.begin())], size);
+}
+
+Objections check_load_end(const Place& place, const EquilibriumLine& line, bool high) {
+    const double stress = line.at(high ? "sigma2_high" : "sigma2_low");
+    const auto opens = contact_of_columns(line.at(high ? "opens_high_i" : "opens_low_i"),
+                                          line.at(high ? "opens_high_j" : "opens_low_j"), place.state->packing);
+    if (std::isfinite(stress) != opens.has_value()) {
+        return Objection{true, "an end of the supported interval has a contact exactly when it is bounded"};
+    }
+    LoadEndClaim claim{true, {}, {}};
+    if (opens) {
+        const double around = record_tolerance * std::max(1.0, std::abs(stress));
+        claim = {false, {stress - around, stress + around}, *opens};
+    }
+    std::string text;
+    const Verdict verdict = judge_load_end(*place.evidence, claim, high ? 1 : -1, text);
+    if (verdict == Verdict::proved) {
+        return {};
+    }
+    return Objection{verdict == Verdict::refuted,
+                     fmt::format("{} = {}: found {}", high ? "sigma2_high" : "sigma2_low", stress, text)};
+}
+
+} // namespace
+
+Objections check_end(const Place& from, const Place& to, const EventRecord& event) {
+    const Load<2>& load = to.state->load;
+    const auto axis = static_cast<std::size_t>(load.loaded_axis);
+    const Rational reference(load.reference_length[axis]);
+    const Range strain = (Range(reference) - to.length(load.loaded_axis)) / Range(reference);
+    if (Objections wrong = compare("eps2", event.strain, strain, strain_size)) {
+        return wrong;
+    }
+    for (const Gap& gap : smallest_gaps(to.evidence->problem, *to.state, to.evidence->vertex)) {
+        if (gap.value.negative()) {
+            return Objection{true, fmt::format("{} overlap at the end of the arc, gap in {}", to_string<2>(gap.pair),
+                                               shown(gap.value))};
+        }
+        if (!gap.value.positive()) {
+            return Objection{false, fmt::format("{} may overlap at the end of the arc", to_string<2>(gap.pair))};
+        }
+    }
+    if (!(event.power > 0)) {
+        return Objection{true, fmt::format("the power is {}: expected > 0 at the end of every arc", event.power)};
+    }
+    if (load.kind != LoadKind::nominal) {
+        return {};
+    }
+    double size = 0;
+    const Range done = work(from, to, to.evidence->finite_load, size);
+    if (Objections wrong = compare("work", event.work, done, 1e-3 * size)) {
+        return wrong;
+    }
+    // Rattlers move without any work of the finite load: then the infinitesimal one decides.
+    double unused = 0;
+    const Range decides =
+        event.kind == "rattler" ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused) : done;
+    if (!decides.positive()) {
+        return Objection{decides.negative(),
+                         fmt::format("the potential does not decrease: work in {}", shown(decides))};
+    }
+    return {};
+}
+
+Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
+    const Evidence& e = *place.evidence;
+    const Load<2>& load = place.state->load;
+    Decision decision;
+    if (Objections open = decide(place, decision)) {
+        return open;
+    }
+    if (!decision.kind.empty()) {
+        const auto l = static_cast<std::size_t>(decision.candidates[0]);
+        return Objection{true, fmt::format("no equilibrium: the {}force of {} is in {}",
+                                           decision.kind == "rattler" ? "infinitesimal " : "", e.name(l),
+                                           shown(decision.kind == "rattler" ? e.infinitesimal[l] : e.forces[l]))};
+    }
+    const int contacts = e.problem.contacts();
+    const auto zeros = static_cast<int>(place.zeros.size());
+    const std::vector<std::pair<const char*, int>> counts{{"dofs", e.problem.dofs()},
+                                                          {"contacts", contacts},
+                                                          {"rank", contacts},
+                                                          {"h", 0},
+                                                          {"k", 0},
+                                                          {"backbone", contacts - zeros},
+                                                          {"held", 0},
+                                                          {"rattlers", rattlers(place)},
+                                                          {"proved", 1}};
+    for (const auto& [name, found] : counts) {
+        if (Objections wrong = compare(name, line.integer(name), found)) {
+            return wrong;
+        }
+    }
+    const auto loaded = static_cast<std::size_t>(load.loaded_axis);
+    const std::size_t other = 1 - loaded;
+    const auto strain = [&](std::size_t a) {
+        const Range reference{Rational(load.reference_length[a])};
+        return (reference - place.length(static_cast<int>(a))) / reference;
+    };
+    Range potential(Rational(0));
+    double size = 0;
+    for (std::size_t j = 0; j < e.finite_load.size(); ++j) {
+        const auto k = static_cast<std::size_t>(e.problem.coordinate_of[j]);
+        if (e.finite_load[j].lower != 0 || e.finite_load[j].upper != 0) {
+            potential = potential - e.finite_load[j] * place.coordinate(k);
+            size += std::abs(e.finite_load[j].lower.get_d() * place.coordinate(k).lower.get_d());
+        }
+    }
+    const double box = std::max(place.state->packing.length(0), place.state->packing.length(1));
+    const Range stress{Rational(load.stress[loaded])};
+    const std::vector<std::tuple<const char*, Range, double>> numbers{
+        {"eps1", strain(other), strain_size},
+        {"eps2", strain(loaded), strain_size},
+        {"L1", place.length(static_cast<int>(other)), box},
+        {"L2", place.length(static_cast<int>(loaded)), box},
+        {"sigma2", stress, std::abs(load.stress[loaded])},
+        {"ratio", stress / Range(Rational(load.stress[other])), std::abs(load.stress[loaded] / load.stress[other])},
+        {"potential", potential, size}};
+    for (const auto& [name, found, scale] : numbers) {
+        if (load.kind != LoadKind::nominal && name == std::string("potential")) {
+            continue;
+        }
+        if (Objections wrong = compare(name, line.at(name), found, scale)) {
+            return wrong;
+        }
+    }
+    if (std::abs(line.at("solid_fraction") - place.state->packing.solid_fraction()) > record_tolerance) {
+        return Objection{true, fmt::format("solid_fraction is {}, found {}", line.at("solid_fraction"),
+                                           place.state->packing.solid_fraction())};
+    }
+    for (const auto& check : {check_smallest_gap, check_smallest_force}) {
+        if (Objections wrong = check(place, line)) {
+            return wrong;
+        }
+    }
+    for (const bool high : {false, true}) {
+        if (Objections wrong = check_load_end(place, line, high)) {
+            return wrong;
+        }
+    }
+    return {};
+}
+
+Objections check_stored(const Place& place, const State<2>& stored) {
+    const auto as_set = [](const State<2>& state) {
+        return std::set<Contact>(state.contacts.begin(), state.contacts.end());
+    };
+    if (as_set(stored) != as_set(*place.state)) {
+        return Objection{true, "the stored state has other contacts"};
+    }
+    if (stored.packing.radius != place.state->packing.radius || !(stored.packing.walls == place.state->packing.walls) ||
+        stored.packing.fixed != place.state->packing.fixed) {
+        return Objection{true, "the stored state has other disks or walls"};
+    }
+    const Load<2>& a = stored.load;
+    const Load<2>& b = place.state->load;
+    if (a.stress != b.stress || a.kind != b.kind || a.reference_length != b.reference_length ||
+        a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force || a.infinitesimal != b.infinitesimal) {
+        return Objection{true, "the stored state has another load"};
+    }
+    const double size = stored.packing.max_radius();
+    for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {
+        if (Objections wrong =
+                compare("a coordinate of the stored state", stored.packing.q[k], place.coordinate(k), size)) {
+            return wrong;
+        }
+    }
+    return {};
+}
+
+} // namespace isostat::checker

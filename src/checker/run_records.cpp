@@ -1,0 +1,210 @@
+#include "checker/run_records.hpp"
+
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace isostat::checker {
+
+namespace {
+
+using json::Field;
+
+/// What the replay needs; further columns are left alone.
+const std::vector<const char*> needed_columns{"number",
+                                              "previous",
+                                              "sigma2",
+                                              "ratio",
+                                              "eps1",
+                                              "eps2",
+                                              "L1",
+                                              "L2",
+                                              "arcs",
+                                              "rattlers",
+                                              "backbone",
+                                              "dofs",
+                                              "contacts",
+                                              "rank",
+                                              "h",
+                                              "k",
+                                              "held",
+                                              "sigma2_low",
+                                              "sigma2_high",
+                                              "opens_low_i",
+                                              "opens_low_j",
+                                              "opens_high_i",
+                                              "opens_high_j",
+                                              "potential",
+                                              "min_force",
+                                              "min_force_i",
+                                              "min_force_j",
+                                              "min_gap",
+                                              "min_gap_i",
+                                              "min_gap_j",
+                                              "proved",
+                                              "solid_fraction"};
+
+std::vector<std::string> split(std::string_view line, char separator) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= line.size();) {
+        const std::size_t end = std::min(line.find(separator, at), line.size());
+        parts.emplace_back(line.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
+}
+
+/// Complete lines with their numbers, from 1.
+template <class Use> void for_each_line(const std::string& text, const Use& use) {
+    int number = 1;
+    for (std::size_t begin = 0; begin < text.size(); ++number) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        if (end > begin) {
+            use(number, text.substr(begin, end - begin));
+        }
+        begin = end + 1;
+    }
+}
+
+EventRecord event_of(const std::string& line, const std::string& where) {
+    const json::Json parsed = Field::parse(line, where);
+    const Field field(parsed, where);
+    const auto number = [&field](const char* name) {
+        const Field value = field.at(name);
+        return value.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();
+    };
+    EventRecord event;
+    event.where = where;
+    event.step = field.at("step").integer();
+    event.equilibrium = static_cast<int>(field.at("equilibrium").integer());
+    event.arc = static_cast<int>(field.at("arc").integer());
+    event.kind = field.at("kind").string();
+    event.opened = field.at("opened").string();
+    event.closed = field.at("closed").string();
+    event.power_turn = field.at("power_turn").boolean();
+    event.stress = number("sigma2");
+    event.strain = number("eps2");
+    event.force = number("force");
+    event.power = number("power");
+    event.work = number("work");
+    event.displacement = number("displacement");
+    return event;
+}
+
+double number_of(const std::string& text, const std::string& where, const std::string& name) {
+    double value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || stop != text.data() + text.size() || std::isnan(value)) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: {} is '{}': expected a number", where, name, text));
+    }
+    return value;
+}
+
+std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path) {
+    std::vector<std::string> names;
+    std::vector<EquilibriumLine> lines;
+    for_each_line(read_text(path), [&](int number, const std::string& text) {
+        const std::string where = fmt::format("{}:{}", path.string(), number);
+        if (text.starts_with('#')) {
+            names = split(text.substr(text.find_first_not_of("# ")), ',');
+            for (const char* name : needed_columns) {
+                if (std::find(names.begin(), names.end(), name) == names.end()) {
+                    throw Error(ErrorKind::bad_input, fmt::format("{}: there is no column '{}'", where, name));
+                }
+            }
+            return;
+        }
+        const std::vector<std::string> fields = split(text, ',');
+        if (names.empty() || fields.size() != names.size()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: {} columns: expected {}, named by the first line", where,
+                                                          fields.size(), names.size()));
+        }
+        EquilibriumLine& line = lines.emplace_back();
+        line.where = where;
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            line.value[names[k]] = number_of(fields[k], where, names[k]);
+        }
+    });
+    return lines;
+}
+
+} // namespace
+
+std::optional<State<2>> RunRecords::stored(int equilibrium) const {
+    const std::filesystem::path path = states / fmt::format("eq_{:06}.json", equilibrium);
+    if (!std::filesystem::exists(path)) {
+        return {};
+    }
+    return read_state<2>(path).state;
+}
+
+RunRecords read_records(const std::filesystem::path& directory) {
+    RunRecords records;
+    const std::string header = (directory / "run.json").string();
+    const json::Json parsed = Field::parse(read_text(directory / "run.json"), header);
+    const Field run(parsed, header);
+    if (run.at("format").string() != "isostat-run") {
+        run.at("format").fail("\"isostat-run\"");
+    }
+    records.rule = run.at("settings").at("run").at("rule").string();
+    records.states = directory / "states";
+    // A run that never left its start has no events: the file is empty then.
+    const std::filesystem::path events = directory / "events.jsonl";
+    if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
+        for_each_line(read_text(events), [&](int number, const std::string& line) {
+            records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
+        });
+    }
+    records.equilibria = equilibria_of(directory / "equilibria.csv");
+    return records;
+}
+
+std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing) {
+    const std::vector<std::string> parts = split(name, '-');
+    const auto disk = [&packing](const std::string& text) {
+        int value = -1;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool good = error == std::errc() && stop == text.data() + text.size() && value < packing.disk_count();
+        return good ? value : -1;
+    };
+    if (parts.size() != 2 || disk(parts[0]) < 0) {
+        return {};
+    }
+    const int i = disk(parts[0]);
+    if (parts[1] == "left" || parts[1] == "bottom") {
+        return Contact{ContactKind::lower_wall, i, parts[1] == "left" ? 0 : 1};
+    }
+    if (parts[1] == "right" || parts[1] == "top") {
+        return Contact{ContactKind::upper_wall, i, parts[1] == "right" ? 0 : 1};
+    }
+    const int j = disk(parts[1]);
+    if (j < 0 || i == j) {
+        return {};
+    }
+    return Contact{ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+}
+
+std::optional<Contact> contact_of_columns(double i, double j, const Packing<2>& packing) {
+    const auto disks = static_cast<double>(packing.disk_count());
+    if (!(i >= 0 && i < disks) || !(j >= -4 && j < disks) || i == j) {
+        return {};
+    }
+    const int first = static_cast<int>(i);
+    const int second = static_cast<int>(j);
+    if (second >= 0) {
+        return Contact{ContactKind::disk_disk, std::min(first, second), std::max(first, second)};
+    }
+    return second >= -2 ? Contact{ContactKind::lower_wall, first, -1 - second}
+                        : Contact{ContactKind::upper_wall, first, -3 - second};
+}
+
+} // namespace isostat::checker

@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// The records of a run as they are in its files.
+
+#include <isostat/contact/state.hpp>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat::checker {
+
+/// One line of events.jsonl.
+struct EventRecord {
+    std::string where; ///< file and line
+    long step = 0;
+    int equilibrium = 0;
+    int arc = 0;
+    std::string kind;
+    std::string opened, closed; ///< names of contacts, as in messages
+    bool power_turn = false;
+    double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
+};
+
+/// One line of equilibria.csv, by the names of its header.
+struct EquilibriumLine {
+    std::string where;
+    std::map<std::string, double> value;
+    [[nodiscard]] double at(const char* name) const { return value.at(name); }
+    [[nodiscard]] int integer(const char* name) const { return static_cast<int>(value.at(name)); }
+};
+
+struct RunRecords {
+    std::string rule; ///< of run.json
+    std::vector<EventRecord> events;
+    std::vector<EquilibriumLine> equilibria;
+    std::filesystem::path states;
+    /// The stored state of an equilibrium, if there is one.
+    [[nodiscard]] std::optional<State<2>> stored(int equilibrium) const;
+};
+
+/// Throws `Error(bad_input)`.
+RunRecords read_records(const std::filesystem::path& directory);
+
+/// "12-40", "3-left"; nothing for anything else, held coordinates included.
+std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing);
+
+/// The two columns of a contact in equilibria.csv; nothing for "none".
+std::optional<Contact> contact_of_columns(double i, double j, const Packing<2>& packing);
+
+} // namespace isostat::checker

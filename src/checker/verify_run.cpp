@@ -1,0 +1,232 @@
+#include "checker/follow.hpp"
+#include "checker/replay.hpp"
+
+#include <isostat/checker/verify_run.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat {
+
+namespace {
+
+using namespace checker;
+
+/// Goes through the records in order and stops at the first wrong one.
+class Replay {
+  public:
+    Replay(const RunRecords& records, RunVerification& result) : records_(records), result_(result) {
+        result.arcs = static_cast<int>(records.events.size());
+        result.equilibria = static_cast<int>(records.equilibria.size());
+    }
+
+    void run(const std::function<void(int)>& progress) {
+        for (std::size_t k = 0; k < records_.equilibria.size(); ++k) {
+            const EquilibriumLine& line = records_.equilibria[k];
+            if (!expect(line.integer("number") == static_cast<int>(k), line.where,
+                        fmt::format("the number is {}, expected {}", line.integer("number"), k))) {
+                return;
+            }
+            k == 0 ? start(line) : equilibrium(line);
+            if (stopped()) {
+                return;
+            }
+            if (progress) {
+                progress(static_cast<int>(k));
+            }
+        }
+        if (event_ < records_.events.size()) {
+            leave(records_.events[event_].where, "arcs after the last equilibrium are not checked");
+        }
+    }
+
+  private:
+    [[nodiscard]] bool stopped() const { return !result_.wrong.empty(); }
+    /// False: the record is wrong, and the replay stops.
+    bool expect(bool holds, const std::string& where, const std::string& otherwise) {
+        if (!holds && !stopped()) {
+            result_.wrong = where + ": " + otherwise;
+        }
+        return holds;
+    }
+    void leave(const std::string& where, const std::string& why) { result_.undecided.push_back(where + ": " + why); }
+
+    /// True: proved. False: left undecided and noted, or wrong and stopped.
+    bool judged(const Objections& objection, const std::string& where) {
+        if (objection && !objection->wrong) {
+            leave(where, objection->text);
+        }
+        return !objection || (expect(!objection->wrong, where, objection->text) && false);
+    }
+
+    /// `here_` becomes the vertex near a state; empty when none is proved.
+    void go_to(State<2> state, const std::string& where) {
+        Place place;
+        here_ = {};
+        if (judged(make_place(std::move(state), place), where)) {
+            here_ = std::move(place);
+        }
+    }
+
+    /// The events of one rearrangement, which must be numbered in order.
+    std::vector<const EventRecord*> events_of(const EquilibriumLine& line) {
+        std::vector<const EventRecord*> events;
+        while (event_ < records_.events.size() && records_.events[event_].equilibrium == line.integer("number")) {
+            const EventRecord& event = records_.events[event_++];
+            events.push_back(&event);
+            expect(event.step == static_cast<long>(event_), event.where,
+                   fmt::format("the step is {}, expected {}", event.step, event_));
+            expect(event.arc == static_cast<int>(events.size()), event.where,
+                   fmt::format("the arc is {}, expected {}", event.arc, events.size()));
+        }
+        expect(line.integer("arcs") == static_cast<int>(events.size()), line.where,
+               fmt::format("arcs is {}, but there are {} events", line.integer("arcs"), events.size()));
+        return events;
+    }
+
+    /// Equilibrium 0 is taken as it is stored; how it was reached is not replayed.
+    void start(const EquilibriumLine& line) {
+        if (!events_of(line).empty()) {
+            leave(line.where, "the arcs from the start to equilibrium 0 are not checked");
+        }
+        std::optional<State<2>> stored = records_.stored(0);
+        if (expect(stored.has_value(), line.where, "states/eq_000000.json, the start of the replay, is missing") &&
+            !stopped()) {
+            go_to(std::move(*stored), line.where);
+            close(line);
+        }
+    }
+
+    void equilibrium(const EquilibriumLine& line) {
+        const std::vector<const EventRecord*> events = events_of(line);
+        const int previous = line.integer("previous");
+        if (!expect(previous >= 0 && previous < line.integer("number"), line.where,
+                    fmt::format("previous is {}, expected an equilibrium before", previous)) ||
+            stopped()) {
+            return;
+        }
+        if (here_number_ != previous || !here_.state) {
+            here_ = {};
+            const std::optional<State<2>>& from = reached_[static_cast<std::size_t>(previous)];
+            if (from) {
+                go_to(*from, line.where);
+            } else {
+                leave(line.where, "the equilibrium before was not reached by the replay");
+            }
+        }
+        for (const EventRecord* event : events) {
+            if (here_.state && !stopped() && !arc(*event)) {
+                here_ = {};
+            }
+        }
+        if (here_.state && events.empty() && !stopped()) {
+            reload(line);
+        }
+        if (!here_.state && !stopped()) {
+            resume(line);
+        }
+        if (!stopped()) {
+            close(line);
+        }
+    }
+
+    /// One arc from `here_`, which becomes its end. False: undecided, or wrong.
+    bool arc(const EventRecord& event) {
+        const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
+        const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
+        if (event.power_turn || event.opened.starts_with("held") || event.closed.starts_with("held")) {
+            return judged(Objection{false, "held coordinates are not replayed"}, event.where);
+        }
+        const std::vector<Contact>& contacts = here_.state->contacts;
+        const auto at = opened ? std::find(contacts.begin(), contacts.end(), *opened) : contacts.end();
+        const bool closed_before =
+            closed && closed != opened && std::find(contacts.begin(), contacts.end(), *closed) != contacts.end();
+        if (!expect(at != contacts.end(), event.where, event.opened + " opens, but is no contact of the structure") ||
+            !expect(closed.has_value(), event.where, event.closed + " closes, but is no pair of grains") ||
+            !expect(!closed_before, event.where, event.closed + " closes, but is closed already") ||
+            !expect((event.arc == 1) == (event.kind == "limit"), event.where,
+                    fmt::format("the kind is '{}' of arc {}: the first one, and no other, starts at a limit",
+                                event.kind, event.arc))) {
+            return false;
+        }
+        const auto position = static_cast<std::size_t>(at - contacts.begin());
+        const bool opening = judged(event.kind == "limit" ? check_limit(here_, event, position)
+                                                          : check_rule(here_, event, position, records_.rule),
+                                    event.where);
+        if (stopped()) {
+            return false;
+        }
+        const std::optional<std::vector<double>> end = follow(*here_.state, position, *closed, event.displacement);
+        if (!end) {
+            return judged(Objection{false, fmt::format("the motion that opens {} was not found to close {}",
+                                                       event.opened, event.closed)},
+                          event.where);
+        }
+        State<2> state = *here_.state;
+        state.packing.q = *end;
+        state.contacts[position] = *closed;
+        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
+        Place next;
+        if (!judged(make_place(std::move(state), next), event.where) ||
+            !judged(check_end(here_, next, event), event.where)) {
+            return false;
+        }
+        here_ = std::move(next);
+        result_.arcs_proved += opening ? 1 : 0;
+        return true;
+    }
+
+    /// A row without arcs: the same vertex under another load.
+    void reload(const EquilibriumLine& line) {
+        State<2> state = *here_.state;
+        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = line.at("sigma2");
+        go_to(std::move(state), line.where);
+    }
+
+    /// Where the replay was lost, a stored state takes it up again.
+    void resume(const EquilibriumLine& line) {
+        std::optional<State<2>> stored = records_.stored(line.integer("number"));
+        if (stored) {
+            go_to(std::move(*stored), line.where);
+        } else {
+            leave(line.where, "not reached by the replay, and no state is stored");
+        }
+    }
+
+    /// Checks the row, and the stored state if there is one.
+    void close(const EquilibriumLine& line) {
+        reached_.emplace_back();
+        if (!here_.state) {
+            return;
+        }
+        const int number = line.integer("number");
+        const bool row = judged(check_equilibrium(here_, line), line.where);
+        const std::optional<State<2>> stored = records_.stored(number);
+        const bool same = !stored || judged(check_stored(here_, *stored), fmt::format("states/eq_{:06}.json", number));
+        result_.equilibria_proved += row && same ? 1 : 0;
+        reached_.back() = *here_.state;
+        here_number_ = number;
+    }
+
+    const RunRecords& records_;
+    RunVerification& result_;
+    Place here_; ///< empty: lost
+    int here_number_ = -1;
+    std::size_t event_ = 0;
+    std::vector<std::optional<State<2>>> reached_;
+};
+
+} // namespace
+
+RunVerification verify_run(const std::filesystem::path& directory, const std::function<void(int)>& progress) {
+    const RunRecords records = read_records(directory);
+    RunVerification result;
+    Replay(records, result).run(progress);
+    if (!result.wrong.empty()) {
+        result.verdict = Verdict::refuted;
+    } else if (result.undecided.empty() && result.equilibria > 0) {
+        result.verdict = Verdict::proved;
+    }
+    return result;
+}
+
+} // namespace isostat

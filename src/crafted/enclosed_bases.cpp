@@ -1,0 +1,174 @@
+#include <isostat/crafted/enclosed_bases.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+#include <isostat/verified/force_solution.hpp>
+#include <isostat/verified/inverse_bound.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat::crafted {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+/// Room for the rounding of the bounds themselves.
+constexpr double upwards = 1 + 1e-9;
+
+double norm(const std::vector<double>& x) {
+    double sum = 0;
+    for (const double y : x) {
+        sum += y * y;
+    }
+    return std::sqrt(sum) * upwards;
+}
+
+class Encloser {
+  public:
+    Encloser(const ExactPacking& packing, const Inspection& inspection) : inspection_(inspection) {
+        stored_ = approximate(packing);
+        snap_to_grid(stored_);
+        // Conversion and grid move each coordinate by at most one grid step, so a difference by two, in each direction.
+        const double moved = 2 * std::sqrt(2.0) * 2 * grid_step(stored_);
+        for (const Contact& contact : inspection.contacts) {
+            double distance = std::numeric_limits<double>::infinity();
+            if (contact.kind == ContactKind::disk_disk) {
+                distance = stored_.radius[static_cast<std::size_t>(contact.i)] +
+                           stored_.radius[static_cast<std::size_t>(contact.j)];
+            }
+            // |a / |a| - b / |b|| <= 2 |a - b| / |a|, for both disks of the contact.
+            column_error_.push_back(2 * std::sqrt(2.0) * moved / distance * upwards);
+        }
+    }
+
+    EnclosedBases run(const exact::RankBound& independent, int count) {
+        EnclosedBases out;
+        std::vector<Contact> kept;
+        double change = 0;
+        std::vector<unsigned char> chosen(inspection_.contacts.size(), 0);
+        for (const int l : independent.columns) {
+            chosen[static_cast<std::size_t>(l)] = 1;
+            kept.push_back(inspection_.contacts[static_cast<std::size_t>(l)]);
+            change += column_error_[static_cast<std::size_t>(l)] * column_error_[static_cast<std::size_t>(l)];
+        }
+        change_ = std::sqrt(change) * upwards;
+        for (std::size_t l = 0; l < chosen.size(); ++l) {
+            if (chosen[l] == 0) {
+                out.free_contacts.push_back(static_cast<int>(l));
+            }
+        }
+        const DofMap<2> dofs(stored_);
+        out.free_dofs = independent.free_rows;
+        for (const int dof : out.free_dofs) {
+            kept.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
+        }
+        const auto proved = IsostaticStructure<2>::prove(stored_, kept);
+        if (!proved.ok()) {
+            return out;
+        }
+        const Factorisation factorisation(proved.value());
+        InverseBoundCache cache;
+        const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
+        if (inverse.verdict != Verdict::proved || !(inverse.sigma_min > 2 * change_)) {
+            return out;
+        }
+        sigma_ = (inverse.sigma_min - change_) / upwards; // of the exact matrix
+        out.verdict = Verdict::proved;
+        for (int k = 0; k < count && k < static_cast<int>(out.free_contacts.size()); ++k) {
+            out.self_stresses.push_back(self_stress(proved.value(), factorisation, inverse, independent.columns,
+                                                    out.free_contacts[static_cast<std::size_t>(k)]));
+        }
+        for (int k = 0; k < count && k < static_cast<int>(out.free_dofs.size()); ++k) {
+            out.motions.push_back(motion(proved.value(), factorisation,
+                                         independent.columns.size() + static_cast<std::size_t>(k),
+                                         out.free_dofs[static_cast<std::size_t>(k)]));
+        }
+        for (const auto* vectors : {&out.self_stresses, &out.motions}) {
+            for (const EnclosedVector& vector : *vectors) {
+                if (!std::isfinite(vector.radius)) {
+                    out = {};
+                    return out;
+                }
+            }
+        }
+        return out;
+    }
+
+  private:
+    /// Forces of the independent contacts that balance a unit force in the free one; the multipliers of the held
+    /// degrees of freedom are 0 because the column of the free contact depends on the others (the rank is proved).
+    EnclosedVector self_stress(const IsostaticStructure<2>& structure, const Factorisation& factorisation,
+                               const InverseBound& inverse, const std::vector<int>& columns, int free) const {
+        const auto l = static_cast<std::size_t>(free);
+        std::vector<double> right(static_cast<std::size_t>(structure.size()), 0.0);
+        const GapGradient<2> g = gap_gradient(stored_, inspection_.contacts[l]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const int dof = structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            if (dof >= 0) {
+                right[static_cast<std::size_t>(dof)] = g.value[k]; // minus the column
+            }
+        }
+        const ForceSolution solution = solve_forces(structure, factorisation, inverse, right);
+        EnclosedVector out;
+        out.free = free;
+        out.value.assign(inspection_.contacts.size(), 0.0);
+        out.value[l] = 1;
+        for (std::size_t k = 0; k < columns.size(); ++k) {
+            out.value[static_cast<std::size_t>(columns[k])] = solution.value[k];
+        }
+        const double size = norm(solution.value) + solution.bound * std::sqrt(static_cast<double>(structure.size()));
+        const double right_error = column_error_[l] + 16 * u; // of the normal, and of its rounding
+        out.radius = (solution.bound + (right_error + change_ * size) / sigma_) * upwards;
+        return out;
+    }
+
+    /// Velocity that keeps all gaps and is 1 in the held degree of freedom number `row` of the structure.
+    EnclosedVector motion(const IsostaticStructure<2>& structure, const Factorisation& factorisation, std::size_t row,
+                          int free) const {
+        std::vector<double> v(static_cast<std::size_t>(structure.size()), 0.0);
+        v[row] = -1; // approach velocities; the column of a held coordinate is -1
+        factorisation.solve_velocities(v);
+        const auto& matrix = structure.matrix();
+        double residual = 0;
+        for (std::size_t c = 0; c + 1 < matrix.start.size(); ++c) {
+            double sum = c == row ? 1 : 0;
+            double size = std::abs(sum);
+            for (auto e = static_cast<std::size_t>(matrix.start[c]); e < static_cast<std::size_t>(matrix.start[c + 1]);
+                 ++e) {
+                const double term = matrix.value[e] * v[static_cast<std::size_t>(matrix.row[e])];
+                sum += term;
+                size += std::abs(term);
+            }
+            // Entries are good to 4 u, products and up to four sums to 5 u more.
+            const double bound = std::abs(sum) + 16 * u * size;
+            residual += bound * bound;
+        }
+        EnclosedVector out;
+        out.free = free;
+        out.radius = (std::sqrt(residual) + change_ * norm(v)) / sigma_ * upwards;
+        out.value = std::move(v);
+        return out;
+    }
+
+    const Inspection& inspection_;
+    Packing<2> stored_;
+    std::vector<double> column_error_; ///< |exact - stored unit-normal column|
+    double change_ = 0;                ///< the same of the matrix
+    double sigma_ = 0;
+};
+
+} // namespace
+
+EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspection, int count) {
+    if (inspection.rank_exact != Verdict::proved) {
+        return {};
+    }
+    const DofMap<2> dofs(approximate(packing));
+    const exact::RankBound independent = exact::rank_bound(exact_contact_matrix(packing, dofs, inspection.contacts));
+    if (independent.rank != inspection.rank) {
+        return {};
+    }
+    return Encloser(packing, inspection).run(independent, count);
+}
+
+} // namespace isostat::crafted

@@ -1,0 +1,60 @@
+// The checker is worth something because it shares no code with what it checks: only data and readers.
+#include "support/scratch.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace {
+
+const std::vector<std::string> allowed{"\"checker/",
+                                       "\"io/json.hpp\"",
+                                       "<isostat/checker/",
+                                       "<isostat/core/",
+                                       "<isostat/packing/packing.hpp>",
+                                       "<isostat/packing/load.hpp>",
+                                       "<isostat/contact/contact.hpp>",
+                                       "<isostat/contact/state.hpp>",
+                                       "<isostat/io/certificate_file.hpp>",
+                                       "<isostat/io/state_file.hpp>",
+                                       "<isostat/io/files.hpp>",
+                                       "<Eigen/",
+                                       "<fmt/",
+                                       "<gmpxx.h>"};
+
+/// <vector>, <cmath>: headers of the standard have neither a folder nor an ending.
+bool of_the_standard(const std::string& header) {
+    return header.starts_with('<') && header.find_first_of("/.") == std::string::npos;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(the_checker_includes_nothing_of_what_it_checks) {
+    int files = 0;
+    int headers = 0;
+    for (const char* folder : {"/../src/checker", "/../include/isostat/checker"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(std::string(ISOSTAT_EXAMPLES) + folder)) {
+            ++files;
+            std::istringstream text(scratch::read(entry.path()));
+            for (std::string line; std::getline(text, line);) {
+                if (!line.starts_with("#include ")) {
+                    continue;
+                }
+                ++headers;
+                const std::string header = line.substr(9);
+                const bool known = std::any_of(allowed.begin(), allowed.end(), [&header](const std::string& start) {
+                    return header.starts_with(start);
+                });
+                BOOST_TEST((known || of_the_standard(header)), entry.path().filename().string() << ": " << line);
+            }
+        }
+    }
+    BOOST_TEST(files > 20);
+    BOOST_TEST(headers > 50);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

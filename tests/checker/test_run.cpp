@@ -1,0 +1,246 @@
+// Runs re-checked from their records; altered records must be found, the first of them named.
+#include "support/crafted.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/checker/verify_run.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <cstdlib>
+
+using namespace isostat;
+
+namespace {
+
+/// Plays segments from a state into a folder, every state stored.
+void play(const State<2>& start, const std::vector<Segment>& segments, const std::filesystem::path& folder) {
+    RunHeader header;
+    header.program = "test";
+    header.settings = R"({"run":{"rule":"most_negative"}})";
+    header.states_every = 1;
+    RunCounters counters;
+    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
+    State<2> state = start;
+    RunOptions options;
+    options.max_strain = 1e9;
+    for (std::size_t k = 0; k < segments.size(); ++k) {
+        directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
+        const SegmentOutcome outcome =
+            run_segment<2>(state, segments[k], static_cast<int>(k), options, counters, directory);
+        BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message : ""));
+    }
+    directory.finish(RunStatus::completed, "");
+}
+
+std::string line_of(const std::string& text, int number) {
+    std::size_t begin = 0;
+    for (int k = 1; k < number; ++k) {
+        begin = text.find('\n', begin) + 1;
+    }
+    return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+/// A number of the records, changed in one line of a file.
+struct Alteration {
+    std::string file;
+    int line;
+    std::string from, to;
+    std::string said; ///< must be in the message
+};
+
+/// "name":value of a JSON line, multiplied.
+Alteration scaled(const std::string& events, int line, const std::string& name, double factor) {
+    const std::string text = line_of(events, line);
+    const std::size_t at = text.find("\"" + name + "\":") + name.size() + 3;
+    const std::size_t end = text.find_first_of(",}", at);
+    const std::string old = text.substr(at, end - at);
+    const double value = std::strtod(old.c_str(), nullptr);
+    std::ostringstream changed;
+    changed.precision(17);
+    changed << value * factor;
+    return {"events.jsonl", line, "\"" + name + "\":" + old, "\"" + name + "\":" + changed.str(), ""};
+}
+
+void finds(const std::filesystem::path& folder, const Alteration& alteration) {
+    BOOST_TEST_CONTEXT(alteration.file << ":" << alteration.line << " " << alteration.from << " -> " << alteration.to) {
+        const std::string original = scratch::read(folder / alteration.file);
+        const std::string line = line_of(original, alteration.line);
+        const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
+        BOOST_REQUIRE(changed != line);
+        scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
+        const RunVerification run = verify_run(folder);
+        BOOST_TEST((run.verdict == Verdict::refuted));
+        BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
+        if (alteration.file == "events.jsonl") {
+            const std::string where = "events.jsonl:" + std::to_string(alteration.line) + ":";
+            BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
+        }
+        scratch::write(folder / alteration.file, original);
+    }
+}
+
+/// The fields of a row of equilibria.csv, with one replaced.
+Alteration in_row(const std::string& csv, int line, const std::string& column, const std::string& value) {
+    const std::vector<std::string>& names = equilibria_columns();
+    const auto index = std::find(names.begin(), names.end(), column) - names.begin();
+    const std::string text = line_of(csv, line);
+    std::size_t begin = 0;
+    for (std::ptrdiff_t k = 0; k < index; ++k) {
+        begin = text.find(',', begin) + 1;
+    }
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    return {"equilibria.csv", line, text, text.substr(0, begin) + value + text.substr(end), ""};
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+// Case 2: bottom of disk 1 opens at F2/F1 = t, disk 1 rolls over disk 0.
+BOOST_AUTO_TEST_CASE(the_rolling_disk_is_replayed) {
+    const scratch::Folder folder;
+    Segment down;
+    down.direction = -1;
+    down.equilibria = 1;
+    Segment up;
+    up.direction = 1;
+    up.equilibria = 1;
+    play(crafted::two_disks(1, 2, 1, 1), {down, up}, folder / "run");
+    const RunVerification run = verify_run(folder / "run");
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST((run.verdict == Verdict::proved));
+    BOOST_TEST(run.arcs_proved == run.arcs);
+    BOOST_TEST(run.equilibria_proved == 3);
+}
+
+BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {
+    const scratch::Folder folder;
+    Segment up;
+    up.equilibria = 3;
+    Segment down;
+    down.direction = -1;
+    down.equilibria = 1;
+    play(read_state<2>(scratch::data("vertex100.txt")).state, {up, down}, folder / "run");
+    const RunVerification run = verify_run(folder / "run");
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_REQUIRE((run.verdict == Verdict::proved));
+    BOOST_TEST(run.arcs_proved == run.arcs);
+    BOOST_TEST(run.equilibria_proved == 5);
+    BOOST_TEST_MESSAGE(run.arcs << " arcs");
+
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    const std::string csv = scratch::read(folder / "run/equilibria.csv");
+    int tension = 0;
+    for (int line = 1; line <= run.arcs && tension == 0; ++line) {
+        tension = line_of(events, line).find("\"tension\"") != std::string::npos ? line : 0;
+    }
+    BOOST_REQUIRE(tension > 0);
+    for (const auto& [name, said] : std::vector<std::pair<std::string, std::string>>{
+             {"eps2", "eps2"}, {"work", "work"}, {"force", "force"}, {"sigma2", "stress"}}) {
+        Alteration alteration = scaled(events, tension, name, 1 + 1e-6);
+        alteration.said = said;
+        finds(folder / "run", alteration);
+    }
+    Alteration power = scaled(events, tension, "power", -1);
+    power.said = "power";
+    finds(folder / "run", power);
+    finds(folder / "run", {"events.jsonl", tension, "\"tension\"", "\"rattler\"", "kind"});
+    finds(folder / "run", {"events.jsonl", tension, "\"step\":", "\"step\":1", "step"});
+    finds(folder / "run", {"events.jsonl", tension, "\"arc\":", "\"arc\":1", "arc"});
+    // Another contact opens, or closes.
+    const auto name_in = [&](const std::string& key, int line) {
+        const std::string text = line_of(events, line);
+        const std::size_t at = text.find("\"" + key + "\":\"") + key.size() + 4;
+        return text.substr(at, text.find('"', at) - at);
+    };
+    const State<2> first = read_state<2>(folder / "run/states/eq_000000.json").state;
+    const std::string kept = to_string<2>(first.contacts[5]);
+    BOOST_REQUIRE(kept != name_in("opened", tension));
+    finds(folder / "run",
+          {"events.jsonl", tension, "\"opened\":\"" + name_in("opened", tension), "\"opened\":\"" + kept, ""});
+    finds(folder / "run", {"events.jsonl", tension, "\"closed\":\"" + name_in("closed", tension),
+                           "\"closed\":\"" + kept, "closed already"});
+    finds(folder / "run", {"events.jsonl", 1, "\"opened\":\"" + name_in("opened", 1), "\"opened\":\"" + kept, ""});
+
+    // Several forces are negative somewhere: the other rule takes another one of them.
+    const std::string header = scratch::read(folder / "run/run.json");
+    scratch::write(folder / "run/run.json", scratch::replaced(header, "most_negative", "least_negative"));
+    const RunVerification other_rule = verify_run(folder / "run");
+    BOOST_TEST((other_rule.verdict == Verdict::refuted));
+    BOOST_TEST((other_rule.wrong.find("but the rule 'least_negative' takes") != std::string::npos), other_rule.wrong);
+    scratch::write(folder / "run/run.json", header);
+    // A record left out.
+    const std::string without = scratch::replaced(events, line_of(events, tension) + "\n", "");
+    scratch::write(folder / "run/events.jsonl", without);
+    BOOST_TEST((verify_run(folder / "run").verdict == Verdict::refuted));
+    scratch::write(folder / "run/events.jsonl", events);
+    // Another stored state, by a coordinate and by a contact.
+    const std::filesystem::path stored = folder / "run/states/eq_000001.json";
+    const State<2> state = read_state<2>(stored).state;
+    for (const bool coordinate : {true, false}) {
+        State<2> altered = state;
+        if (coordinate) {
+            altered.packing.q[7] += 1e-7;
+        } else {
+            altered.contacts[5] = {ContactKind::disk_disk, 0, 99};
+        }
+        write_state(stored, altered);
+        const RunVerification found = verify_run(folder / "run");
+        BOOST_TEST((found.verdict == Verdict::refuted));
+        BOOST_TEST((found.wrong.find("eq_000001") != std::string::npos), found.wrong);
+    }
+    write_state(stored, state);
+    for (const char* column : {"number",
+                               "previous",
+                               "sigma2",
+                               "ratio",
+                               "eps1",
+                               "eps2",
+                               "L1",
+                               "L2",
+                               "solid_fraction",
+                               "arcs",
+                               "rattlers",
+                               "backbone",
+                               "dofs",
+                               "contacts",
+                               "rank",
+                               "h",
+                               "k",
+                               "held",
+                               "sigma2_low",
+                               "sigma2_high",
+                               "opens_low_i",
+                               "opens_high_j",
+                               "potential",
+                               "min_force",
+                               "min_force_i",
+                               "min_gap",
+                               "min_gap_j",
+                               "proved"}) {
+        // The first row is checked before any arc; it has no equilibrium before it.
+        finds(folder / "run", in_row(csv, column == std::string("previous") ? 4 : 2, column, "9"));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
+    const scratch::Folder folder;
+    BOOST_CHECK_THROW((void)verify_run(folder.path()), Error);
+    scratch::write(folder / "run.json", R"({"format":"isostat-run","settings":{"run":{"rule":"most_negative"}}})");
+    scratch::write(folder / "events.jsonl", "");
+    scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
+    try {
+        (void)verify_run(folder.path());
+        BOOST_ERROR("accepted");
+    } catch (const Error& error) {
+        BOOST_TEST((std::string(error.what()).find("no column") != std::string::npos), error.what());
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

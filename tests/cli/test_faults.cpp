@@ -45,7 +45,9 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
         const scratch::Folder folder;
         const std::string file = (folder / "s.toml").string();
         scratch::write(file, scene(level));
+        const auto begin = std::chrono::steady_clock::now();
         expect(run({"run", file, "-o", (folder / "whole").string(), "-q"}), 0);
+        const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
         const fs::path out = folder / "cut";
         int kills = 0;
         for (int k = 0; k < 40 && kills < 6; ++k) {
@@ -55,7 +57,7 @@ BOOST_AUTO_TEST_CASE(runs_killed_again_and_again_at_random_instants_end_with_the
             if (begun) {
                 arguments.emplace_back("--resume");
             }
-            const double after = 0.02 + 0.001 * static_cast<double>(random() % 200);
+            const double after = whole.count() * (0.1 + 0.006 * static_cast<double>(random() % 100));
             const Outcome outcome = run(arguments, "timeout -s KILL " + std::to_string(after) + " ");
             if (outcome.status == 0) {
                 break;

@@ -1,6 +1,7 @@
 // kill -9 at random instants, limits of the file size, two programs in one folder: at every level of certificates.
 #include "cli/program.hpp"
 
+#include <chrono>
 #include <random>
 
 using namespace program;

@@ -51,12 +51,12 @@ template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Conta
 
 } // namespace
 
-template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing) const {
+template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, double radius) const {
     if (reference.size() != packing.q.size()) {
         return false;
     }
     // 1e-14 covers the rounding of the differences and of the norm; a NaN gives false.
-    const double limit = 0.5 * reach * (1 - 1e-14);
+    const double limit = (0.5 * reach - radius) * (1 - 1e-14);
     for (std::size_t k = 0; k < reference.size(); k += Dim) {
         double farthest = 0;
         for (std::size_t a = 0; a < Dim; ++a) {

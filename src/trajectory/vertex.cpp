@@ -1,6 +1,7 @@
 #include "trajectory/vertex.hpp"
 
 #include <isostat/contact/contact_set.hpp>
+#include <isostat/motion/arc.hpp>
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <fmt/format.h>
@@ -48,7 +49,14 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
     return vertex;
 }
 
-template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(const CandidateList<Dim>& candidates) {
+template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates) {
+    double correction = 0; // of the centre of the enclosure
+    for (const double c : enclosure.correction) {
+        correction += std::abs(c);
+    }
+    if (!candidates.covers(packing, 1.001 * (enclosure.radius + correction))) {
+        candidates = find_candidates(packing, candidate_fraction);
+    }
     const ContactSet kept(structure.contacts(), packing.disk_count());
     Gaps gaps;
     gaps.smallest = std::numeric_limits<double>::infinity();

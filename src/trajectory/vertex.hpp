@@ -40,9 +40,10 @@ template <int Dim> class Vertex {
         Rung rung = Rung::double_bound;
         std::optional<Contact> negative; ///< proved to overlap: it closed before
     };
-    /// Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the precision
-    /// reached.
-    Result<Gaps> check_gaps(const CandidateList<Dim>& candidates);
+    /// Gaps of all pairs that are not contacts, at the true vertex: `candidates` is made anew when it is not complete
+    /// there (T6). Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the
+    /// precision reached.
+    Result<Gaps> check_gaps(CandidateList<Dim>& candidates);
 
   private:
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 #include <qd/dd_real.h>
 
+#include <cmath>
 #include <vector>
 
 template <> struct Eigen::NumTraits<dd_real> : Eigen::GenericNumTraits<dd_real> {
@@ -53,6 +54,9 @@ double shifted_cholesky_double_double(const sparse::Matrix<double>& h, double sh
     std::vector<double> in_factor(terms.size(), 0.0);
     for (int j = 0; j < lower.outerSize(); ++j) {
         for (Sparse::InnerIterator entry(lower, j); entry; ++entry) {
+            if (!std::isfinite(entry.value().x[0])) {
+                return 0; // a pivot that is not a number passes Eigen's test
+            }
             in_factor[static_cast<std::size_t>(entry.row())] += 1;
         }
     }

@@ -246,6 +246,8 @@ BOOST_AUTO_TEST_CASE(a_list_covers_displacements_below_half_its_reach) {
     enclose(packing, 0.25);
     const CandidateList<2> list = find_candidates(packing, 0.5);
     BOOST_TEST(list.covers(packing));
+    BOOST_TEST(list.covers(packing, 0.49 * list.reach));
+    BOOST_TEST(!list.covers(packing, 0.51 * list.reach));
     for (const std::size_t k : {std::size_t{0}, std::size_t{7}, packing.q.size() - 1}) {
         Packing<2> moved = packing;
         moved.q[k] += 0.2499999;

@@ -19,7 +19,8 @@ template <int Dim> struct CandidateList {
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
     /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
     /// another number of disks). Cost O(n).
-    [[nodiscard]] bool covers(const Packing<Dim>& packing) const;
+    /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`.
+    [[nodiscard]] bool covers(const Packing<Dim>& packing, double radius = 0) const;
 };
 
 /// Candidates with gap < fraction * R_min, \pre 0 < fraction <= 0.82, every coordinate and radius finite. Pairs

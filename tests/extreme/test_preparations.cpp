@@ -79,10 +79,13 @@ BOOST_AUTO_TEST_CASE(numbers_of_disks) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(many_disks, *boost::unit_test::label("slow")) {
-    for (const int count : {5000, 20000}) {
-        extreme::prepared("number of disks", fmt::format("{}", count), disks(count), 3000);
-    }
+BOOST_AUTO_TEST_CASE(five_thousand_disks, *boost::unit_test::label("slow")) {
+    extreme::prepared("number of disks", "5000", disks(5000), 3000);
+}
+
+// Too long for every run of the tests: `tests/extreme/run --long`.
+BOOST_AUTO_TEST_CASE(twenty_thousand_disks, *boost::unit_test::disabled()) {
+    extreme::prepared("number of disks", "20000", disks(20000), 3000);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -17,6 +17,8 @@ namespace {
 constexpr double tangent_accuracy = 1e-7;
 constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
 
+constexpr double turn_accuracy = 1e-13;       ///< where the power vanishes: the turn is as sharp as its tangent
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Smallest positive root of h + h1 s + h2 s^2 / 2, h >= 0; infinity when there is none.
@@ -75,19 +77,21 @@ template <int Dim> class Follower {
 
     /// Velocity (on coordinates) with unit approach velocity in the slot and none in the kept contacts.
     void fresh_slot_mechanism() {
-        std::fill(rhs_.begin(), rhs_.end(), 0.0);
-        rhs_[slot_] = 1;
-        solve();
-        mechanism_ = y_;
+        mechanism_.assign(y_.size(), 0.0);
+        to_coordinates(factorisation_->approximate().mechanism(static_cast<int>(slot_)), mechanism_);
     }
 
-    /// y_ = (velocity on coordinates with the approach velocities of rhs_).
-    void solve() {
-        factorisation_->solve_velocities(rhs_);
+    void to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const {
         const DofMap<Dim>& dofs = structure_->dofs();
         for (std::size_t mu = 0; mu < size_; ++mu) {
-            y_[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = rhs_[mu];
+            on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
         }
+    }
+
+    /// y_ = (velocity on coordinates with about the approach velocities of rhs_): one pass.
+    void solve() {
+        factorisation_->approximate().velocities(rhs_);
+        to_coordinates(rhs_, y_);
     }
 
     /// One chord step: y_ such that kept gaps change by minus `kept` (given as approach) and row . y_ = target.
@@ -182,7 +186,7 @@ template <int Dim> class Follower {
     std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
         Vector t = tangent_;
         double previous = infinity;
-        for (int k = 0; k < 30; ++k) {
+        for (int k = 0; k < 40; ++k) {
             chord([&](const Contact& c) { return rate(at, c, t); }, [&](const Vector& v) { return v[fastest_]; }, 0.0);
             const double size = largest(y_);
             for (std::size_t i = 0; i < t.size(); ++i) {
@@ -191,7 +195,8 @@ template <int Dim> class Follower {
             if (!(size < previous)) {
                 break;
             }
-            if (size < accuracy * largest(t)) {
+            // Linear convergence: what is left is about size^2 / previous.
+            if (size < accuracy * largest(t) || (k > 0 && size * size < 0.1 * accuracy * largest(t) * previous)) {
                 return t;
             }
             previous = size;
@@ -261,7 +266,7 @@ template <int Dim> class Follower {
         return 0.5 * candidates_.reach - std::sqrt(moved);
     }
 
-    Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power) {
+    Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power, Vector tangent) {
         Arc<Dim> arc;
         for (std::size_t k = 0; k < end.q.size(); ++k) {
             arc.displacement = std::max(arc.displacement, std::abs(end.q[k] - start_.q[k]));
@@ -270,6 +275,7 @@ template <int Dim> class Follower {
         arc.kind = kind;
         arc.closed = closed;
         arc.power = power;
+        arc.tangent = std::move(tangent);
         arc.steps = steps_;
         arc.factorisations = factorisations_;
         return arc;
@@ -288,7 +294,7 @@ template <int Dim> class Follower {
         Packing<Dim> at;
         Vector tangent;
     };
-    std::optional<Point> step_to(double s) {
+    std::optional<Point> step_to(double s, double accuracy = tangent_accuracy) {
         Packing<Dim> at = predicted(s);
         const Packing<Dim> guess = at;
         if (!converge_to_coordinate(at)) {
@@ -301,7 +307,7 @@ template <int Dim> class Follower {
         if (off > 0.2 * s) {
             return std::nullopt; // another branch, or a curve too bent for this step
         }
-        auto t = tangent_at(at, tangent_accuracy);
+        auto t = tangent_at(at, accuracy);
         if (!t || largest(*t) > 4) {
             return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
         }
@@ -391,7 +397,7 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
         if (!(s > s_low && s < s_high)) {
             s = 0.5 * (s_low + s_high);
         }
-        auto point = step_to(s);
+        auto point = step_to(s, turn_accuracy);
         if (!point) {
             return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
         }
@@ -419,7 +425,7 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
     choose_fastest();
     snap_to_grid(best->at);
     return finish(std::move(best->at), ArcEnd::power_turn, Contact{ContactKind::held, static_cast<int>(fastest_), 0},
-                  p_best);
+                  p_best, std::move(best->tangent));
 }
 
 template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
@@ -438,6 +444,14 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         return std::nullopt;
     };
     bool renewed_here = false;
+    if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
+        choose_fastest();
+        if (auto t = tangent_at(q_, tangent_accuracy)) {
+            tangent_ = std::move(*t);
+        } else if (auto failure = renew()) {
+            return *failure;
+        }
+    }
     while (steps_ < options_.max_steps) {
         choose_fastest();
         if (!std::isfinite(tangent_[fastest_])) {
@@ -569,10 +583,10 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 return Failure{FailureKind::not_converged, fmt::format("the event at contact {} was not reached",
                                                                        to_string<Dim>(*options_.closes))};
             }
-            return finish(std::move(point->at), ArcEnd::contact, *options_.closes, p_end);
+            return finish(std::move(point->at), ArcEnd::contact, *options_.closes, p_end, std::move(point->tangent));
         }
         if (try_event) {
-            return finish(std::move(point->at), ArcEnd::contact, closing, p_end);
+            return finish(std::move(point->at), ArcEnd::contact, closing, p_end, std::move(point->tangent));
         }
         q_ = std::move(point->at);
         tangent_ = std::move(point->tangent);

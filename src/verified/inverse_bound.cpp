@@ -1,4 +1,5 @@
 #include "verified/extended_cholesky.hpp"
+#include "verified/regularity_prover.hpp"
 
 #include <isostat/verified/inverse_bound.hpp>
 
@@ -128,15 +129,15 @@ double rounding_of_entries(const sparse::Matrix<double>& h) {
 }
 
 /// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
-double estimate(const Factorisation& factorisation, std::vector<double>& x, int iterations) {
+double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int iterations) {
     double lambda = 0;
     for (int k = 0; k < iterations; ++k) {
         const double before = norm(x);
         for (double& c : x) {
             c /= before;
         }
-        factorisation.solve_forces(x);
-        factorisation.solve_velocities(x);
+        inverse.forces(x);
+        inverse.velocities(x);
         lambda = norm(x);
     }
     return 1 / lambda;
@@ -196,12 +197,15 @@ InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& facto
     return {Verdict::proved, 1 / bound * (1 - 1e-15), InverseBound::Route::rows};
 }
 
-} // namespace
+/// Outcome of the first route, with what the others need.
+struct CholeskyOutcome {
+    InverseBound bound;
+    double estimated = 0;   ///< sigma_min^2, from above, not proved
+    double entry_error = 0; ///< |H - fl(H)|
+};
 
-template <int Dim>
-InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, int row_limit) {
-    const sparse::Matrix<double>& h = structure.matrix();
+CholeskyOutcome by_cholesky(const sparse::Matrix<double>& h, const ApproximateInverse& inverse,
+                            InverseBoundCache& cache) {
     const auto n = static_cast<std::size_t>(h.rows);
     int iterations = 1; // of a good guess: a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(norm(cache.vector)) || norm(cache.vector) == 0) {
@@ -212,9 +216,10 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
         }
         iterations = 8;
     }
-    const double entry_error = rounding_of_entries(h);
-    const double estimated = estimate(factorisation, cache.vector, iterations);
-    double shift = 0.5 * estimated;
+    CholeskyOutcome outcome;
+    outcome.entry_error = rounding_of_entries(h);
+    outcome.estimated = estimate(inverse, cache.vector, iterations);
+    double shift = 0.5 * outcome.estimated;
     if (std::isfinite(shift) && shift > 0) {
         Cholesky cholesky(h, cache.permutation);
         for (int attempt = 0; attempt < 4; ++attempt, shift /= 8) {
@@ -223,13 +228,28 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
             }
             const double square = shift - cholesky.error_bound(shift);
             // A bound that lost more than half to rounding is better made by rows.
-            const double sigma = square > 0 ? std::sqrt(square) * (1 - 4 * u) - entry_error : 0;
+            const double sigma = square > 0 ? std::sqrt(square) * (1 - 4 * u) - outcome.entry_error : 0;
             if (square > 0.25 * shift && sigma > 0) {
-                return {Verdict::proved, sigma, InverseBound::Route::cholesky};
+                outcome.bound = {Verdict::proved, sigma, InverseBound::Route::cholesky};
             }
             break;
         }
     }
+    return outcome;
+}
+
+} // namespace
+
+template <int Dim>
+InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+                           InverseBoundCache& cache, int row_limit) {
+    const sparse::Matrix<double>& h = structure.matrix();
+    const CholeskyOutcome first = by_cholesky(h, factorisation.approximate(), cache);
+    if (first.bound.verdict == Verdict::proved) {
+        return first.bound;
+    }
+    const double estimated = first.estimated;
+    const double entry_error = first.entry_error;
     for (double square = 0.5 * estimated; square > 1e-24 && std::isfinite(square); square /= 64) {
         const double proved = shifted_cholesky_double_double(h, square);
         const double sigma = proved > 0 ? std::sqrt(proved) * (1 - 4 * u) - entry_error : 0;
@@ -243,6 +263,18 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
     return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};
 }
 
+template <int Dim>
+std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& contacts, const ApproximateInverse& inverse,
+                                              InverseBoundCache& cache) {
+    const InverseBound bound = by_cholesky(contacts.matrix(), inverse, cache).bound;
+    if (bound.verdict != Verdict::proved) {
+        return std::nullopt;
+    }
+    return ProvedExchange{bound, RegularityProver::proof(contacts.matrix(), bound.sigma_min)};
+}
+
+template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
+                                                          InverseBoundCache&);
 template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int);
 
 } // namespace isostat

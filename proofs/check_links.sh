@@ -1,12 +1,12 @@
 #!/bin/bash
 # Checks what the pages of proofs/ name, so that no link rots: exit 1 and a list when something is missing.
-#   `name`, `other` (src|include|tests|proofs/... file)   the file exists and contains each name as a word;
-#                                                        a name that belongs to a .v file must be stated and proved there
+#   `name`, `other` (src|include|tests|proofs/... file)   the file exists and contains each name as a word outside of comments;
+#                                                        a name in a .v file must be stated there, one in a test_*.cpp file be a test case
 #   (Coq: `name`, ...)                                    some file of proofs/coq states it
 #   word.md, coq/word.v                                   exists in proofs/
 #   @key                                                  is in references.bib
 set -u
-cd "$(dirname "$0")/.." || exit 1
+cd "${1:-$(dirname "$0")/..}" || exit 1 # another top folder: for the test of this script
 missing=0
 checked=0
 fail() {
@@ -29,11 +29,13 @@ for page in proofs/*.md; do
             checked=$((checked + 1))
             if [[ $path == *.v ]]; then
                 stated "$path" "$word" || fail "$page: $path states no $name"
+            elif [[ $path == */test_*.cpp ]]; then
+                grep -qE "_TEST_CASE(_[A-Z]+)?\\($word\\b" "$path" || fail "$page: $path has no test case $name"
             else
-                grep -qwF -- "$word" "$path" || fail "$page: $path has no $name"
+                sed 's,//.*,,' "$path" | grep -qwF -- "$word" || fail "$page: $path has no $name"
             fi
         done < <(sed -E 's/ \([^()]*\)$//' <<<"$group" | grep -oE '`[^`]+`' | tr -d '`')
-    done < <(grep -oE '`[A-Za-z_:0-9]+`((,| and|, and) `[A-Za-z_:0-9]+`)* \((src|include|tests|proofs)/[A-Za-z0-9_/.-]+\)' <<<"$text")
+    done < <(grep -oE '`[A-Za-z_:0-9]+`((,| and|, and) `[A-Za-z_:0-9]+`)* \((src|include|tests|proofs|examples)/[A-Za-z0-9_/.-]+\)' <<<"$text")
 
     while IFS= read -r name; do
         [ -n "$name" ] || continue

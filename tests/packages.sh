@@ -4,7 +4,7 @@
 
 isostat_packages=(
   g++ cmake ninja-build pkg-config
-  libcgal-dev libeigen3-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev
+  libcgal-dev libeigen3-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev libflint-dev nettle-dev
   libsuitesparse-dev libqd-dev coinor-libclp-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   gnuplot-nox

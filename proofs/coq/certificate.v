@@ -46,44 +46,53 @@ have -> : int_of_Z (Z.mul q (Z.of_nat p)) = int_of_Z q * (p : int).
 by rewrite intrM -pmulrn char_Zp ?mulr0.
 Qed.
 
-Theorem check_proves_regular (n : nat) (p : Z) (rows columns : table) :
-  check n p rows columns -> \det (of_rows n rows) != 0.
+(** An inverse modulo p proves that an integer matrix is regular; 1 < p is all that is asked of p. *)
+Lemma inverse_modulo_proves_regular (n : nat) (p : Z) (A B : 'M[Z]_n) :
+  Z.lt (Zpos xH) p ->
+  (forall i j, Z.modulo (Z.sub ((A *m B) i j) (if i == j then Zpos xH else Z0)) p = Z0) -> \det A != 0.
 Proof.
-case/and5P=> /Z.ltb_lt p1 /eqP sr /eqP sc /allP ar /andP[/allP ac /allP ok].
+move=> p1 ok.
 pose q := Z.to_nat p; have q1 : (1 < q)%N by rewrite /q; lia.
 have pq : p = Z.of_nat q by rewrite /q; lia.
-pose A := of_rows n rows; pose B := (of_rows n columns)^T.
 pose phi : {rmorphism Z -> 'Z_q} := [rmorphism of (intr : int -> 'Z_q) \o int_of_Z].
 have prod : map_mx phi (A *m B) = 1%:M.
-  apply/matrixP=> i j; rewrite !mxE.
-  have in_n (k : 'I_n) : nat_of_ord k \in iota 0 n by rewrite mem_iota ltn_ord.
-  have /allP/(_ _ (in_n j)) := ok _ (in_n i); rewrite /entry_ok => /Z.eqb_eq.
-  have rs : size (nth [::] rows i) = n by apply/eqP/ar/mem_nth; rewrite sr.
-  have cs : size (nth [::] columns j) = n by apply/eqP/ac/mem_nth; rewrite sc.
-  rewrite (dot_is_sum rs cs) pq => /(residue_of_multiple q1).
-  set s := \sum_k _; set s' := \sum_k _.
-  have -> : s' = s by apply: eq_bigr => k _; rewrite !mxE.
-  rewrite -[residue q _]/(phi _) => zero.
-  have : phi s - phi (if i == j then Zpos xH else Z0) = 0 by rewrite -rmorphB -zero.
-  move/eqP; rewrite subr_eq0 => /eqP ->.
-  by rewrite -(inj_eq val_inj) /=; case: eqP => _; rewrite ?rmorph1 ?rmorph0.
+  apply/matrixP=> i j; have := ok i j; rewrite pq => /(residue_of_multiple q1) zero; rewrite [LHS]mxE [RHS]mxE.
+  set s := (A *m B) i j in zero *.
+  have : phi s - phi (if i == j then Zpos xH else Z0) = 0 by rewrite -rmorphB -[RHS]zero.
+  by move/eqP; rewrite subr_eq0 => /eqP ->; case: eqP => _; rewrite ?rmorph1 ?rmorph0.
 apply/eqP => d0.
 have : phi (\det (A *m B)) = 1 by rewrite -det_map_mx prod det1.
 rewrite det_mulmx d0 mul0r rmorph0 => /eqP.
 by rewrite eq_sym oner_eq0.
 Qed.
 
-(** The same over the rational numbers: full rank of the matrix of a stored (dyadic, rescaled) configuration. *)
-Corollary check_proves_full_rank (n : nat) (p : Z) (rows columns : table) :
-  check n p rows columns -> \rank (map_mx (fun z => (int_of_Z z)%:~R : rat) (of_rows n rows)) = n.
+Theorem check_proves_regular (n : nat) (p : Z) (rows columns : table) :
+  check n p rows columns -> \det (of_rows n rows) != 0.
 Proof.
-move=> ok; have := check_proves_regular ok.
-pose psi : {rmorphism Z -> rat} := [rmorphism of (intr : int -> rat) \o int_of_Z].
-move=> d; apply: mxrank_unit; rewrite unitmxE unitfE.
-rewrite -[map_mx _ _]/(map_mx psi (of_rows n rows)) det_map_mx.
+case/and5P=> /Z.ltb_lt p1 /eqP sr /eqP sc /allP ar /andP[/allP ac /allP ok].
+apply: (@inverse_modulo_proves_regular n p _ (of_rows n columns)^T p1) => i j.
+have in_n (k : 'I_n) : nat_of_ord k \in iota 0 n by rewrite mem_iota ltn_ord.
+have /allP/(_ _ (in_n j)) := ok _ (in_n i); rewrite /entry_ok => /Z.eqb_eq.
+have rs : size (nth [::] rows i) = n by apply/eqP/ar/mem_nth; rewrite sr.
+have cs : size (nth [::] columns j) = n by apply/eqP/ac/mem_nth; rewrite sc.
+rewrite (dot_is_sum rs cs) => zero; rewrite -[RHS]zero mxE; congr (Z.modulo (Z.sub _ _) _).
+by apply: eq_bigr => k _; rewrite !mxE.
+Qed.
+
+(** Regular over Z is regular over every field of characteristic 0. *)
+Lemma regular_over_characteristic_0 (F : numFieldType) (n : nat) (A : 'M[Z]_n) :
+  \det A != 0 -> map_mx (fun z => (int_of_Z z)%:~R : F) A \in unitmx.
+Proof.
+pose psi : {rmorphism Z -> F} := [rmorphism of (intr : int -> F) \o int_of_Z].
+move=> d; rewrite unitmxE unitfE -[map_mx _ _]/(map_mx psi A) det_map_mx.
 apply: contraNneq d => /= /eqP; rewrite intr_eq0 => /eqP E.
 by apply/eqP/(can_inj int_of_ZK); rewrite E.
 Qed.
+
+(** Full rank over the rational numbers: that of the matrix of a stored (dyadic, rescaled) configuration. *)
+Corollary check_proves_full_rank (n : nat) (p : Z) (rows columns : table) :
+  check n p rows columns -> \rank (map_mx (fun z => (int_of_Z z)%:~R : rat) (of_rows n rows)) = n.
+Proof. by move=> /check_proves_regular/(@regular_over_characteristic_0 [numFieldType of rat])/mxrank_unit. Qed.
 
 Print Assumptions check_proves_regular.
 Print Assumptions check_proves_full_rank.

@@ -2,6 +2,7 @@
 /// \file
 /// The subcommands of `isostat`: arguments as parsed, exit status as returned.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,12 @@ int inspect(const InspectArguments& arguments);
 /// them with the file's [expected]; an entry that does not hold is named and gives 1, a rank that is not proved 2.
 int inspect_packing(const InspectArguments& arguments);
 
+struct CertifyArguments {
+    Common common;
+    std::string input, output;
+};
+int certify(const CertifyArguments& arguments);
+
 struct PlanArguments {
     Common common;
     std::string scene;
@@ -58,6 +65,45 @@ struct ConvertArguments {
     std::string input, output;
 };
 int convert(const ConvertArguments& arguments);
+
+struct VerifyArguments {
+    Common common;
+    std::string certificate;
+    std::string input; ///< empty, or the file that the certificate speaks of
+};
+/// Checks a certificate with code that is separate from what made it. Exit status 0 only when every claim of an
+/// equilibrium is there and proved.
+int verify(const VerifyArguments& arguments);
+
+/// What the user states of a packing made elsewhere, as typed.
+struct ForeignArguments {
+    std::string format, radius, diameter, walls, box, columns;
+    std::string frame = "last";
+    bool not_periodic = false;
+};
+
+struct PlateauArguments {
+    Common common;
+    std::string file, thresholds, csv;
+    int rows = 40;
+    ForeignArguments foreign;
+};
+/// Counts of a packing made elsewhere against the gap threshold. 0: isostatic somewhere, proved; 1: nowhere; 2:
+/// nowhere proved, and not everywhere refuted.
+int plateau(const PlateauArguments& arguments);
+
+struct GenericityArguments {
+    Common common;
+    std::string file, csv;
+    int samples = 100;
+    double size = 1e-6;
+    std::uint64_t seed = 1;
+    double stress = 1;
+    int lists = 10;
+};
+/// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 1: some were proved not to be; 2: some are
+/// undecided.
+int genericity(const GenericityArguments& arguments);
 
 /// "isostat 0.1.0".
 std::string program_name();

@@ -31,6 +31,15 @@ int status_of(FailureKind kind) {
     }
 }
 
+int status_of(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::proved: return done;
+    case Verdict::refuted: return failed;
+    case Verdict::undecided: return undecided;
+    }
+    return undecided;
+}
+
 State<2> load_start(const Scene& scene) {
     const std::string source = scene.start.string();
     State<2> state = read_state<2>(scene.start).state;

@@ -3,6 +3,7 @@
 /// What several subcommands share.
 
 #include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -20,6 +21,9 @@ Json number(double value);
 
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
 int status_of(FailureKind kind);
+
+/// 0 proved, 1 refuted, 2 undecided.
+int status_of(Verdict verdict);
 
 /// The start of a scene that reads one: file, overrides of [load], checks in the words of a user. Throws
 /// `Error(bad_input)`.

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/true_vertex_text.hpp"
 
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -14,15 +15,6 @@ namespace isostat::cli {
 
 namespace {
 
-int status_of_verdict(Verdict verdict) {
-    switch (verdict) {
-    case Verdict::proved: return done;
-    case Verdict::refuted: return failed;
-    case Verdict::undecided: return undecided;
-    }
-    return undecided;
-}
-
 std::string end_of_interval(double stress, const Contact& opens) {
     return std::isfinite(stress) ? fmt::format("{:.12g} (opens {})", stress, to_string<2>(opens)) : "unbounded";
 }
@@ -35,8 +27,8 @@ void print_counting(const State<2>& state, const Counting& c) {
                state.load.kind == LoadKind::nominal ? "nominal (constant wall forces)" : "true stresses");
     fmt::print("degrees of freedom N_f   {}\n", c.dof_count);
     fmt::print("contacts N               {}\n", c.contact_count);
-    fmt::print("rank                     {} ({})\n", c.rank,
-               c.rank_exact == Verdict::proved ? "proved" : "proved lower bound");
+    fmt::print("rank, stored coordinates {} ({})\n", c.rank,
+               c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
     fmt::print("self-stresses h          {}\n", c.hyperstaticity);
     fmt::print("mechanisms k             {}\n", c.mechanisms);
 }
@@ -115,9 +107,16 @@ int inspect(const InspectArguments& arguments) {
         return inspect_packing(arguments);
     }
     State<2> state = read_state<2>(arguments.file).state;
+    const Certification truth = certify(state); // of the coordinates as they are stored
     snap_to_grid(state.packing);
     const Result<Inspection<2>> result = inspect_vertex(state);
-    const Counting counting = result.ok() ? result.value().counting : count_contacts(state.packing, state.contacts);
+    Counting counting = result.ok() ? result.value().counting : count_contacts(state.packing, state.contacts);
+    if (const auto& stored = truth.claims.counting) {
+        counting.rank = stored->rank;
+        counting.hyperstaticity = stored->hyperstaticity;
+        counting.mechanisms = stored->hypostaticity;
+        counting.rank_exact = Verdict::proved;
+    }
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
         Json object = counting_json(arguments.file, state, counting);
@@ -127,6 +126,7 @@ int inspect(const InspectArguments& arguments) {
             object["verdict"] = refuted ? "refuted" : "undecided";
             object["remark"] = result.failure().message;
         }
+        object["true_configuration"] = true_vertex_json(truth);
         fmt::print("{}\n", object.dump());
     } else {
         print_counting(state, counting);
@@ -136,8 +136,9 @@ int inspect(const InspectArguments& arguments) {
             fmt::print("isostatic equilibrium    {}: {}\n", refuted ? "refuted" : "undecided",
                        result.failure().message);
         }
+        print_true_vertex(truth);
     }
-    return result.ok() ? status_of_verdict(result.value().record.verdict) : status_of(result.failure().kind);
+    return result.ok() ? status_of(result.value().record.verdict) : status_of(result.failure().kind);
 }
 
 } // namespace isostat::cli

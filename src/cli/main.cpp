@@ -43,9 +43,12 @@ struct Program {
     PrepareArguments prepare_arguments;
     RunArguments run_arguments;
     InspectArguments inspect_arguments;
+    CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
     ConvertArguments convert_arguments;
+    VerifyArguments verify_arguments;
+    PlateauArguments plateau_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -58,9 +61,12 @@ struct Program {
         add_prepare(line);
         add_run(line);
         add_inspect(line);
+        add_certify(line);
         add_plan(line);
         add_report(line);
         add_convert(line);
+        add_verify(line);
+        add_plateau(line);
     }
 
   private:
@@ -125,6 +131,24 @@ struct Program {
         });
     }
 
+    void add_certify(const std::string& line) {
+        CertifyArguments& a = certify_arguments;
+        CLI::App& command =
+            add("certify", "proves that a state is an isostatic, stable equilibrium, and writes what was proved",
+                "Claims are about the true vertex near the stored coordinates, where all gaps of the contacts are "
+                "exactly 0. What is not\n"
+                "proved is not claimed, and the reason is written. Exit status 0: every claim is proved; 1: one is "
+                "refuted; 2: some are undecided.\n"
+                "Example: isostat certify out/states/last.json -o last.cert.json");
+        command.add_option("state", a.input, "state file, or vertex text")->required()->type_name("STATE.json");
+        command.add_option("-o,--output", a.output, "certificate to write")->required()->type_name("CERT.json");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return certify(a); };
+        });
+    }
+
     void add_plan(const std::string& line) {
         PlanArguments& a = plan_arguments;
         CLI::App& command =
@@ -168,6 +192,80 @@ struct Program {
         command.callback([&a, line, this] {
             a.common.command = line;
             todo = [&a] { return convert(a); };
+        });
+    }
+
+    void add_verify(const std::string& line) {
+        VerifyArguments& a = verify_arguments;
+        CLI::App& command =
+            add("verify", "re-checks a certificate with separate code: proved, refuted or undecided for every claim",
+                "The checker shares only the reader of the file with the program that made the certificate, and needs "
+                "nothing of a run.\n"
+                "Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a "
+                "claim is\n"
+                "undecided or absent.\n"
+                "Example: isostat verify certificate.json --input state.json");
+        command.add_option("certificate", a.certificate, "certificate (JSON)")->required()->type_name("CERT.json");
+        command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
+            ->type_name("FILE");
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return verify(a); };
+        });
+    }
+
+    static void add_foreign(CLI::App& command, ForeignArguments& a) {
+        command.add_option("--radius", a.radius, "the column, or the number, that is every disk's radius")
+            ->type_name("COLUMN|NUMBER");
+        command.add_option("--diameter", a.diameter, "the same for diameters")
+            ->type_name("COLUMN|NUMBER")
+            ->excludes("--radius");
+        command
+            .add_option("--walls", a.walls,
+                        "none; box: left and bottom fixed, right and top movable; fixed: all four (default: none for "
+                        "files of other programs)")
+            ->check(CLI::IsMember({"none", "box", "fixed"}));
+        command.add_option("--box", a.box, "positions of the walls instead of the bounds in the file")
+            ->type_name("XLO:XHI,YLO:YHI");
+        command.add_option("--frame", a.frame, "of a file with several, from 0 (default: last)")
+            ->type_name("NUMBER|last");
+        command
+            .add_option("--columns", a.columns, "names of the columns of a table without a header; - leaves one out")
+            ->type_name("x,y,r");
+        command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
+        command.add_flag("--not-periodic", a.not_periodic,
+                         "take periodic boundaries for open ones: contacts across them are not looked for");
+    }
+
+    void add_plateau(const std::string& line) {
+        PlateauArguments& a = plateau_arguments;
+        CLI::App& command = add(
+            "plateau", "contacts, rank, h, k of a packing made elsewhere against the gap threshold",
+            "Reads LAMMPS data files (atom style sphere), LAMMPS dumps, extended XYZ, tables of x y r, CSV, and our "
+            "own files. Whether a\n"
+            "size is a radius or a diameter is said by the name of its column or by you; it is never guessed. Gaps "
+            "are compared exactly,\n"
+            "for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is "
+            "isostatic are proved at\n"
+            "every threshold, not only at those of the table.\n"
+            "Exit status 0: isostatic at some threshold, proved; 1: at none; 2: undecided.\n"
+            "Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box\n"
+            "          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1");
+        command.add_option("file", a.file, "packing")->required()->type_name("FILE");
+        command
+            .add_option("--thresholds", a.thresholds,
+                        "smallest and largest gap of a contact, in the unit of the file (default: from the deepest "
+                        "overlap to a tenth of the smallest radius)")
+            ->type_name("A:B");
+        command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
+            ->check(CLI::NonNegativeNumber);
+        command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
+        add_foreign(command, a.foreign);
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return plateau(a); };
         });
     }
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace isostat {
@@ -21,12 +22,41 @@ template <int Dim> std::array<double, Dim> centre_line(const Packing<Dim>& packi
     return d;
 }
 
-template <int Dim> double norm(const std::array<double, Dim>& d) {
+template <int Dim> double plain_norm(const std::array<double, Dim>& d) {
     double square = 0;
     for (const double c : d) {
         square += c * c;
     }
     return std::sqrt(square);
+}
+
+/// No square of a component that matters under- or overflows.
+bool in_range(double norm) {
+    return norm > 0x1p-450 && norm < 0x1p500;
+}
+
+/// Multiplies d by a power of two, exactly, so that its largest component is in [1/2, 1); returns the exponent that
+/// goes back.
+template <int Dim> int normalise(std::array<double, Dim>& d) {
+    double largest = 0;
+    for (const double c : d) {
+        largest = std::max(largest, std::abs(c));
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    for (double& c : d) {
+        c = std::ldexp(c, -exponent);
+    }
+    return exponent;
+}
+
+template <int Dim> double norm(std::array<double, Dim> d) {
+    const double plain = plain_norm<Dim>(d);
+    if (in_range(plain)) {
+        return plain;
+    }
+    const int exponent = normalise<Dim>(d);
+    return std::ldexp(plain_norm<Dim>(d), exponent);
 }
 
 } // namespace
@@ -66,8 +96,12 @@ template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, co
     };
     switch (contact.kind) {
     case ContactKind::disk_disk: {
-        const std::array<double, Dim> d = centre_line(packing, contact);
-        const double length = norm<Dim>(d);
+        std::array<double, Dim> d = centre_line(packing, contact);
+        double length = plain_norm<Dim>(d);
+        if (!in_range(length)) {
+            normalise<Dim>(d);
+            length = plain_norm<Dim>(d);
+        }
         for (int a = 0; a < Dim; ++a) {
             add(Dim * contact.i + a, -d[static_cast<std::size_t>(a)] / length);
         }

@@ -1,146 +1,257 @@
-#include "crafted/carrying.hpp"
+#include "crafted/gap_order.hpp"
+#include "crafted/peeling.hpp"
 #include "crafted/rigid_motions.hpp"
+#include "preparation/neighbours.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/exact/number.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
 #include <numeric>
+#include <set>
 
 namespace isostat::crafted {
 
 namespace {
 
-/// Difference of two stored points: rounded, and exact on demand.
-struct StoredNormal {
-    double x, y;
-    std::array<double, 2> from, to;
-    [[nodiscard]] Number exact(std::size_t a) const {
-        return Number::from_double(to[a]) - Number::from_double(from[a]);
-    }
-};
+constexpr double largest_length = 1e100;   // squares neither overflow
+constexpr double smallest_length = 1e-100; // nor underflow
 
-/// Sign of s - t for products of two differences each, relative error below 4 * 2^-53 per product away from underflow.
-template <class Exact> int filtered_sign(double s, double t, Exact exact) {
-    const double value = s + t;
-    const double size = std::abs(s) + std::abs(t);
-    if (size > 1e-280 && std::isfinite(size) && std::abs(value) > 0x1p-49 * size) {
-        return value > 0 ? 1 : -1;
-    }
-    return exact().sign();
-}
-
-int cross_sign(const StoredNormal& a, const StoredNormal& b) {
-    return filtered_sign(a.x * b.y, -(a.y * b.x), [&] { return a.exact(0) * b.exact(1) - a.exact(1) * b.exact(0); });
-}
-int dot_sign(const StoredNormal& a, const StoredNormal& b) {
-    return filtered_sign(a.x * b.x, a.y * b.y, [&] { return a.exact(0) * b.exact(0) + a.exact(1) * b.exact(1); });
-}
-
-struct Candidate {
-    double gap;
-    Contact contact;
-};
-
-class Counter {
+/// h of the first m contacts of a list, m = 0 .. M: it only grows. Ranks are computed where that leaves it open.
+class Hyperstaticity {
   public:
-    Counter(const Packing<2>& packing, double largest) : packing_(packing) {
-        find_candidates(largest);
-        std::stable_sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-            return a.gap != b.gap ? a.gap < b.gap : a.contact < b.contact;
+    /// `contacts[m]`: how many of the first m candidates count; `compute(m)`: their rank; `most`: what no rank exceeds.
+    Hyperstaticity(std::vector<int> contacts, int most, std::function<int(int)> compute)
+        : contacts_(std::move(contacts)), most_(most), compute_(std::move(compute)), known_(contacts_.size(), -1) {
+        known_[0] = 0;
+    }
+
+    /// h with the first m candidates.
+    int at(int m) {
+        const auto k = static_cast<std::size_t>(m);
+        if (known_[k] < 0) {
+            auto below = k, above = k;
+            while (known_[below] < 0) {
+                --below;
+            }
+            while (above < known_.size() && known_[above] < 0) {
+                ++above;
+            }
+            // The rank grows too: equal values on both sides leave nothing between them.
+            const int low = contacts_[below] - known_[below];
+            if (low == most_ || (above < known_.size() && contacts_[above] - known_[above] == low)) {
+                known_[k] = contacts_[k] - low;
+            } else if (contacts_[k] == contacts_[below] || (above < known_.size() && known_[above] == known_[below])) {
+                known_[k] = known_[below];
+            } else {
+                known_[k] = contacts_[k] - compute_(m);
+                ++computed_;
+            }
+        }
+        return known_[k];
+    }
+
+    /// The same for every one of `lists` (sorted), in the order that leaves the most to monotony.
+    void at_all(const std::vector<int>& lists) {
+        if (!lists.empty()) {
+            at(lists.back());
+            halve(lists, 0, lists.size() - 1);
+        }
+    }
+
+    /// Largest of the sorted `ends` with h = 0; `most`: by counting, h > 0 at every end beyond this one. 0 when none.
+    int last_without(const std::vector<int>& ends, int most) {
+        auto in = ends.begin();
+        auto outside = std::upper_bound(ends.begin(), ends.end(), most);
+        if (outside == in) {
+            return 0;
+        }
+        if (at(*(outside - 1)) == 0) { // as it should be: one rank settles everything
+            return *(outside - 1);
+        }
+        --outside;
+        // Everything before `in` has h = 0, `outside` has not.
+        while (in != outside) {
+            const auto middle = in + (outside - in) / 2;
+            (at(*middle) == 0 ? in : outside) = at(*middle) == 0 ? middle + 1 : middle;
+        }
+        return in == ends.begin() ? 0 : *(in - 1);
+    }
+
+    [[nodiscard]] int computed() const { return computed_; }
+
+  private:
+    void halve(const std::vector<int>& lists, std::size_t first, std::size_t last) {
+        at(lists[first]);
+        at(lists[last]);
+        if (last - first > 1) {
+            const std::size_t middle = first + (last - first) / 2;
+            halve(lists, first, middle);
+            halve(lists, middle, last);
+        }
+    }
+
+    std::vector<int> contacts_;
+    int most_;
+    std::function<int(int)> compute_;
+    std::vector<int> known_; ///< -1: not yet
+    int computed_ = 0;
+};
+
+class Sequence {
+  public:
+    Sequence(const Packing<2>& packing, double largest) : packing_(packing), order_(packing), largest_(largest) {
+        check();
+        find_candidates();
+        std::sort(items_.begin(), items_.end(), [this](const GapOrder::Item& a, const GapOrder::Item& b) {
+            const int sign = order_.compare(a, b);
+            return sign != 0 ? sign < 0 : a.contact < b.contact;
         });
-    }
-
-    [[nodiscard]] const std::vector<Candidate>& candidates() const { return candidates_; }
-
-    [[nodiscard]] std::size_t below(double threshold) const {
-        return static_cast<std::size_t>(std::upper_bound(candidates_.begin(), candidates_.end(), threshold,
-                                                         [](double t, const Candidate& c) { return t < c.gap; }) -
-                                        candidates_.begin());
-    }
-
-    /// Counts with the first `count` candidates as contacts.
-    [[nodiscard]] PlateauStep step(std::size_t count) const {
-        const auto n = static_cast<std::size_t>(packing_.disk_count());
-        std::vector<Arms<StoredNormal>> arms(n);
-        for (std::size_t l = 0; l < count; ++l) {
-            add_arms(l, arms);
+        for (const GapOrder::Item& item : items_) {
+            contacts_.push_back(item.contact);
         }
-        std::vector<unsigned char> carrying(count, 1);
-        std::vector<DiskHold> hold(n, DiskHold::held);
-        for (std::size_t i = 0; i < n; ++i) {
-            hold[i] = packing_.is_fixed(DiskId(i)) ? DiskHold::fixed : DiskHold::held;
-        }
-        exclude_contacts(arms, carrying, hold);
-        PlateauStep out;
-        out.candidate_count = static_cast<int>(count);
-        // A rattler has no degree of freedom left: it is held fixed, and touches nothing.
-        Packing<2> rest = packing_;
-        rest.fixed.resize(n, 0);
-        for (std::size_t i = 0; i < n; ++i) {
-            if (hold[i] == DiskHold::rattler) {
-                rest.fixed[i] = 1;
-                ++out.rattlers;
+        ends_.push_back(0);
+        for (std::size_t l = 1; l <= items_.size(); ++l) {
+            if (l == items_.size() || order_.compare(items_[l - 1], items_[l]) != 0) {
+                ends_.push_back(static_cast<int>(l));
             }
         }
-        std::vector<Contact> contacts;
-        for (std::size_t l = 0; l < count; ++l) {
-            if (carrying[l] != 0) {
-                contacts.push_back(candidates_[l].contact);
-            }
-        }
-        std::sort(contacts.begin(), contacts.end());
-        const DofMap<2> dofs(rest);
-        out.dof_count = dofs.dof_count();
-        out.contact_count = static_cast<int>(contacts.size());
-        out.rigid_motions = std::min(
-            out.dof_count, rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count() - out.rattlers));
-        const int most = std::min(out.contact_count, out.dof_count - out.rigid_motions);
-        out.rank = contacts.empty() || out.dof_count == 0 ? 0 : exact::rank(exact_contact_matrix(rest, dofs, contacts));
-        out.hyperstaticity = out.contact_count - out.rank;
-        out.mechanisms = out.dof_count - out.rank;
-        out.rank_exact = out.rank == most ? Verdict::proved : Verdict::undecided;
-        if (out.contact_count != out.dof_count - out.rigid_motions) {
-            out.isostatic = Verdict::refuted; // N_f + h = N + k: h and the internal mechanisms cannot both be 0
-        } else if (out.rank_exact == Verdict::proved && out.contact_count > 0) {
-            out.isostatic = Verdict::proved;
+        count_backbones();
+        count_all();
+        const auto matrix_rank = [](const Packing<2>& rest, const std::vector<Contact>& list) {
+            const DofMap<2> dofs(rest);
+            return list.empty() || dofs.dof_count() == 0 ? 0 : exact::rank(exact_contact_matrix(rest, dofs, list));
+        };
+        backbone_stress_ =
+            std::make_unique<Hyperstaticity>(carrying_, std::numeric_limits<int>::max(), [this, matrix_rank](int m) {
+                return matrix_rank(without_rattlers(m), backbone_contacts(m));
+            });
+        std::vector<int> counts(static_cast<std::size_t>(size()) + 1);
+        std::iota(counts.begin(), counts.end(), 0);
+        all_stress_ = std::make_unique<Hyperstaticity>(
+            std::move(counts), all_counts(0).dof_count - all_counts(0).rigid_motions, [this, matrix_rank](int m) {
+                std::vector<Contact> list(contacts_.begin(), contacts_.begin() + m);
+                std::sort(list.begin(), list.end());
+                return matrix_rank(packing_, list);
+            });
+    }
+
+    [[nodiscard]] int size() const { return static_cast<int>(items_.size()); }
+    /// Numbers of candidates between two different gaps, 0 first.
+    [[nodiscard]] const std::vector<int>& ends() const { return ends_; }
+
+    /// Candidates at gap <= threshold: always one of `ends`.
+    [[nodiscard]] int below(double threshold) const {
+        const auto end = std::partition_point(items_.begin(), items_.end(), [&](const GapOrder::Item& item) {
+            return order_.compare(item, threshold) <= 0;
+        });
+        return static_cast<int>(end - items_.begin());
+    }
+
+    /// The smallest double at which the first m >= 1 candidates are contacts.
+    [[nodiscard]] double threshold_of(int m) const {
+        return order_.threshold_of(items_[static_cast<std::size_t>(m) - 1]);
+    }
+    /// The one at which the first candidate beyond them is.
+    [[nodiscard]] double threshold_after(int m) const {
+        return order_.threshold_of(items_[static_cast<std::size_t>(m)]);
+    }
+
+    /// One step per list; `thresholds` has one entry per list.
+    [[nodiscard]] std::vector<PlateauStep> steps(const std::vector<int>& lists, const std::vector<double>& thresholds) {
+        backbone_stress_->at_all(lists);
+        all_stress_->at_all(lists);
+        std::vector<PlateauStep> out;
+        for (std::size_t k = 0; k < lists.size(); ++k) {
+            const int m = lists[k];
+            PlateauStep& step = out.emplace_back();
+            step.threshold = thresholds[k];
+            step.candidate_count = m;
+            step.rattlers = rattlers_[static_cast<std::size_t>(m)];
+            step.backbone = backbone_counts(m);
+            settle(step.backbone, backbone_stress_->at(m));
+            step.all = all_counts(m);
+            settle(step.all, all_stress_->at(m));
         }
         return out;
     }
 
-  private:
-    void find_candidates(double largest) {
-        const int n = packing_.disk_count();
-        const auto keep = [&](const Contact& contact) {
-            if (const double g = gap<2>(packing_, contact); g <= largest) {
-                candidates_.push_back({g, contact});
-            }
+    void find_ranges(Plateau& out) {
+        const auto excess = [](const PlateauCounts& c) { return c.contact_count - (c.dof_count - c.rigid_motions); };
+        // h >= N - N_f + rigid motions, and h only grows.
+        const auto most = [&](auto counts) {
+            const auto first = std::find_if(ends_.begin(), ends_.end(), [&](int m) { return excess(counts(m)) > 0; });
+            return first == ends_.end() ? size() : *first - 1;
         };
-        std::vector<int> order(static_cast<std::size_t>(n));
-        std::iota(order.begin(), order.end(), 0);
-        const auto radius = [&](int i) { return packing_.radius[static_cast<std::size_t>(i)]; };
-        const auto left = [&](int i) { return packing_.coordinate(DiskId(i), 0) - radius(i); };
-        std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return left(i) < left(j); });
-        // Far above the rounding of the sweep's bounds: a wider sweep only looks at more pairs.
-        double size = std::abs(largest) + packing_.max_radius();
-        for (const double x : packing_.q) {
-            size = std::max(size, std::abs(x));
+        const auto backbone = [this](int m) { return backbone_counts(m); };
+        const int unstressed = backbone_stress_->last_without(ends_, most(backbone));
+        out.no_self_stress_open = unstressed == size();
+        out.no_self_stress_below = out.no_self_stress_open ? largest_ : threshold_after(unstressed);
+        const auto balanced = [&](int m) {
+            return carrying_[static_cast<std::size_t>(m)] > 0 && excess(backbone(m)) == 0;
+        };
+        add_ranges(out.ranges, [&](int m) { return m <= unstressed && balanced(m); });
+        add_ranges(out.special, [&](int m) { return m > unstressed && balanced(m); });
+        // All disks: N is the number of candidates, so one list only can be isostatic.
+        const PlateauCounts whole = all_counts(0);
+        const int wanted = whole.dof_count - whole.rigid_motions;
+        if (std::binary_search(ends_.begin(), ends_.end(), wanted) && wanted > 0 && all_stress_->at(wanted) == 0) {
+            add_ranges(out.ranges_all, [&](int m) { return m == wanted; });
         }
-        const double slack = 1e-12 * size;
-        for (std::size_t s = 0; s < order.size(); ++s) {
-            const int i = order[s];
-            const double reach = packing_.coordinate(DiskId(i), 0) + radius(i) + std::max(largest, 0.0) + slack;
-            for (std::size_t t = s + 1; t < order.size() && left(order[t]) <= reach; ++t) {
-                if (!packing_.is_fixed(DiskId(i)) || !packing_.is_fixed(DiskId(order[t]))) {
-                    keep({ContactKind::disk_disk, std::min(i, order[t]), std::max(i, order[t])});
+    }
+
+    [[nodiscard]] int ranks_computed() const { return backbone_stress_->computed() + all_stress_->computed(); }
+
+  private:
+    void check() const {
+        const auto sensible = [](double x) { return std::abs(x) <= largest_length; };
+        for (const double x : packing_.q) {
+            if (!sensible(x)) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("plateau: coordinate {}: expected lengths within 1e+-100", x));
+            }
+        }
+        for (const double r : packing_.radius) {
+            if (!sensible(r) || r < smallest_length) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("plateau: radius {}: expected lengths within 1e+-100", r));
+            }
+        }
+        if (!sensible(largest_)) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("plateau: threshold {}: expected lengths within 1e+-100", largest_));
+        }
+    }
+
+    void keep(const Contact& contact) {
+        const GapOrder::Item item = order_.item(contact);
+        if (order_.compare(item, largest_) <= 0) {
+            items_.push_back(item);
+        }
+    }
+
+    void find_candidates() {
+        // Wider than the rounding of the search.
+        const double reach = std::max(largest_, 0.0) + 1e-9 * (2 * packing_.max_radius() + std::max(largest_, 0.0));
+        preparation::PairList pairs;
+        preparation::find_pairs<2>(packing_.q, packing_.radius, reach, pairs);
+        for (int i = 0; i < packing_.disk_count(); ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
+                const int j = pairs.partner[static_cast<std::size_t>(p)];
+                if (!packing_.is_fixed(DiskId(i)) || !packing_.is_fixed(DiskId(j))) {
+                    keep({ContactKind::disk_disk, i, j});
                 }
             }
-        }
-        for (int i = 0; i < n; ++i) {
             for (int a = 0; a < 2; ++a) {
                 const auto axis = static_cast<std::size_t>(a);
                 const auto moves = [&](WallKind wall) {
@@ -156,76 +267,219 @@ class Counter {
         }
     }
 
-    void add_arms(std::size_t l, std::vector<Arms<StoredNormal>>& arms) const {
-        const Contact& contact = candidates_[l].contact;
-        const auto i = static_cast<std::size_t>(contact.i);
-        const auto j = static_cast<std::size_t>(contact.j);
-        if (contact.kind == ContactKind::disk_disk) {
-            const std::array<double, 2> a{packing_.q[2 * i], packing_.q[2 * i + 1]};
-            const std::array<double, 2> b{packing_.q[2 * j], packing_.q[2 * j + 1]};
-            arms[i].push_back({l, {b[0] - a[0], b[1] - a[1], a, b}});
-            arms[j].push_back({l, {a[0] - b[0], a[1] - b[1], b, a}});
-        } else {
-            std::array<double, 2> unit{};
-            unit[j] = contact.kind == ContactKind::lower_wall ? -1 : 1;
-            arms[i].push_back({l, {unit[0], unit[1], {0, 0}, unit}});
+    void count_backbones() {
+        peeling_ = peel(packing_, contacts_);
+        const auto count = static_cast<std::size_t>(size()) + 1;
+        carrying_.assign(count, 0);
+        rattlers_.assign(count, 0);
+        free_.assign(count, 0);
+        for (const int from : peeling_.contact_from) {
+            if (from <= size()) {
+                ++carrying_[static_cast<std::size_t>(from)];
+            }
+        }
+        int fixed = 0;
+        for (std::size_t i = 0; i < peeling_.disk_from.size(); ++i) {
+            if (packing_.is_fixed(DiskId(i))) {
+                ++fixed;
+            } else if (peeling_.disk_from[i] <= size()) {
+                ++free_[static_cast<std::size_t>(peeling_.disk_from[i])];
+            }
+        }
+        std::partial_sum(carrying_.begin(), carrying_.end(), carrying_.begin());
+        std::partial_sum(free_.begin(), free_.end(), free_.begin());
+        for (std::size_t m = 0; m < count; ++m) {
+            rattlers_[m] = packing_.disk_count() - fixed - free_[m];
+        }
+    }
+
+    void count_all() {
+        for (const WallKind wall : packing_.walls.upper) {
+            movable_walls_ += wall == WallKind::movable ? 1 : 0;
+        }
+        all_dofs_ = DofMap<2>(packing_).dof_count();
+    }
+
+    [[nodiscard]] PlateauCounts backbone_counts(int m) const {
+        const auto k = static_cast<std::size_t>(m);
+        PlateauCounts out;
+        out.dof_count = 2 * free_[k] + movable_walls_;
+        out.contact_count = carrying_[k];
+        out.rigid_motions = std::min(
+            out.dof_count, rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count() - rattlers_[k]));
+        return out;
+    }
+
+    [[nodiscard]] PlateauCounts all_counts(int m) const {
+        PlateauCounts out;
+        out.dof_count = all_dofs_;
+        out.contact_count = m;
+        out.rigid_motions =
+            std::min(out.dof_count, rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count()));
+        return out;
+    }
+
+    static void settle(PlateauCounts& counts, int h) {
+        counts.hyperstaticity = h;
+        counts.rank = counts.contact_count - h;
+        counts.mechanisms = counts.dof_count - counts.rank;
+        const int most = std::min(counts.contact_count, counts.dof_count - counts.rigid_motions);
+        counts.rank_exact = counts.rank == most ? Verdict::proved : Verdict::undecided;
+        if (counts.contact_count != counts.dof_count - counts.rigid_motions || counts.contact_count == 0) {
+            counts.isostatic = Verdict::refuted; // N_f + h = N + k: h and the internal mechanisms cannot both be 0
+        } else if (counts.rank_exact == Verdict::proved) {
+            counts.isostatic = Verdict::proved;
+        }
+    }
+
+    /// A rattler has no degree of freedom left: it is held fixed, and touches nothing.
+    [[nodiscard]] Packing<2> without_rattlers(int m) const {
+        Packing<2> rest = packing_;
+        rest.fixed.resize(rest.radius.size(), 0);
+        for (std::size_t i = 0; i < rest.fixed.size(); ++i) {
+            if (peeling_.disk_from[i] > m) {
+                rest.fixed[i] = 1;
+            }
+        }
+        return rest;
+    }
+
+    [[nodiscard]] std::vector<Contact> backbone_contacts(int m) const {
+        std::vector<Contact> out;
+        for (std::size_t l = 0; l < static_cast<std::size_t>(m); ++l) {
+            if (peeling_.contact_from[l] <= m) {
+                out.push_back(contacts_[l]);
+            }
+        }
+        std::sort(out.begin(), out.end());
+        return out;
+    }
+
+    /// Maximal runs of ends that `holds` takes.
+    template <class Holds> void add_ranges(std::vector<PlateauRange>& out, Holds holds) const {
+        for (std::size_t e = 0; e < ends_.size(); ++e) {
+            if (!holds(ends_[e]) || ends_[e] == 0) {
+                continue;
+            }
+            const std::size_t begin = e;
+            while (e + 1 < ends_.size() && holds(ends_[e + 1])) {
+                ++e;
+            }
+            const int m = ends_[begin];
+            PlateauRange range;
+            range.first = threshold_of(m);
+            range.open = ends_[e] == size();
+            range.last = range.open ? largest_ : threshold_after(ends_[e]);
+            range.contacts = carrying_[static_cast<std::size_t>(m)];
+            range.rattlers = rattlers_[static_cast<std::size_t>(m)];
+            range.candidates = m;
+            out.push_back(range);
         }
     }
 
     const Packing<2>& packing_;
-    std::vector<Candidate> candidates_;
+    GapOrder order_;
+    double largest_;
+    std::vector<GapOrder::Item> items_; ///< by increasing gap
+    std::vector<Contact> contacts_;
+    std::vector<int> ends_;
+    Peeling peeling_;
+    std::vector<int> carrying_, rattlers_, free_; ///< with the first m candidates
+    int movable_walls_ = 0;
+    int all_dofs_ = 0;
+    std::unique_ptr<Hyperstaticity> backbone_stress_, all_stress_;
 };
+
+/// About `rows` of the `ends` in [begin, end): see `plateau`.
+std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, const Plateau& found) {
+    std::vector<int> inside;
+    for (const int m : sequence.ends()) {
+        if (m >= begin && m <= end && m > 0) {
+            inside.push_back(m);
+        }
+    }
+    if (rows <= 0 || inside.size() <= static_cast<std::size_t>(rows)) {
+        return {inside.begin(), inside.end()};
+    }
+    std::set<int> out{inside.front(), inside.back()};
+    const int half = std::max(rows / 2, 1);
+    const auto last = inside.size() - 1;
+    for (int k = 1; k < half; ++k) {
+        out.insert(inside[last * static_cast<std::size_t>(k) / static_cast<std::size_t>(half)]);
+    }
+    const auto positive =
+        std::find_if(inside.begin(), inside.end(), [&](int m) { return sequence.threshold_of(m) > 0; });
+    if (positive != inside.end()) {
+        const double low = std::log(sequence.threshold_of(*positive)),
+                     high = std::log(sequence.threshold_of(inside.back()));
+        for (int k = 1; k < half; ++k) {
+            const int m = sequence.below(std::exp(low + (high - low) * k / half));
+            if (m >= inside.front() && m > 0) {
+                out.insert(m);
+            }
+        }
+    }
+    for (const auto* ranges : {&found.ranges, &found.special, &found.ranges_all}) {
+        for (const PlateauRange& range : *ranges) {
+            if (ranges->size() > static_cast<std::size_t>(half)) {
+                break;
+            }
+            for (const double t : {range.first, range.last}) {
+                const int m = sequence.below(t);
+                const auto at = std::lower_bound(inside.begin(), inside.end(), m);
+                if (at != inside.end() && *at == m) {
+                    out.insert(m);
+                    out.insert(at == inside.begin() ? m : *(at - 1));
+                }
+            }
+        }
+    }
+    return out;
+}
+
+Plateau begin(Sequence& sequence) {
+    Plateau out;
+    out.candidates = sequence.size();
+    out.changes = static_cast<int>(sequence.ends().size()) - 1;
+    out.deepest_overlap = sequence.size() == 0 ? std::numeric_limits<double>::infinity() : sequence.threshold_of(1);
+    sequence.find_ranges(out);
+    return out;
+}
 
 } // namespace
 
 Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds) {
     assert(std::is_sorted(thresholds.begin(), thresholds.end()));
-    Plateau out;
     if (thresholds.empty()) {
-        return out;
+        return {};
     }
-    const Counter counter(packing, thresholds.back());
-    const auto& candidates = counter.candidates();
-    out.deepest_overlap = candidates.empty() ? HUGE_VAL : candidates.front().gap;
-    std::vector<std::size_t> counts;
+    Sequence sequence(packing, thresholds.back());
+    Plateau out = begin(sequence);
+    std::vector<int> lists;
     for (const double threshold : thresholds) {
-        counts.push_back(counter.below(threshold));
-        // The same list again costs nothing.
-        out.steps.push_back(counts.size() > 1 && counts.back() == counts[counts.size() - 2]
-                                ? out.steps.back()
-                                : counter.step(counts.back()));
-        out.steps.back().threshold = threshold;
+        lists.push_back(sequence.below(threshold));
     }
-    const auto proved = [&](std::size_t count) { return counter.step(count).isostatic == Verdict::proved; };
-    for (std::size_t s = 0; s < out.steps.size(); ++s) {
-        if (out.steps[s].isostatic != Verdict::proved || (s > 0 && out.steps[s - 1].isostatic == Verdict::proved)) {
-            continue;
-        }
-        std::size_t e = s;
-        while (e + 1 < out.steps.size() && out.steps[e + 1].isostatic == Verdict::proved) {
-            ++e;
-        }
-        // Invariant: `in` contacts are isostatic, `outside` are not.
-        std::size_t in = counts[s], outside = s > 0 ? counts[s - 1] : 0;
-        while (in - outside > 1) {
-            const std::size_t middle = outside + (in - outside) / 2;
-            (proved(middle) ? in : outside) = middle;
-        }
-        PlateauRange range;
-        range.first = candidates[in - 1].gap;
-        in = counts[e];
-        if (e + 1 == out.steps.size()) {
-            range.last = thresholds.back();
-        } else {
-            outside = counts[e + 1];
-            while (outside - in > 1) {
-                const std::size_t middle = in + (outside - in) / 2;
-                (proved(middle) ? in : outside) = middle;
-            }
-            range.last = candidates[outside - 1].gap;
-        }
-        out.ranges.push_back(range);
+    out.steps = sequence.steps(lists, thresholds);
+    out.ranks_computed = sequence.ranks_computed();
+    return out;
+}
+
+Plateau plateau(const Packing<2>& packing, double first, double last, int rows) {
+    assert(first <= last);
+    Sequence sequence(packing, last);
+    Plateau out = begin(sequence);
+    std::vector<int> lists{sequence.below(first)};
+    std::vector<double> thresholds{first};
+    for (const int m : thinned(sequence, lists.front() + 1, sequence.size(), rows, out)) {
+        lists.push_back(m);
+        thresholds.push_back(sequence.threshold_of(m));
     }
+    if (thresholds.back() < last) {
+        lists.push_back(sequence.size());
+        thresholds.push_back(last);
+    }
+    out.steps = sequence.steps(lists, thresholds);
+    out.ranks_computed = sequence.ranks_computed();
     return out;
 }
 

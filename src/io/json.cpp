@@ -36,9 +36,9 @@ bool parse_hexadecimal(const std::string& text, double& value) {
 
 } // namespace
 
-Json Field::parse(const std::string& text, const std::string& source) {
+Json Field::parse(const std::string& text, const std::string& source, const Json::parser_callback_t& watch) {
     try {
-        return Json::parse(text);
+        return Json::parse(text, watch);
     } catch (const nlohmann::json::parse_error& error) {
         const std::size_t at = std::min(error.byte, text.size());
         const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');

@@ -20,7 +20,9 @@ using Json = nlohmann::ordered_json;
 class Field {
   public:
     /// Parses the whole text. Throws `Error(bad_input)` with line and column when it is not one complete JSON document.
-    static Json parse(const std::string& text, const std::string& source);
+    /// `watch` is called at every object, array and key (nlohmann's parser callback) and may throw.
+    static Json parse(const std::string& text, const std::string& source,
+                      const Json::parser_callback_t& watch = nullptr);
 
     Field(const Json& value, std::string source, std::string path = "")
         : value_(&value), source_(std::move(source)), path_(std::move(path)) {}

@@ -1,5 +1,6 @@
 #include "io/contact_json.hpp"
 #include "io/json.hpp"
+#include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
@@ -142,9 +143,7 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
 
 } // namespace
 
-template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source) {
-    const json::Json parsed = Field::parse(text, source);
-    const Field document(parsed, source);
+template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, const std::string& source) {
     if (!document.value().is_object()) {
         document.fail("an object with \"format\": \"isostat-state\"");
     }
@@ -189,6 +188,11 @@ template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std
     return file;
 }
 
+template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source) {
+    const json::Json parsed = Field::parse(text, source);
+    return json::state_from_json<Dim>(Field(parsed, source), source);
+}
+
 template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     if (text[text.find_first_not_of(" \t\r\n")] == '{') {
@@ -197,6 +201,7 @@ template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) 
     return {parse_vertex_text(text, path.string()), {}};
 }
 
+template StateFile<2> json::state_from_json<2>(const Field&, const std::string&);
 template StateFile<2> parse_state<2>(const std::string&, const std::string&);
 template StateFile<2> read_state<2>(const std::filesystem::path&);
 

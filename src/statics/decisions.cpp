@@ -18,13 +18,7 @@ struct Contender {
     ContactId contact;
     Enclosure force; ///< what must be negative (for a held coordinate: minus the magnitude)
     Enclosure key;   ///< what the rule compares
-};
-
-/// Outcome of one attempt on one rung: decided, or the message that says what was not.
-template <class T> struct Attempt {
-    std::optional<T> decided;
-    std::string open_question;
-    FailureKind kind = FailureKind::undecided;
+    double margin;   ///< with which the sign of `force` is proved
 };
 
 template <int Dim> std::string name(const Statics<Dim>& statics, ContactId l) {
@@ -72,12 +66,24 @@ Enclosure quotient(const Enclosure& f, const Enclosure& norm) {
     return {value, (f.radius + std::abs(value) * norm.radius) / smallest * (1 + 8 * u) + 2 * u * std::abs(value)};
 }
 
-/// Picks by the rule among contenders that all carry a proved negative force.
+/// "proved to 256 bits" or "exactly".
+std::string reach(const Order& order) {
+    return order.decided ? "they are exactly equal" : fmt::format("they agree to {} bits", order.bits);
+}
+
+/// Difference of two enclosures where that decides, the ladder where it does not.
 template <int Dim>
-Attempt<Opening> pick(const Statics<Dim>& statics, std::vector<Contender>& negative, OpeningRule rule,
-                      std::uint64_t random_bits) {
-    Attempt<Opening> attempt;
-    double margin = infinity;
+Order order_of(Statics<Dim>& statics, const Enclosure& difference, const ForceExpression& a, const ForceExpression& b) {
+    if (difference.decided()) {
+        return {true, difference.positive() ? 1 : -1, difference.margin(), statics.rung(), statics.bits()};
+    }
+    return statics.compare(a, b);
+}
+
+/// Picks by the rule among contenders that all carry a proved negative force.
+template <int Dim, class Expression>
+Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Expression expression, OpeningRule rule,
+                     std::uint64_t random_bits) {
     if (rule == OpeningRule::random) {
         // Ordered by identity, so that the choice does not depend on the order of the contact list.
         std::sort(negative.begin(), negative.end(), [&](const Contender& a, const Contender& b) {
@@ -85,8 +91,7 @@ Attempt<Opening> pick(const Statics<Dim>& statics, std::vector<Contender>& negat
             return contacts[a.contact.index()] < contacts[b.contact.index()];
         });
         const Contender& chosen = negative[random_bits % negative.size()];
-        attempt.decided = Opening{chosen.contact, false, chosen.force, +1, chosen.force.margin(), statics.rung()};
-        return attempt;
+        return Opening{chosen.contact, false, chosen.force, +1, chosen.margin, statics.rung()};
     }
     for (Contender& c : negative) {
         c.key = c.force;
@@ -96,38 +101,72 @@ Attempt<Opening> pick(const Statics<Dim>& statics, std::vector<Contender>& negat
             c.key = quotient(c.force, mechanism_norm(statics, c.contact));
         }
     }
-    const auto best = std::min_element(negative.begin(), negative.end(), [](const Contender& a, const Contender& b) {
-        return a.key.value < b.key.value;
-    });
-    for (const Contender& c : negative) {
-        if (c.contact == best->contact) {
-            continue;
+    const auto key = [&](const Contender& c) {
+        ForceExpression e = expression(c.contact);
+        if (rule == OpeningRule::steepest) {
+            e.divisor = ForceExpression::Divisor::mechanism;
         }
-        const Enclosure difference = c.key - best->key;
-        margin = std::min(margin, difference.margin());
-        if (!difference.positive()) {
-            attempt.kind = FailureKind::tie;
-            attempt.open_question = fmt::format(
-                "the opening rule cannot order the contacts {} (f = {:.17g}) and {} (f = {:.17g}): the keys differ by "
-                "{:.3g}, proved to {:.3g}",
-                name(statics, best->contact), best->force.value, name(statics, c.contact), c.force.value,
-                difference.value, difference.radius);
-            return attempt;
+        return e;
+    };
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < negative.size(); ++k) {
+        if (negative[k].key.value < negative[best].key.value) {
+            best = k;
         }
     }
-    attempt.decided =
-        Opening{best->contact, false, best->force, +1, std::min(margin, best->force.margin()), statics.rung()};
-    return attempt;
+    // The enclosures may have put the wrong one first: whoever is proved smaller takes its place, which happens at most
+    // once per contender.
+    for (std::size_t restart = 0; restart <= negative.size(); ++restart) {
+        double margin = infinity;
+        Rung rung = statics.rung();
+        std::string tied;
+        std::optional<std::size_t> better;
+        for (std::size_t k = 0; k < negative.size() && !better; ++k) {
+            if (k == best) {
+                continue;
+            }
+            Order order =
+                order_of(statics, negative[k].key - negative[best].key, key(negative[k]), key(negative[best]));
+            if (rule == OpeningRule::least_negative && !(negative[k].key - negative[best].key).decided()) {
+                order.sign = -order.sign; // expressions are forces, keys their opposites
+            }
+            if (!order.decided || order.sign == 0) {
+                tied += fmt::format("; {} (f = {:.17g}): {}", name(statics, negative[k].contact),
+                                    negative[k].force.value, reach(order));
+            } else if (order.sign < 0) {
+                better = k;
+            } else {
+                margin = std::min(margin, order.margin);
+                rung = std::max(rung, order.rung);
+            }
+        }
+        if (better) {
+            best = *better;
+            continue;
+        }
+        if (!tied.empty()) {
+            return Failure{FailureKind::tie,
+                           fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}){}",
+                                       name(statics, negative[best].contact), negative[best].force.value, tied)};
+        }
+        return Opening{
+            negative[best].contact, false, negative[best].force, +1, std::min(margin, negative[best].margin), rung};
+    }
+    return Failure{FailureKind::undecided, "the comparisons of the opening rule contradict each other"};
 }
 
 /// One stage of the lexicographic decision: all contacts with `finite` (or without) a finite force.
-template <int Dim, class Value>
-Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value value, OpeningRule rule,
-                               ContactId fresh_hold, std::uint64_t random_bits) {
-    Attempt<OpeningDecision> attempt;
+template <int Dim, class Value, class Expression>
+Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, Expression force_of, OpeningRule rule,
+                              ContactId fresh_hold, std::uint64_t random_bits) {
+    const auto expression = [&](ContactId l) {
+        ForceExpression e = force_of(l);
+        e.minus_magnitude = is_held(statics, l);
+        return e;
+    };
     std::vector<Contender> negative;
     double margin = infinity;
-    std::optional<Contender> doubtful; // a force whose sign is not proved, the smallest of them
+    std::vector<Contender> doubtful; // forces whose signs the enclosures do not prove
     for (std::size_t index = 0; index < statics.structure().contacts().size(); ++index) {
         const ContactId l(index);
         if (l == fresh_hold || statics.is_structural_zero(l) == finite) {
@@ -140,9 +179,9 @@ Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value v
         if (f.positive()) {
             margin = std::min(margin, f.margin());
         } else if (f.negative()) {
-            negative.push_back({l, f, f});
-        } else if (!doubtful || f.value - f.radius < doubtful->force.value - doubtful->force.radius) {
-            doubtful = Contender{l, f, f};
+            negative.push_back({l, f, f, f.margin()});
+        } else {
+            doubtful.push_back({l, f, f, 0});
         }
     }
     // A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the
@@ -151,45 +190,47 @@ Attempt<OpeningDecision> stage(const Statics<Dim>& statics, bool finite, Value v
     const auto smallest =
         std::min_element(negative.begin(), negative.end(),
                          [](const Contender& a, const Contender& b) { return a.force.value < b.force.value; });
-    if (doubtful && (negative.empty() || whole_list || !(Enclosure(doubtful->force - smallest->force)).positive())) {
-        attempt.open_question =
-            fmt::format("the sign of the {}force in contact {} is not decided: {:.3g}, proved to {:.3g}",
-                        finite ? "" : "infinitesimal ", name(statics, doubtful->contact), doubtful->force.value,
-                        doubtful->force.radius);
-        return attempt;
+    if (!negative.empty() && !whole_list) {
+        const Enclosure least = smallest->force;
+        std::erase_if(doubtful, [&](const Contender& d) { return (d.force - least).positive(); });
+    }
+    std::string zeros;
+    for (const Contender& d : doubtful) {
+        const Order order = statics.sign(expression(d.contact));
+        if (!order.decided) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("the sign of the {}force in contact {} is not decided with {} bits: {:.3g}, "
+                                       "proved to {:.3g}",
+                                       finite ? "" : "infinitesimal ", name(statics, d.contact), order.bits,
+                                       value(d.contact).value, value(d.contact).radius)};
+        }
+        if (order.sign < 0) {
+            negative.push_back({d.contact, value(d.contact), {}, order.margin});
+        } else if (order.sign > 0) {
+            margin = std::min(margin, order.margin);
+        } else {
+            zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
+        }
     }
     if (negative.empty()) {
-        attempt.decided = OpeningDecision{std::nullopt, margin, statics.rung()};
-        return attempt;
+        if (!zeros.empty()) {
+            return Failure{finite ? FailureKind::tie : FailureKind::undecided,
+                           fmt::format("the {}force is exactly 0, and not for a structural reason, in: {}",
+                                       finite ? "" : "infinitesimal ", zeros)};
+        }
+        return OpeningDecision{std::nullopt, margin, statics.rung()};
     }
-    Attempt<Opening> picked = pick(statics, negative, rule, random_bits);
-    if (!picked.decided) {
-        return {std::nullopt, picked.open_question, picked.kind};
+    Result<Opening> picked = pick(statics, negative, expression, rule, random_bits);
+    if (!picked.ok()) {
+        return picked.failure();
     }
-    Opening opening = *picked.decided;
+    Opening opening = picked.value();
     opening.infinitesimal = !finite;
     if (is_held(statics, opening.contact)) {
         opening.force = value(opening.contact);
         opening.direction = opening.force.value < 0 ? +1 : -1;
     }
-    attempt.decided = OpeningDecision{opening, opening.margin, statics.rung()};
-    return attempt;
-}
-
-template <int Dim>
-Attempt<OpeningDecision> attempt_opening(const Statics<Dim>& statics, double sigma, OpeningRule rule,
-                                         ContactId fresh_hold, std::uint64_t random_bits) {
-    auto finite = stage(
-        statics, true, [&](ContactId l) { return statics.force(l, sigma); }, rule, fresh_hold, random_bits);
-    if (!finite.decided || finite.decided->opening) {
-        return finite;
-    }
-    auto infinitesimal = stage(
-        statics, false, [&](ContactId l) { return statics.infinitesimal(l); }, rule, fresh_hold, random_bits);
-    if (infinitesimal.decided) {
-        infinitesimal.decided->margin = std::min(infinitesimal.decided->margin, finite.decided->margin);
-    }
-    return infinitesimal;
+    return OpeningDecision{opening, opening.margin, std::max(opening.rung, statics.rung())};
 }
 
 /// Contacts whose finite forces vanish together with that of `opens` for every choice of the coefficients: with the
@@ -221,63 +262,74 @@ template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics,
     return members;
 }
 
-template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics, double sigma, int direction) {
-    Attempt<LoadLimit> attempt;
-    const std::size_t count = statics.structure().contacts().size();
-    ContactId first;
-    double smallest = infinity;
-    for (std::size_t index = 0; index < count; ++index) {
+/// The contacts that could limit: their slopes are not structural zeros.
+template <int Dim> std::vector<ContactId> limiting_candidates(const Statics<Dim>& statics) {
+    std::vector<ContactId> candidates;
+    for (std::size_t index = 0; index < statics.structure().contacts().size(); ++index) {
         const ContactId l(index);
-        if (is_held(statics, l) || statics.slope_is_zero(l)) {
+        if (!is_held(statics, l) && !statics.slope_is_zero(l)) {
+            candidates.push_back(l);
+        }
+    }
+    return candidates;
+}
+
+/// Proved sign of the rate of a force in `direction`: from the enclosure, or from the ladder.
+template <int Dim> Order rate_sign(Statics<Dim>& statics, ContactId l, int direction) {
+    const Enclosure slope = statics.slope(l);
+    Order order{true, slope.positive() ? 1 : -1, slope.margin(), statics.rung(), statics.bits()};
+    if (!slope.decided()) {
+        order = statics.sign(statics.slope_expression(l));
+    }
+    order.sign *= direction;
+    return order;
+}
+
+template <int Dim> Failure open_rate(const Statics<Dim>& statics, ContactId l, const Order& order) {
+    return {FailureKind::undecided,
+            fmt::format("the sign of the slope of the force in contact {} is not decided with {} bits: {:.3g}, proved "
+                        "to {:.3g}",
+                        name(statics, l), order.bits, statics.slope(l).value, statics.slope(l).radius)};
+}
+
+/// Within a class of forces that vanish together: the infinitesimal loads decide which one reaches zero first.
+template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const std::vector<ContactId>& members) {
+    std::vector<Contender> contenders;
+    for (const ContactId l : members) {
+        if (is_held(statics, l)) {
             continue;
         }
-        const double rate = direction * statics.slope(l).value;
-        const double distance = rate < 0 ? statics.force(l, sigma).value / -rate : infinity;
-        if (distance < smallest) {
-            smallest = distance;
-            first = l;
-        }
+        const Enclosure b = statics.slope(l);
+        const Enclosure key =
+            members.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), {std::abs(b.value), b.radius});
+        contenders.push_back({l, key, key, infinity});
     }
-    if (!first.valid()) {
-        for (std::size_t index = 0; index < count; ++index) {
-            const ContactId l(index);
-            if (!is_held(statics, l) && !statics.slope_is_zero(l)) {
-                Enclosure rate = statics.slope(l);
-                rate.value *= direction;
-                if (!rate.positive()) {
-                    attempt.open_question = fmt::format(
-                        "the sign of the slope of the force in contact {} is not decided: {:.3g}, proved to {:.3g}",
-                        name(statics, l), rate.value, rate.radius);
-                    return attempt;
-                }
-            }
-        }
-        attempt.decided = LoadLimit{true, direction * infinity, 0, ContactId(), {}, infinity, statics.rung()};
-        return attempt;
-    }
-    const Enclosure slope = statics.slope(first);
-    if (!slope.decided()) {
-        attempt.open_question =
-            fmt::format("the slope of the force in contact {} is not decided: {:.3g}, proved to {:.3g}",
-                        name(statics, first), slope.value, slope.radius);
-        return attempt;
-    }
-    LoadLimit limit;
-    limit.stress = sigma + direction * smallest;
-    limit.rung = statics.rung();
-    {
-        const Enclosure at_limit = statics.force(first, limit.stress);
-        limit.stress_error =
-            (std::abs(at_limit.value) + at_limit.radius) / (std::abs(slope.value) - slope.radius) * (1 + 8 * u);
-    }
-    limit.margin = slope.margin();
-    limit.tie_class = tie_class(statics, first);
-    std::vector<unsigned char> in_class(count, 0);
+    const auto expression = [&](ContactId l) {
+        ForceExpression e = statics.infinitesimal_expression(l);
+        e.divisor = ForceExpression::Divisor::part;
+        e.divisor_part = statics.slope_expression(l).part;
+        return e;
+    };
+    return pick(statics, contenders, expression, OpeningRule::most_negative, 0);
+}
+
+/// What a pass over the other contacts found out about `first`.
+struct Rivals {
+    std::optional<ContactId> earlier; ///< proved to vanish before
+    std::string tied;                 ///< contacts that vanish at the same load, or cannot be told from it
+    double margin = infinity;
+};
+
+/// Everything outside the class is still positive at the limit, hence on the whole interval (forces are affine).
+template <int Dim>
+Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction, ContactId first,
+                              const LoadLimit& limit) {
+    Rivals rivals;
+    std::vector<unsigned char> in_class(statics.structure().contacts().size(), 0);
     for (const ContactId l : limit.tie_class) {
         in_class[l.index()] = 1;
     }
-    // Everything else is still positive at the limit, hence on the whole interval (forces are affine).
-    for (std::size_t index = 0; index < count; ++index) {
+    for (std::size_t index = 0; index < in_class.size(); ++index) {
         const ContactId l(index);
         if (in_class[index] != 0 || is_held(statics, l) || statics.is_structural_zero(l)) {
             continue;
@@ -285,61 +337,33 @@ template <int Dim> Attempt<LoadLimit> attempt_limit(const Statics<Dim>& statics,
         Enclosure f = statics.force(l, limit.stress);
         f.radius += std::abs(statics.slope(l).value) * limit.stress_error * (1 + 8 * u) +
                     statics.slope(l).radius * limit.stress_error;
-        limit.margin = std::min(limit.margin, f.margin());
-        if (!f.positive()) {
-            attempt.kind = FailureKind::tie;
-            attempt.open_question =
-                fmt::format("the forces in the contacts {} and {} vanish at loads that are not ordered: at sigma = "
-                            "{:.17g} the second is "
-                            "{:.3g}, proved to {:.3g}",
-                            name(statics, first), name(statics, l), limit.stress, f.value, f.radius);
-            return attempt;
+        if (f.positive()) {
+            rivals.margin = std::min(rivals.margin, f.margin());
+            continue;
+        }
+        if (statics.slope_is_zero(l)) {
+            continue; // positive at sigma, and constant
+        }
+        const Order rate = rate_sign(statics, l, direction);
+        if (!rate.decided) {
+            return open_rate(statics, l, rate);
+        }
+        if (rate.sign >= 0) {
+            continue;
+        }
+        const Order order =
+            statics.compare(statics.distance_expression(l, sigma), statics.distance_expression(first, sigma));
+        if (order.decided && order.sign < 0) {
+            rivals.earlier = l;
+            return rivals;
+        }
+        if (!order.decided || order.sign == 0) {
+            rivals.tied += fmt::format(", {} ({})", name(statics, l), reach(order));
+        } else {
+            rivals.margin = std::min(rivals.margin, order.margin);
         }
     }
-    // Within the class: the infinitesimal loads decide which force reaches zero first.
-    ContactId chosen;
-    Enclosure best{infinity, 0};
-    for (int pass = 0; pass < 2; ++pass) {
-        for (const ContactId l : limit.tie_class) {
-            const Enclosure b = statics.slope(l);
-            if (is_held(statics, l)) {
-                continue;
-            }
-            Enclosure magnitude{std::abs(b.value), b.radius};
-            const Enclosure key =
-                limit.tie_class.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), magnitude);
-            if (pass == 0) {
-                if (!chosen.valid() || key.value < best.value) {
-                    best = key;
-                    chosen = l;
-                }
-            } else if (l != chosen) {
-                const Enclosure difference = key - best;
-                limit.margin = std::min(limit.margin, difference.margin());
-                if (!difference.positive()) {
-                    attempt.kind = FailureKind::tie;
-                    attempt.open_question =
-                        fmt::format("the infinitesimal loads do not order the contacts {} and {} of a structural tie "
-                                    "class of {}: the keys differ by {:.3g}, proved to {:.3g}",
-                                    name(statics, chosen), name(statics, l), limit.tie_class.size(), difference.value,
-                                    difference.radius);
-                    return attempt;
-                }
-            }
-        }
-    }
-    limit.opens = chosen;
-    attempt.decided = limit;
-    return attempt;
-}
-
-/// Tries in double, then in double-double; what is still open then is the failure.
-template <int Dim, class Try> auto climb_until_decided(Statics<Dim>& statics, Try attempt_once) {
-    auto attempt = attempt_once();
-    while (!attempt.decided && statics.climb()) {
-        attempt = attempt_once();
-    }
-    return attempt;
+    return rivals;
 }
 
 } // namespace
@@ -347,20 +371,108 @@ template <int Dim, class Try> auto climb_until_decided(Statics<Dim>& statics, Tr
 template <int Dim>
 Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
                                        std::uint64_t random_bits) {
-    auto attempt =
-        climb_until_decided(statics, [&] { return attempt_opening(statics, sigma, rule, fresh_hold, random_bits); });
-    if (!attempt.decided) {
-        return Failure{attempt.kind, attempt.open_question};
+    auto finite = stage(
+        statics, true, [&](ContactId l) { return statics.force(l, sigma); },
+        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, fresh_hold, random_bits);
+    if (!finite.ok() || finite.value().opening) {
+        return finite;
     }
-    return *attempt.decided;
+    auto infinitesimal = stage(
+        statics, false, [&](ContactId l) { return statics.infinitesimal(l); },
+        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, fresh_hold, random_bits);
+    if (infinitesimal.ok()) {
+        infinitesimal.value().margin = std::min(infinitesimal.value().margin, finite.value().margin);
+    }
+    return infinitesimal;
 }
 
 template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction) {
-    auto attempt = climb_until_decided(statics, [&] { return attempt_limit(statics, sigma, direction); });
-    if (!attempt.decided) {
-        return Failure{attempt.kind, attempt.open_question};
+    const std::vector<ContactId> candidates = limiting_candidates(statics);
+    ContactId first;
+    double smallest = infinity;
+    for (const ContactId l : candidates) {
+        const double rate = direction * statics.slope(l).value;
+        const double distance = rate < 0 ? statics.force(l, sigma).value / -rate : infinity;
+        if (distance < smallest) {
+            smallest = distance;
+            first = l;
+        }
     }
-    return *attempt.decided;
+    if (!first.valid()) { // as far as rounded numbers tell
+        for (const ContactId l : candidates) {
+            const Order rate = rate_sign(statics, l, direction);
+            if (!rate.decided) {
+                return open_rate(statics, l, rate);
+            }
+            if (rate.sign < 0) {
+                first = l;
+                break;
+            }
+        }
+        if (!first.valid()) {
+            return LoadLimit{true, direction * infinity, 0, ContactId(), {}, infinity, statics.rung()};
+        }
+    }
+    // Whoever is proved to vanish earlier takes the place of the first guess, at most once per contact.
+    for (std::size_t restart = 0; restart <= candidates.size(); ++restart) {
+        const Order rate = rate_sign(statics, first, direction);
+        if (!rate.decided) {
+            return open_rate(statics, first, rate);
+        }
+        if (rate.sign >= 0) { // the guess was wrong: any other that decreases
+            ContactId other;
+            for (const ContactId l : candidates) {
+                const Order of_l = rate_sign(statics, l, direction);
+                if (!of_l.decided) {
+                    return open_rate(statics, l, of_l);
+                }
+                if (of_l.sign < 0) {
+                    other = l;
+                    break;
+                }
+            }
+            if (!other.valid()) {
+                return LoadLimit{true, direction * infinity, 0, ContactId(), {}, infinity, statics.rung()};
+            }
+            first = other;
+            continue;
+        }
+        LoadLimit limit;
+        const Enclosure slope = statics.slope(first);
+        limit.stress = sigma + direction * (statics.force(first, sigma).value / std::abs(slope.value));
+        const Enclosure at_limit = statics.force(first, limit.stress);
+        limit.stress_error = slope.decided() ? (std::abs(at_limit.value) + at_limit.radius) /
+                                                   (std::abs(slope.value) - slope.radius) * (1 + 8 * u)
+                                             : infinity;
+        limit.margin = rate.margin;
+        limit.tie_class = tie_class(statics, first);
+        const Result<Rivals> rivals = look_at_rivals(statics, sigma, direction, first, limit);
+        if (!rivals.ok()) {
+            return rivals.failure();
+        }
+        if (rivals.value().earlier) {
+            first = *rivals.value().earlier;
+            continue;
+        }
+        if (!rivals.value().tied.empty()) {
+            return Failure{FailureKind::tie,
+                           fmt::format("the forces in the contacts {}{} vanish at one load, sigma = {:.17g}",
+                                       name(statics, first), rivals.value().tied, limit.stress)};
+        }
+        const Result<Opening> chosen = first_of_class(statics, limit.tie_class);
+        if (!chosen.ok()) {
+            return Failure{chosen.failure().kind, fmt::format("structural tie class of {} contacts: {}",
+                                                              limit.tie_class.size(), chosen.failure().message)};
+        }
+        limit.opens = chosen.value().contact;
+        limit.margin = std::min(limit.margin, rivals.value().margin);
+        if (limit.tie_class.size() > 1) {
+            limit.margin = std::min(limit.margin, chosen.value().margin);
+        }
+        limit.rung = statics.rung();
+        return limit;
+    }
+    return Failure{FailureKind::undecided, "the comparisons of the limit loads contradict each other"};
 }
 
 template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t);

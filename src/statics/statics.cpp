@@ -30,22 +30,20 @@ std::vector<int> nonzero_rows(const std::vector<double>& force) {
     return rows;
 }
 
-bool is_zero(const std::vector<double>& x) {
-    return std::all_of(x.begin(), x.end(), [](double c) { return c == 0; });
-}
-
 } // namespace
 
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-                      const Factorisation& factorisation, const InverseBound& inverse)
-    : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
-      sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]) {
+                      const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options)
+    : structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
+      sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
+      ladder_(packing, structure, factorisation, inverse, options) {
     const DofMap<Dim>& dofs = structure.dofs();
-    right_hand_side_ = {on_dofs(load.external_force(packing), dofs), on_dofs(load.unit_force(packing), dofs),
-                        on_dofs(load.infinitesimal, dofs)};
+    ladder_.add(on_dofs(load.external_force(packing), dofs));
+    ladder_.add(on_dofs(load.unit_force(packing), dofs));
+    ladder_.add(on_dofs(load.infinitesimal, dofs));
     loaded_rows_ = nonzero_rows(on_dofs(load.fixed_force(packing), dofs));
-    const std::vector<int> wall = nonzero_rows(right_hand_side_[unit]);
+    const std::vector<int> wall = nonzero_rows(ladder_.force(unit));
     std::vector<int> all = loaded_rows_;
     all.insert(all.end(), wall.begin(), wall.end());
     loaded_wall_row_ = wall.empty() ? -1 : wall.front();
@@ -53,34 +51,17 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
     backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), all);
 }
 
-template <int Dim> const ForceSolution& Statics<Dim>::solution(Part part) const {
-    std::optional<ForceSolution>& slot = solution_[part];
-    if (!slot) {
-        const std::vector<double>& force = right_hand_side_[part];
-        if (is_zero(force)) {
-            slot.emplace(); // exact, nothing to solve
-            slot->value.assign(force.size(), 0.0);
-        } else {
-            slot = solve_forces(*structure_, *factorisation_, *inverse_, force);
-            if (rung_ == Rung::double_double) {
-                refine_double_double(*slot, *extended_, *structure_, *factorisation_, *inverse_, force);
-            }
-        }
-    }
-    return *slot;
-}
-
 template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
     const std::size_t l = contact.index();
     if (backbone_[l] == 0) {
         return {0, 0};
     }
-    const ForceSolution& a = solution(present);
+    const ForceSolution& a = ladder_.solution(present);
     if (sigma == sigma_) {
         const double low = a.low.empty() ? 0.0 : a.low[l];
         return {a.value[l], a.bound + std::abs(low) * (1 + 2 * u)};
     }
-    const ForceSolution& b = solution(unit);
+    const ForceSolution& b = ladder_.solution(unit);
     const dd_real distance = dd_real(sigma) - sigma_;
     const auto get = [l](const ForceSolution& s) { return dd_real(s.value[l], s.low.empty() ? 0.0 : s.low[l]); };
     const dd_real sum = get(a) + get(b) * distance;
@@ -105,12 +86,12 @@ template <int Dim> Enclosure Statics<Dim>::slope(ContactId contact) const {
     if (slope_is_zero(contact)) {
         return {0, 0};
     }
-    const ForceSolution& b = solution(unit);
+    const ForceSolution& b = ladder_.solution(unit);
     return {b.value[l], b.bound + (b.low.empty() ? 0.0 : std::abs(b.low[l]) * (1 + 2 * u))};
 }
 
 template <int Dim> Enclosure Statics<Dim>::infinitesimal(ContactId contact) const {
-    const ForceSolution& g = solution(infinitesimal_part);
+    const ForceSolution& g = ladder_.solution(infinitesimal_part);
     const std::size_t l = contact.index();
     return {g.value[l], g.bound + (g.low.empty() ? 0.0 : std::abs(g.low[l]) * (1 + 2 * u))};
 }
@@ -119,33 +100,67 @@ template <int Dim> int Statics<Dim>::backbone_count() const {
     return static_cast<int>(std::count_if(backbone_.begin(), backbone_.end(), [](unsigned char c) { return c != 0; }));
 }
 
-template <int Dim> bool Statics<Dim>::climb() {
-    if (rung_ != Rung::double_bound) {
-        return false;
+template <int Dim> ForceExpression Statics<Dim>::force_expression(ContactId contact, double sigma) const {
+    ForceExpression e;
+    e.contact = contact;
+    e.part = present;
+    e.slope_part = unit;
+    e.at = sigma;
+    e.from = sigma_;
+    return e;
+}
+
+template <int Dim> ForceExpression Statics<Dim>::slope_expression(ContactId contact) const {
+    ForceExpression e;
+    e.contact = contact;
+    e.part = unit;
+    return e;
+}
+
+template <int Dim> ForceExpression Statics<Dim>::infinitesimal_expression(ContactId contact) const {
+    ForceExpression e;
+    e.contact = contact;
+    e.part = infinitesimal_part;
+    return e;
+}
+
+template <int Dim> ForceExpression Statics<Dim>::distance_expression(ContactId contact, double sigma) const {
+    ForceExpression e = force_expression(contact, sigma);
+    e.divisor = ForceExpression::Divisor::part;
+    e.divisor_part = unit;
+    return e;
+}
+
+template <int Dim> Order Statics<Dim>::sign(const ForceExpression& a) {
+    Order order = ladder_.sign(a);
+    while (!order.decided && ladder_.climb()) {
+        order = ladder_.sign(a);
     }
-    extended_ = extended_contact_matrix(*packing_, *structure_);
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (solution_[k] && !is_zero(right_hand_side_[k])) {
-            refine_double_double(*solution_[k], *extended_, *structure_, *factorisation_, *inverse_,
-                                 right_hand_side_[k]);
-        }
+    return order;
+}
+
+template <int Dim> Order Statics<Dim>::compare(const ForceExpression& a, const ForceExpression& b) {
+    Order order = ladder_.compare(a, b);
+    while (!order.decided && ladder_.climb()) {
+        order = ladder_.compare(a, b);
     }
-    rung_ = Rung::double_double;
-    return true;
+    return order;
 }
 
 template <int Dim> double Statics<Dim>::bound(double sigma) const {
-    return solution(present).bound + (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * solution(unit).bound);
+    return ladder_.solution(present).bound +
+           (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * ladder_.solution(unit).bound);
 }
 
 template <int Dim> double Statics<Dim>::residual(double sigma) const {
-    return solution(present).residual + (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * solution(unit).residual);
+    return ladder_.solution(present).residual +
+           (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * ladder_.solution(unit).residual);
 }
 
 template <int Dim> std::vector<double> Statics<Dim>::external_force(double sigma) const {
-    std::vector<double> force = right_hand_side_[present];
+    std::vector<double> force = ladder_.force(present);
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
-        force[mu] += (sigma - sigma_) * right_hand_side_[unit][mu];
+        force[mu] += (sigma - sigma_) * ladder_.force(unit)[mu];
     }
     return force;
 }

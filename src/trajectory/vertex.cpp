@@ -1,6 +1,7 @@
 #include "trajectory/vertex.hpp"
 
 #include <isostat/contact/contact_set.hpp>
+#include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <fmt/format.h>
 
@@ -37,9 +38,8 @@ template <int Dim> bool Vertex<Dim>::factors_are_worn() const {
 
 template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
     if (inverse.verdict != Verdict::proved) {
-        return Failure{FailureKind::undecided,
-                       "no bound of the inverse of the contact matrix was proved in double precision: no sign "
-                       "of a force can be decided"};
+        return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved: no sign "
+                                               "of a force can be decided"};
     }
     if (enclosure.verdict != Verdict::proved) {
         enclosure = enclose_vertex_double_double(packing, structure, factorisation, inverse);
@@ -63,6 +63,10 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
         return structure.failure();
     }
     std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, cache));
+    if (vertex->inverse.verdict != Verdict::proved) { // small structures: with as many bits as it takes
+        vertex->inverse = bound_inverse_multiprecision(vertex->packing, vertex->structure);
+        vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->inverse);
+    }
     if (auto failure = vertex->lacking()) {
         return *failure;
     }

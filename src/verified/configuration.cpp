@@ -1,3 +1,6 @@
+#include "verified/extended_norm.hpp"
+#include "verified/norm.hpp"
+
 #include <isostat/verified/configuration.hpp>
 
 #include <qd/dd_real.h>
@@ -60,12 +63,12 @@ dd_real gap_dd(const Packing<Dim>& packing, const std::vector<double>& correctio
     const double ri = packing.radius[static_cast<std::size_t>(contact.i)];
     switch (contact.kind) {
     case ContactKind::disk_disk: {
-        dd_real square = 0.0;
+        std::array<dd_real, static_cast<std::size_t>(Dim)> d;
         for (int a = 0; a < Dim; ++a) {
-            const dd_real d = at(Dim * contact.j + a) - at(Dim * contact.i + a);
-            square += d * d;
+            d[static_cast<std::size_t>(a)] = at(Dim * contact.j + a) - at(Dim * contact.i + a);
         }
-        return sqrt(square) - (dd_real(ri) + packing.radius[static_cast<std::size_t>(contact.j)]);
+        const int exponent = normalise(d);
+        return ldexp(length(d), exponent) - (dd_real(ri) + packing.radius[static_cast<std::size_t>(contact.j)]);
     }
     case ContactKind::lower_wall: return at(Dim * contact.i + contact.j) - ri;
     case ContactKind::upper_wall:
@@ -90,7 +93,7 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
                                const InverseBound& inverse) {
     VertexEnclosure vertex;
     vertex.radius = std::numeric_limits<double>::infinity();
-    double sum = 0;
+    std::vector<double> bounds;
     double worst_ratio = 0;
     for (const Contact& contact : structure.contacts()) {
         const double h = gap(packing, contact);
@@ -100,15 +103,14 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             worst_ratio = std::max(worst_ratio, std::abs(h) / d);
         }
         // |F| <= |h| (1 + |h|/2D), and |h|/D is checked below; the computed gap is off by less than 8u D.
-        const double bound = std::abs(h) * 1.001 + 8 * u * d;
-        sum += bound * bound;
+        bounds.push_back(std::abs(h) * 1.001 + 8 * u * d + underflow_unit);
     }
     if (inverse.verdict != Verdict::proved || !(worst_ratio < 1e-3)) {
         return vertex;
     }
     const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
     const double radius =
-        kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), inverse_norm, lipschitz(packing, structure.contacts()));
+        kantorovich_radius(norm_above(bounds), inverse_norm, lipschitz(packing, structure.contacts()));
     if (radius >= 0) {
         vertex.verdict = Verdict::proved;
         vertex.radius = radius;
@@ -140,28 +142,24 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
     const auto n = static_cast<std::size_t>(structure.size());
     std::vector<double> correction(packing.q.size(), 0.0);
     std::vector<double> f(n);
+    std::vector<double> bounds(n);
     constexpr int max_iterations = 6;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
-        double sum = 0;
         for (std::size_t l = 0; l < n; ++l) {
             const Contact& contact = structure.contacts()[l];
             const dd_real value = quadratic_dd(packing, correction, contact);
             f[l] = value.x[0];
-            const double bound =
-                std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact) + coordinate_unit * largest;
-            sum += bound * bound;
+            bounds[l] = std::abs(f[l]) * (1 + 2 * u) + 16 * dd_unit * target(packing, contact) +
+                        coordinate_unit * largest + 16 * underflow_unit;
         }
-        double shift = 0;
-        for (const double c : correction) {
-            shift += c * c;
-        }
-        shift = std::sqrt(shift) * (1 + 1e-10);
+        std::vector<double> shifts(correction.size());
+        std::transform(correction.begin(), correction.end(), shifts.begin(), [](double c) { return std::abs(c); });
+        const double shift = norm_above(shifts);
         // |DF^-1| at the corrected point: |DF^-1(q)| / (1 - |DF^-1(q)| K |correction|).
         const double at_q = 1 / inverse.sigma_min * (1 + 2 * worst_ratio + 8 * u);
         const double lost = at_q * k * shift;
-        const double radius = lost < 0.5
-                                  ? kantorovich_radius(std::sqrt(sum) * (1 + 1e-10), at_q / (1 - lost) * (1 + 1e-10), k)
-                                  : std::numeric_limits<double>::quiet_NaN();
+        const double radius = lost < 0.5 ? kantorovich_radius(norm_above(bounds), at_q / (1 - lost) * (1 + 1e-10), k)
+                                         : std::numeric_limits<double>::quiet_NaN();
         if (radius >= 0 && radius < vertex.radius) {
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;

@@ -1,3 +1,6 @@
+#include "verified/extended_norm.hpp"
+#include "verified/norm.hpp"
+
 #include <isostat/verified/force_solution.hpp>
 
 #include <qd/dd_real.h>
@@ -12,6 +15,15 @@ namespace {
 constexpr double u = 0x1p-53;
 /// Relative error that is granted to one double-double operation of libqd (its own bounds are 2^-104 to 2^-102).
 constexpr double dd_unit = 0x1p-98;
+
+/// Largest magnitude; NaN when there is one.
+double max_abs(const std::vector<double>& x) {
+    double largest = 0;
+    for (const double c : x) {
+        largest = std::isnan(c) ? c : std::max(largest, std::abs(c));
+    }
+    return largest;
+}
 
 /// Upper bound of the 2-norm of an exact residual, and the part of it that is rounding of its evaluation.
 struct Residual {
@@ -40,23 +52,15 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
             ++terms[i];
         }
     }
-    double sum = 0;
-    double rounding = 0;
+    // Entries and products that underflow err by an absolute amount besides.
+    const double lost = underflow_unit * (1 + max_abs(x));
+    std::vector<double>& unknown = size;
+    std::vector<double> bound(n);
     for (std::size_t i = 0; i < n; ++i) {
-        const double unknown = terms[i] * u * 1.001 * size[i];
-        const double bound = std::abs(r[i]) + unknown;
-        sum += bound * bound;
-        rounding += unknown * unknown;
+        unknown[i] = terms[i] * (u * 1.001 * size[i] + lost);
+        bound[i] = std::abs(r[i]) + unknown[i];
     }
-    return {std::sqrt(sum) * (1 + 1e-10), std::sqrt(rounding)};
-}
-
-double max_abs(const std::vector<double>& x) {
-    double largest = 0;
-    for (const double c : x) {
-        largest = std::max(largest, std::abs(c));
-    }
-    return largest;
+    return {norm_above(bound), norm_above(unknown)};
 }
 
 } // namespace
@@ -98,17 +102,16 @@ ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const Isosta
             continue; // entries +-1 are exact
         }
         std::array<dd_real, Dim> d;
-        dd_real square = 0.0;
         for (int a = 0; a < Dim; ++a) {
-            const auto axis = static_cast<std::size_t>(a);
-            d[axis] = dd_real(packing.coordinate(DiskId(contact.j), a)) - packing.coordinate(DiskId(contact.i), a);
-            square += d[axis] * d[axis];
+            d[static_cast<std::size_t>(a)] =
+                dd_real(packing.coordinate(DiskId(contact.j), a)) - packing.coordinate(DiskId(contact.i), a);
         }
-        const dd_real length = sqrt(square);
+        normalise(d);
+        const dd_real distance = length(d);
         for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
             const auto s = static_cast<std::size_t>(e);
             const int coordinate = dofs.coordinate_of(h.row[s]);
-            dd_real value = d[static_cast<std::size_t>(coordinate % Dim)] / length;
+            dd_real value = d[static_cast<std::size_t>(coordinate % Dim)] / distance;
             if (coordinate / Dim == contact.j) {
                 value = -value;
             }
@@ -135,6 +138,10 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
     std::vector<dd_real> r(n);
     std::vector<double> correction(n);
     std::vector<double> size(n);
+    std::vector<double> terms(n, 0.0); // entries of each row
+    for (const int row : h.row) {
+        ++terms[static_cast<std::size_t>(row)];
+    }
     double best = std::numeric_limits<double>::infinity();
     constexpr int max_iterations = 8; // each gains the factor cond * u; stagnation ends the loop before
     for (int k = 0; k < max_iterations; ++k) {
@@ -150,16 +157,19 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
                 size[i] += std::abs(matrix.high[s] * x[j].x[0]);
             }
         }
-        double sum = 0;
         double largest = 0;
-        const double terms = 2 * static_cast<double>(n); // more than the entries of any row
+        double largest_x = 0;
+        for (const dd_real& c : x) {
+            largest_x = std::max(largest_x, std::abs(c.x[0])); // a NaN is in the residual as well
+        }
         for (std::size_t i = 0; i < n; ++i) {
             correction[i] = r[i].x[0];
             largest = std::max(largest, std::abs(correction[i]));
-            const double bound = std::abs(correction[i]) * (1 + 2 * u) + terms * dd_unit * size[i];
-            sum += bound * bound;
+            // The exact products of libqd lose their low parts below 2^-1022.
+            size[i] = std::abs(correction[i]) * (1 + 2 * u) +
+                      (terms[i] + 8) * (dd_unit * size[i] + 16 * underflow_unit * (1 + largest_x));
         }
-        const double bound = std::sqrt(sum) * (1 + 1e-10) / inverse.sigma_min * (1 + 4 * u);
+        const double bound = norm_above(size) / inverse.sigma_min * (1 + 4 * u);
         if (!(bound < best / 2)) {
             break; // stagnation at the rounding of double-double; the previous iterate stands
         }
@@ -177,6 +187,7 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
         }
     }
     solution.rung = Rung::double_double;
+    solution.bits = 106;
 }
 
 template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&);

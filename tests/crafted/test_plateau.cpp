@@ -1,8 +1,10 @@
 // Counts of foreign packings against the gap threshold.
 
+#include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/preparation/preparation.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <boost/test/unit_test.hpp>
 
@@ -30,6 +32,23 @@ void shake(Packing<2>& packing, double size, std::uint64_t seed) {
     }
 }
 
+/// gap <= threshold, in rationals. The sum of the radii and the threshold is positive.
+bool closer(const Packing<2>& packing, const isostat::Contact& c, double threshold) {
+    const auto number = [](double x) { return Number::from_double(x); };
+    const auto i = static_cast<std::size_t>(c.i), j = static_cast<std::size_t>(c.j);
+    const Number r = number(packing.radius[i]) + number(threshold);
+    if (c.kind == isostat::ContactKind::lower_wall) {
+        return (number(packing.q[2 * i + j]) - r).sign() <= 0;
+    }
+    if (c.kind == isostat::ContactKind::upper_wall) {
+        return (number(packing.length(c.j)) - number(packing.q[2 * i + j]) - r).sign() <= 0;
+    }
+    const Number x = number(packing.q[2 * j]) - number(packing.q[2 * i]);
+    const Number y = number(packing.q[2 * j + 1]) - number(packing.q[2 * i + 1]);
+    const Number s = r + number(packing.radius[j]);
+    return (x * x + y * y - s * s).sign() <= 0;
+}
+
 Packing<2> example(const std::string& name) {
     return approximate(read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing);
 }
@@ -51,15 +70,15 @@ BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
         // it.
         BOOST_TEST(std::abs(answer.ranges[0].last - (std::sqrt(1.64) - 1.2)) < 6 * noise);
         BOOST_TEST(std::abs(answer.deepest_overlap) < 6 * noise);
-        BOOST_TEST(answer.steps.back().hyperstaticity == 1);
+        BOOST_TEST(answer.steps.back().backbone.hyperstaticity == 1);
         const PlateauStep& last = answer.steps[answer.steps.size() - 2];
         BOOST_TEST(last.rattlers == 1);
-        BOOST_TEST(last.dof_count == 8);
-        BOOST_TEST(last.contact_count == 8);
-        BOOST_TEST(last.hyperstaticity == 0);
-        BOOST_TEST(last.mechanisms == 0);
-        BOOST_TEST((last.isostatic == Verdict::proved));
-        BOOST_TEST((answer.steps.front().isostatic == Verdict::refuted));
+        BOOST_TEST(last.backbone.dof_count == 8);
+        BOOST_TEST(last.backbone.contact_count == 8);
+        BOOST_TEST(last.backbone.hyperstaticity == 0);
+        BOOST_TEST(last.backbone.mechanisms == 0);
+        BOOST_TEST((last.backbone.isostatic == Verdict::proved));
+        BOOST_TEST((answer.steps.front().backbone.isostatic == Verdict::refuted));
     }
 }
 
@@ -77,8 +96,8 @@ BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
     BOOST_REQUIRE_EQUAL(answer.ranges.size(), 1u);
     BOOST_TEST(answer.ranges[0].first < 1e-6);
     BOOST_TEST(std::abs(answer.ranges[0].last - 1e-3) < 1e-6);
-    BOOST_TEST(answer.steps.back().hyperstaticity == 2);
-    BOOST_TEST((answer.steps.back().isostatic == Verdict::refuted));
+    BOOST_TEST(answer.steps.back().backbone.hyperstaticity == 2);
+    BOOST_TEST((answer.steps.back().backbone.isostatic == Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
@@ -87,8 +106,8 @@ BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
     const Plateau answer = plateau(packing, {1e-6, 1e-5, 1e-4, 1e-3});
     BOOST_TEST(answer.ranges.empty());
     for (const PlateauStep& step : answer.steps) {
-        BOOST_TEST(step.hyperstaticity == 5);
-        BOOST_TEST(step.mechanisms == 0);
+        BOOST_TEST(step.backbone.hyperstaticity == 5);
+        BOOST_TEST(step.backbone.mechanisms == 0);
     }
 }
 
@@ -100,9 +119,9 @@ BOOST_AUTO_TEST_CASE(counts_agree_with_the_exact_inspection_of_the_examples) {
         BOOST_REQUIRE(inspection.ok());
         const Plateau answer = plateau(approximate(exact), {1e-12});
         BOOST_TEST_CONTEXT(name) {
-            BOOST_TEST(answer.steps[0].rank == inspection.value().rank);
-            BOOST_TEST(answer.steps[0].hyperstaticity == inspection.value().hyperstaticity);
-            BOOST_TEST(answer.steps[0].mechanisms == inspection.value().mechanisms);
+            BOOST_TEST(answer.steps[0].backbone.rank == inspection.value().rank);
+            BOOST_TEST(answer.steps[0].backbone.hyperstaticity == inspection.value().hyperstaticity);
+            BOOST_TEST(answer.steps[0].backbone.mechanisms == inspection.value().mechanisms);
         }
     }
 }
@@ -122,11 +141,112 @@ BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
     BOOST_TEST(answer.ranges[0].first < 1e-8);
     BOOST_TEST(answer.ranges[0].last > 1e-6);
     for (const PlateauStep& step : answer.steps) {
-        if (step.isostatic == Verdict::proved) {
+        if (step.backbone.isostatic == Verdict::proved) {
             BOOST_TEST(step.rattlers == report.rattlers);
-            BOOST_TEST(step.contact_count == 2 * (100 - report.rattlers) + 2);
+            BOOST_TEST(step.backbone.contact_count == 2 * (100 - report.rattlers) + 2);
         }
     }
+}
+
+BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
+    std::mt19937_64 random(21);
+    int proved = 0, hyperstatic = 0, skipped = 0;
+    for (int sample = 0; sample < 40; ++sample) {
+        // Disks on a lattice, moved and resized: some lists are isostatic, some have rattlers, some are special.
+        Packing<2> packing;
+        packing.walls = sample % 2 == 0 ? isostat::Walls<2>::box() : isostat::Walls<2>::none();
+        const double noise = sample % 4 < 2 ? 0.03 : 0;
+        for (int i = 0; i < 16; ++i) {
+            packing.q.push_back(0.5 + i % 4 + noise * static_cast<double>(random() % 1000) / 1000);
+            packing.q.push_back(0.5 + i / 4 + noise * static_cast<double>(random() % 1000) / 1000); // NOLINT
+            packing.radius.push_back(0.5 - (random() % 3 == 0 ? 0.01 * static_cast<double>(random() % 7) : 0));
+        }
+        packing.q.insert(packing.q.end(), {4, 4});
+        if (sample % 7 == 0) {
+            packing.fixed.assign(16, 0);
+            packing.fixed[3] = packing.fixed[12] = 1;
+        }
+        const Plateau answer = plateau(packing, -0.05, 0.5, 0);
+        skipped += 2 * static_cast<int>(answer.steps.size()) - answer.ranks_computed;
+        for (const PlateauStep& step : answer.steps) {
+            std::vector<isostat::Contact> contacts;
+            for (int i = 0; i < 16; ++i) {
+                for (int j = i + 1; j < 16; ++j) {
+                    contacts.push_back({isostat::ContactKind::disk_disk, i, j});
+                }
+                for (int a = 0; sample % 2 == 0 && a < 2; ++a) {
+                    contacts.push_back({isostat::ContactKind::lower_wall, i, a});
+                    contacts.push_back({isostat::ContactKind::upper_wall, i, a});
+                }
+            }
+            std::erase_if(contacts, [&](const isostat::Contact& c) {
+                const bool fixed = packing.is_fixed(isostat::DiskId(static_cast<std::size_t>(c.i)));
+                const bool partner = c.kind == isostat::ContactKind::disk_disk
+                                         ? packing.is_fixed(isostat::DiskId(static_cast<std::size_t>(c.j)))
+                                         : c.kind == isostat::ContactKind::lower_wall;
+                return !closer(packing, c, step.threshold) || (fixed && partner);
+            });
+            const auto all = isostat::count_contacts(packing, contacts);
+            BOOST_REQUIRE_EQUAL(step.candidate_count, static_cast<int>(contacts.size()));
+            BOOST_REQUIRE_EQUAL(step.all.rank, all.rank);
+            BOOST_REQUIRE_EQUAL(step.all.dof_count, all.dof_count);
+            const auto backbone = inspect_contacts(exact_copy(packing), contacts);
+            int left = 0;
+            std::vector<isostat::Contact> carrying;
+            Packing<2> rest = packing;
+            rest.fixed.resize(16, 0);
+            for (std::size_t l = 0; l < contacts.size(); ++l) {
+                if (backbone.carrying[l] != 0) {
+                    carrying.push_back(contacts[l]);
+                }
+            }
+            for (std::size_t i = 0; i < 16; ++i) {
+                const bool rattler = backbone.hold[i] == DiskHold::rattler;
+                left += rattler ? 1 : 0;
+                rest.fixed[i] = rattler || rest.fixed[i] != 0 ? 1 : 0;
+            }
+            const auto counting = isostat::count_contacts(rest, carrying);
+            BOOST_REQUIRE_EQUAL(step.rattlers, left);
+            BOOST_REQUIRE_EQUAL(step.backbone.dof_count, counting.dof_count);
+            BOOST_REQUIRE_EQUAL(step.backbone.contact_count, counting.contact_count);
+            BOOST_REQUIRE_EQUAL(step.backbone.rank, counting.rank);
+            const bool inside = std::any_of(answer.ranges.begin(), answer.ranges.end(), [&](const PlateauRange& r) {
+                return r.first <= step.threshold && (step.threshold < r.last || r.open);
+            });
+            BOOST_REQUIRE_EQUAL(step.backbone.isostatic == Verdict::proved, inside);
+            proved += inside ? 1 : 0;
+            hyperstatic += step.backbone.hyperstaticity > 0 ? 1 : 0;
+        }
+    }
+    BOOST_TEST_MESSAGE("isostatic " << proved << ", hyperstatic " << hyperstatic << ", eliminations saved " << skipped);
+    BOOST_TEST(proved > 5);
+    BOOST_TEST(hyperstatic > 20);
+    BOOST_TEST(skipped > 50);
+}
+
+BOOST_AUTO_TEST_CASE(equal_gaps_enter_together) {
+    // Four tangent disks in their box: 12 gaps of exactly 0, one change of the list, h = 2.
+    Packing<2> packing;
+    packing.radius = {0.5, 0.5, 0.5, 0.5};
+    packing.q = {0.5, 0.5, 1.5, 0.5, 0.5, 1.5, 1.5, 1.5, 2, 2};
+    const Plateau answer = plateau(packing, -1e-300, 1e-300, 0);
+    BOOST_TEST(answer.changes == 1);
+    BOOST_TEST(answer.candidates == 12);
+    BOOST_REQUIRE_EQUAL(answer.steps.size(), 3u);
+    BOOST_TEST(answer.steps[1].threshold == 0.0);
+    BOOST_TEST(answer.steps[0].candidate_count == 0);
+    BOOST_TEST(answer.steps[1].backbone.hyperstaticity == 2);
+    BOOST_TEST(answer.ranges.empty());
+}
+
+BOOST_AUTO_TEST_CASE(lengths_beyond_the_squares_of_doubles_are_refused) {
+    Packing<2> packing = example("two_disks.toml");
+    packing.q[0] = 1e200;
+    BOOST_CHECK_THROW((void)plateau(packing, {0.1}), isostat::Error);
+    packing = example("two_disks.toml");
+    packing.radius[0] = 1e-200;
+    BOOST_CHECK_THROW((void)plateau(packing, {0.1}), isostat::Error);
+    BOOST_CHECK_THROW((void)plateau(example("two_disks.toml"), {1e200}), isostat::Error);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -52,7 +52,8 @@ struct ForcesClaim {
 };
 
 /// Every pair of grains that is not a contact (and can move relative to each other) has a gap >= `smallest` > 0 at the
-/// true vertex; `where` is the pair that comes nearest.
+/// true vertex; `where` is the pair that comes nearest. Without any such pair `smallest` is infinite and `where` is not
+/// written.
 struct GapsClaim {
     double smallest = 0;
     Contact where;
@@ -99,13 +100,16 @@ struct Certificate {
 /// SHA-256 in hexadecimal (64 digits).
 std::string sha256(const std::string& bytes);
 
-/// The JSON text of a certificate (format "isostat-certificate", version 1): the state as in a state file, the claims,
-/// and `digest`, the SHA-256 of the same JSON without that field, dumped without white space and with sorted keys.
+/// The JSON text of a certificate (format "isostat-certificate", version 1): the state as in a state file, the claims
+/// (null where absent), and `digest`, the SHA-256 of the same JSON without that field, dumped without white space and
+/// with sorted keys. Infinite ends of intervals are the strings "inf" and "-inf". Throws `Error(bad_input)` when a
+/// number is NaN, or infinite where it must not be, or an interval has its ends in the wrong order.
 std::string certificate_text(const Certificate& certificate);
 
 /// Reads what `certificate_text` wrote; `source` (a file name) starts every message. Throws `Error(bad_input)` with
-/// file, field, value and what was expected: unknown or missing fields, lists of the wrong length, NaN, intervals whose
-/// ends are in the wrong order, and a digest that does not belong to the content. It does not check the claims.
+/// file, field, value and what was expected: unknown, missing or repeated fields, lists of the wrong length, NaN,
+/// intervals whose ends are in the wrong order, and a digest that does not belong to the content. It does not check the
+/// claims, except that they can be understood: counts, radii and the smallest gap have the signs that such things have.
 Certificate parse_certificate(const std::string& text, const std::string& source);
 
 /// Reads a certificate file. Throws `Error(bad_input)`.

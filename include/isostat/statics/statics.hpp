@@ -5,11 +5,8 @@
 #include <isostat/core/enclosure.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
-#include <isostat/verified/force_solution.hpp>
+#include <isostat/verified/force_ladder.hpp>
 
-#include <array>
-#include <memory>
-#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -24,7 +21,7 @@ template <int Dim> class Statics {
     /// (most vertices of a rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2
     /// for each part asked for.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-            const Factorisation& factorisation, const InverseBound& inverse);
+            const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {});
 
     /// Finite part at the loaded stress sigma (taken as exact).
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;
@@ -40,9 +37,23 @@ template <int Dim> class Statics {
     /// Contacts whose finite force is not a structural zero.
     [[nodiscard]] int backbone_count() const;
 
-    /// Solves again with residuals in double-double; false when that was done already.
-    bool climb();
-    [[nodiscard]] Rung rung() const { return rung_; }
+    /// Goes to the next rung of precision (ForceLadder); false when there is none. Every enclosure above is then the
+    /// better one.
+    bool climb() { return ladder_.climb(); }
+    [[nodiscard]] Rung rung() const { return ladder_.rung(); }
+    [[nodiscard]] int bits() const { return ladder_.bits(); }
+
+    /// The same quantities for comparisons: the finite part at sigma, the slope, the infinitesimal part, and what is
+    /// left of the way to the limit, force / |slope|. \pre of the last: slope proved not zero.
+    [[nodiscard]] ForceExpression force_expression(ContactId contact, double sigma) const;
+    [[nodiscard]] ForceExpression slope_expression(ContactId contact) const;
+    [[nodiscard]] ForceExpression infinitesimal_expression(ContactId contact) const;
+    [[nodiscard]] ForceExpression distance_expression(ContactId contact, double sigma) const;
+    /// Sign of a quantity, and of a - b, on the lowest rung from the present one that decides it; the object stays
+    /// there. Undecided only when the ladder has ended: then `bits` are those of the last rung.
+    Order sign(const ForceExpression& a);
+    Order compare(const ForceExpression& a, const ForceExpression& b);
+
     /// Largest bound of the error of a force at sigma.
     [[nodiscard]] double bound(double sigma) const;
     /// max |H f - F| as computed for the finite part at sigma.
@@ -56,25 +67,20 @@ template <int Dim> class Statics {
     [[nodiscard]] int loaded_wall_row() const { return loaded_wall_row_; }
     /// Finite external force on the degrees of freedom at sigma, and the infinitesimal one.
     [[nodiscard]] std::vector<double> external_force(double sigma) const;
-    [[nodiscard]] const std::vector<double>& infinitesimal_force() const { return right_hand_side_[2]; }
+    [[nodiscard]] const std::vector<double>& infinitesimal_force() const { return ladder_.force(infinitesimal_part); }
 
   private:
-    enum Part : std::size_t { present, unit, infinitesimal_part };
-    const ForceSolution& solution(Part part) const;
+    enum Part : int { present, unit, infinitesimal_part };
 
-    const Packing<Dim>* packing_;
     const IsostaticStructure<Dim>* structure_;
     const Factorisation* factorisation_;
     const InverseBound* inverse_;
-    double sigma_;                                       ///< sigma_0
-    std::array<std::vector<double>, 3> right_hand_side_; ///< at sigma_0, unit, infinitesimal
-    mutable std::array<std::optional<ForceSolution>, 3> solution_;
-    mutable std::optional<ExtendedMatrix> extended_; ///< made by the first climb
+    double sigma_;            ///< sigma_0
+    ForceLadder<Dim> ladder_; ///< right-hand sides: at sigma_0, unit, infinitesimal
     std::vector<int> loaded_rows_;
     int loaded_wall_row_ = -1;
     std::vector<unsigned char> backbone_;
     mutable std::vector<unsigned char> sloped_; ///< empty until asked for
-    Rung rung_ = Rung::double_bound;
 };
 
 extern template class Statics<2>;

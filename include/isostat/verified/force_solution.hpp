@@ -11,13 +11,15 @@
 namespace isostat {
 
 /// Solution of H f = F for the exact matrix H of the stored configuration: |f_l - (value_l + low_l)| <= bound for every
-/// l. `low` is empty on the rung double_bound. A bound of infinity (or NaN) means that nothing is known.
+/// l. `low` is empty on the rung double_bound. A bound of infinity (or NaN) means that nothing is known. On the rungs
+/// above double-double (see force_ladder.hpp) `value` + `low` is the rounded answer, `bound` includes that rounding.
 struct ForceSolution {
     std::vector<double> value;
     std::vector<double> low;
     double bound = 0;
     double residual = 0; ///< max |F - H f| of the returned value, as computed
     Rung rung = Rung::double_bound;
+    int bits = 53; ///< of the arithmetic: 53, 106, those of MPFR, or 0 for exact numbers
 };
 
 /// Unit normals of the stored configuration in double-double, made when the first solve climbs; reused for every
@@ -29,9 +31,9 @@ struct ExtendedMatrix {
 template <int Dim>
 ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
 
-/// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the rounding of the residual
-/// and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound is infinite. Cost: two
-/// solves.
+/// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the
+/// rounding of the residual and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound
+/// is infinite. Cost: two solves.
 template <int Dim>
 ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
                            const InverseBound& inverse, const std::vector<double>& force);

@@ -17,7 +17,7 @@ struct InverseBound {
     Verdict verdict = Verdict::undecided;
     double sigma_min = 0;
     /// Which argument proved it.
-    enum class Route : unsigned char { cholesky, double_double, rows, carried } route = Route::cholesky;
+    enum class Route : unsigned char { cholesky, double_double, rows, multiprecision, carried } route = Route::cholesky;
 };
 
 /// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity.

@@ -1,0 +1,53 @@
+#pragma once
+/// \file
+/// An independent checker of certificates. It shares with the program that made a certificate only the data (states,
+/// contacts, claims) and the reader of the file: no matrix, bound, solver or list of neighbours. Mathematics:
+/// proofs/checker.md (K1 to K11).
+
+#include <isostat/core/verdict.hpp>
+#include <isostat/io/certificate_file.hpp>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace isostat {
+
+/// The answer to one claim.
+/// - `proved`: the checker's own rigorous enclosure implies the claim;
+/// - `refuted`: it contradicts the claim;
+/// - `undecided`: neither; `detail` says what is missing. Nothing is known of the claim then.
+struct ClaimCheck {
+    std::string claim{};  ///< name of the field of `CertificateClaims`
+    bool claimed = false; ///< false: the certificate does not claim it (`undecided`)
+    Verdict verdict = Verdict::undecided;
+    std::string detail{};                                  ///< one line: what was proved, or why not
+    std::vector<std::pair<std::string, double>> numbers{}; ///< the numbers behind it: proved bounds, rounded outwards
+};
+
+/// The answers to all claims, in the order of `CertificateClaims`, `stable` last.
+struct Verification {
+    std::vector<ClaimCheck> checks;
+    /// Refuted when a claim is; else undecided when a claim is undecided or absent; else proved: then the state has a
+    /// true vertex nearby that is an isostatic equilibrium without overlap and a strict local minimum.
+    Verdict verdict = Verdict::undecided;
+};
+
+/// Which integers the bound of the inverse is computed with. All of them prove; they differ in reach and cost.
+enum class CheckerArithmetic {
+    automatic, ///< the first of the others that succeeds
+    fixed64,   ///< rows of 64-bit integers, products in 128 bits: coordinates on a common grid of at most 2^60 steps
+    gmp,       ///< rows of GMP integers, refined: any coordinates, condition numbers up to about 1e14
+    rational   ///< exact inverse: at most `largest_exact_matrix` contacts, any regular matrix
+};
+
+/// Largest number of rows and columns for which the checker eliminates exactly.
+inline constexpr int largest_exact_matrix = 100;
+
+/// Checks every claim from the state and the claims alone. Does not throw on false claims. Coordinates, radii and loads
+/// are the stored doubles, taken as exact rationals. Supported: all that `State<2>` can hold, except held coordinates:
+/// then every claim is undecided. Cost: N solves with a sparse factorisation of which nothing is trusted, and 4 N^2
+/// integer products; memory O(N).
+Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic = CheckerArithmetic::automatic);
+
+} // namespace isostat

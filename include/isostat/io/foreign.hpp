@@ -1,0 +1,75 @@
+#pragma once
+/// \file
+/// Packings of disks written by other programs.
+
+#include <isostat/packing/packing.hpp>
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What a column (or a constant) holds.
+enum class SizeMeaning { radius, diameter };
+
+/// A statement of the user on the sizes: it wins over the names in the file.
+struct SizeStatement {
+    SizeMeaning meaning = SizeMeaning::radius;
+    std::string column; ///< name of the column that holds it; empty: every disk has `value`
+    double value = 0;   ///< when `column` is empty
+};
+
+/// Which walls a foreign packing gets; their positions are the bounds of the box.
+/// - `none`; - `box`: left and bottom fixed, right and top movable, as in the paper (two more degrees of freedom);
+/// - `fixed`: all four fixed.
+enum class ForeignWalls { none, box, fixed };
+
+/// What the file does not say, stated by the user. Nothing of it is guessed.
+struct ForeignOptions {
+    std::string format; ///< a name of `foreign_formats()`, or empty: recognised from the content
+    std::optional<SizeStatement> size;
+    ForeignWalls walls = ForeignWalls::none;
+    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi instead of the bounds in the file
+    std::optional<long> frame;                ///< of a file with several, from 0; the last one otherwise
+    std::vector<std::string> columns;         ///< of a table without a header; "-" is a column to leave out
+    bool not_periodic = false; ///< boundaries that the file calls periodic (or does not deny to be) are open
+};
+
+struct ForeignPacking {
+    Packing<2> packing; ///< disks in the order of the file; with walls, shifted so that the lower ones are at 0
+    std::string format; ///< a name of `foreign_formats()`
+    /// What was done to the numbers and what the file left open, one sentence each: which column gave the size, whether
+    /// scaled or shifted coordinates were rounded and by how much, boundaries that are not known.
+    std::vector<std::string> notes;
+};
+
+/// "lammps-data", "lammps-dump", "xyz", "table".
+const std::vector<std::string>& foreign_formats();
+
+/// Reads a packing from text. Numbers are rounded to the nearest double.
+///
+/// - `lammps-data`: `Atoms # sphere` or `# bpm/sphere`; the third (fourth) column is the *diameter* by definition of
+///   these styles.
+/// - `lammps-dump`: text; `x y`, `xu yu` (unwrapped) or scaled `xs ys`, `xsu ysu`; the columns `radius` or `diameter`.
+/// - `xyz`: extended XYZ, `Properties=` with `pos` and `radius` or `diameter`; `Lattice`, `Origin`, `pbc` (a lattice
+///   without `pbc` is periodic by the convention of the format). Plain XYZ with a stated size.
+/// - `table`: rows of numbers separated by blanks, commas, semicolons or tabs, under a header: a first row of names, a
+///   comment `# x y r`, `#format x_y_z_r`, or `columns`. Names: x, y, z, id; r, R, radius, Radius; d, D, diameter,
+///   Diameter; others are ignored.
+///
+/// Throws `Error(bad_input)` with file, line, value and what was expected: also for sizes whose meaning nobody stated,
+/// periodic boundaries, tilted boxes, different z, ids given twice, more or fewer rows than announced, disks with their
+/// centre outside the walls. Overlaps are not looked at.
+ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options);
+
+/// The same from a file.
+ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOptions& options);
+
+/// The format of the text, or empty: "lammps-data", ..., and "state", "vertex", "packing" for the formats of this
+/// program (`read_state`, `crafted::read_packing`). From the content only.
+std::string recognise_format(const std::string& text);
+
+} // namespace isostat

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Everything in proofs/ that a machine can check:
+#   bash proofs/check.sh [BUILD]
+# The links of the pages; with Coq and MathComp installed the theorems, with what Print Assumptions says of each; and, when BUILD (a build
+# folder with the examples) is given, certificates that its program writes for packings that it prepares.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tests/packages.sh
+bash proofs/check_links.sh
+bash proofs/check_links_test.sh
+if ! command -v coqc >/dev/null || [ ! -d "$(coqc -where)/user-contrib/mathcomp/algebra_tactics" ]; then
+  echo "proofs/coq: SKIPPED, no theorem was checked: Coq or MathComp is not installed (Debian: ${isostat_proof_packages[*]})"
+  exit 0
+fi
+make --no-print-directory -C proofs/coq
+if [ $# -gt 0 ]; then
+  bash proofs/coq/check_certificates.sh "$1/examples/example_rank_certificate" "$1/certificates" 6 24
+else
+  echo "proofs/coq: no build folder given, no certificate was written"
+fi

@@ -1,0 +1,91 @@
+#include "certificate/centre.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+} // namespace
+
+template <int Dim> double contact_length(const Packing<Dim>& packing, const Contact& contact) {
+    const double radius = packing.radius[static_cast<std::size_t>(contact.i)];
+    return contact.kind == ContactKind::disk_disk ? radius + packing.radius[static_cast<std::size_t>(contact.j)]
+                                                  : radius;
+}
+
+template <int Dim>
+Centre<Dim>::Centre(Packing<Dim> p, IsostaticStructure<Dim> s)
+    : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
+    InverseBoundCache cache;
+    inverse = bound_inverse(structure, factorisation, cache);
+    std::vector<int> count(packing.radius.size(), 0);
+    double smallest = infinity;
+    for (const Contact& contact : structure.contacts()) {
+        const double h = std::abs(gap(packing, contact));
+        const double length = contact_length(packing, contact);
+        largest_gap = std::max(largest_gap, h);
+        relative_gap = std::max(relative_gap, h / length);
+        if (contact.kind == ContactKind::disk_disk) {
+            ++count[static_cast<std::size_t>(contact.i)];
+            ++count[static_cast<std::size_t>(contact.j)];
+            smallest = std::min(smallest, length);
+        }
+    }
+    const double most = *std::max_element(count.begin(), count.end());
+    lipschitz = most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 8 * u);
+    const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // a NaN knows nothing
+    inverse_norm = known ? (1 + 2 * relative_gap + 16 * u) / inverse.sigma_min * (1 + 4 * u) : infinity;
+}
+
+template <int Dim>
+Result<std::unique_ptr<Centre<Dim>>> Centre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts) {
+    auto proved = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
+    if (!proved.ok()) {
+        return proved.failure();
+    }
+    return std::unique_ptr<Centre>(new Centre(std::move(packing), std::move(proved.value())));
+}
+
+template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::downhill(const Centre& start) {
+    constexpr int max_iterations = 12; // quadratic convergence: six from a tenth of a radius
+    const double reach = 0.1 * start.packing.min_radius();
+    const Centre* here = &start;
+    std::unique_ptr<Centre> next;
+    for (int k = 0; k < max_iterations; ++k) {
+        std::vector<double> step;
+        for (const Contact& contact : here->structure.contacts()) {
+            step.push_back(gap(here->packing, contact));
+        }
+        here->factorisation.solve_velocities(step); // approach velocities equal to the gaps close them
+        Packing<Dim> moved = here->packing;
+        for (std::size_t mu = 0; mu < step.size(); ++mu) {
+            const auto at = static_cast<std::size_t>(here->structure.dofs().coordinate_of(static_cast<int>(mu)));
+            moved.q[at] += step[mu];
+            if (!(std::abs(moved.q[at] - start.packing.q[at]) <= reach)) {
+                return nullptr;
+            }
+        }
+        auto made = make(std::move(moved), start.structure.contacts());
+        if (!made.ok()) {
+            return nullptr;
+        }
+        const bool better = made.value()->relative_gap < 0.5 * here->relative_gap;
+        if (k > 0 && !better) {
+            return here->relative_gap < 1e-3 ? std::move(next) : nullptr; // at the rounding of the gaps, or lost
+        }
+        next = std::move(made.value());
+        here = next.get();
+    }
+    return next;
+}
+
+template double contact_length<2>(const Packing<2>&, const Contact&);
+template class Centre<2>;
+
+} // namespace isostat

@@ -1,0 +1,296 @@
+#include "certificate/exact_counting.hpp"
+#include "certificate/pairs.hpp"
+#include "certificate/true_vertex.hpp"
+
+#include <isostat/certificate/certify.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Makes the claims one after the other; what one needs of those before it is checked where it is used.
+template <int Dim> class Prover {
+  public:
+    Prover(const State<Dim>& state, const CertifyOptions& options) : state_(state), options_(options) {}
+
+    Certification run() {
+        if (prove_counting() && prove_vertex()) {
+            const bool forces = prove_forces();
+            const bool gaps = prove_gaps();
+            if (forces) {
+                prove_load_interval();
+            } else {
+                absent("load interval", "the forces are not all proved positive");
+            }
+            prove_stability(forces, gaps);
+        }
+        const CertificateClaims& c = result_.claims;
+        const bool all = c.counting && c.vertex && c.forces && c.gaps && c.load_interval && c.stable;
+        result_.verdict = !result_.refuted.empty() ? Verdict::refuted : all ? Verdict::proved : Verdict::undecided;
+        return std::move(result_);
+    }
+
+  private:
+    void absent(const char* claim, const std::string& reason) {
+        result_.claims.undecided.push_back(fmt::format("{}: {}", claim, reason));
+    }
+    void refute(const char* claim, const std::string& reason) {
+        absent(claim, reason);
+        result_.refuted.push_back(result_.claims.undecided.back());
+    }
+    void absent_from_vertex_on(const std::string& reason) {
+        for (const char* claim : {"vertex", "forces", "gaps", "load interval", "stability"}) {
+            absent(claim, reason);
+        }
+    }
+    std::string name(std::size_t l) const { return to_string<Dim>(state_.contacts[l]); }
+
+    bool prove_counting();
+    bool prove_vertex();
+    bool prove_forces();
+    bool prove_gaps();
+    void prove_load_interval();
+    void prove_stability(bool forces, bool gaps);
+
+    /// The next rung around the same centre; false when there is none, or when none is allowed.
+    bool climb();
+    /// Climbs to a rung on which the vertex exists.
+    bool exists_on_some_rung();
+
+    const State<Dim>& state_;
+    CertifyOptions options_;
+    Certification result_;
+    std::unique_ptr<Centre<Dim>> centre_;
+    std::unique_ptr<Subject<Dim>> subject_;
+    std::unique_ptr<TrueVertex<Dim>> vertex_;
+};
+
+template <int Dim> bool Prover<Dim>::climb() {
+    if (vertex_->rung() >= options_.highest || vertex_->rung() == Rung::multiprecision) {
+        return false;
+    }
+    vertex_ = vertex_->rung() == Rung::double_bound ? in_double_double(*subject_, *centre_)
+                                                    : in_multiprecision(*subject_, *centre_);
+    return vertex_->exists() || climb();
+}
+
+template <int Dim> bool Prover<Dim>::exists_on_some_rung() {
+    vertex_ = in_double(*subject_, *centre_);
+    return vertex_->exists() || climb();
+}
+
+template <int Dim> bool Prover<Dim>::prove_counting() {
+    const auto held = std::find_if(state_.contacts.begin(), state_.contacts.end(),
+                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    if (held != state_.contacts.end()) {
+        const std::string reason =
+            fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
+        absent("counting", reason);
+        absent_from_vertex_on(reason);
+        return false;
+    }
+    const int dof_count = DofMap<Dim>(state_.packing).dof_count();
+    const int count = static_cast<int>(state_.contacts.size());
+    if (dof_count == count && count > 0) {
+        auto made = Centre<Dim>::make(state_.packing, state_.contacts);
+        if (made.ok()) {
+            centre_ = std::move(made.value());
+            result_.claims.counting = CountingClaim{dof_count, count, count, 0, 0, Rung::exact};
+            return true;
+        }
+    }
+    const Counting counting = exact_counting(state_);
+    const std::string numbers =
+        fmt::format("N_f = {}, N = {}, rank {}{}, h {} {}, k {} {}", counting.dof_count, counting.contact_count,
+                    counting.rank_exact == Verdict::proved ? "" : "at least ", counting.rank,
+                    counting.rank_exact == Verdict::proved ? "=" : "<=", counting.hyperstaticity,
+                    counting.rank_exact == Verdict::proved ? "=" : "<=", counting.mechanisms);
+    if (counting.rank_exact == Verdict::proved) {
+        result_.claims.counting = CountingClaim{counting.dof_count,      counting.contact_count, counting.rank,
+                                                counting.hyperstaticity, counting.mechanisms,    Rung::exact};
+    } else {
+        absent("counting", "the rank of the stored matrix was only bounded: " + numbers);
+    }
+    const std::string reason = "the structure is not isostatic: " + numbers;
+    if (counting.rank_exact == Verdict::proved || dof_count != count) {
+        refute("vertex", reason);
+    } else {
+        absent("vertex", reason);
+    }
+    for (const char* claim : {"forces", "gaps", "load interval", "stability"}) {
+        absent(claim, "the structure is not isostatic, or not proved to be");
+    }
+    return false;
+}
+
+template <int Dim> bool Prover<Dim>::prove_vertex() {
+    result_.stored_gap = centre_->largest_gap;
+    subject_ = std::make_unique<Subject<Dim>>(state_);
+    if (centre_->inverse.verdict != Verdict::proved) {
+        absent_from_vertex_on("no bound of the inverse of the contact matrix was found");
+        return false;
+    }
+    // Where the gaps are visibly open, the stored place says less than the end of a Newton iteration. Either will do.
+    constexpr double visible = 1e-10;
+    std::unique_ptr<Centre<Dim>> moved = centre_->relative_gap < visible ? nullptr : Centre<Dim>::downhill(*centre_);
+    if (moved) {
+        std::swap(centre_, moved);
+    }
+    bool exists = exists_on_some_rung();
+    if (!exists && moved) {
+        vertex_.reset();
+        std::swap(centre_, moved);
+        exists = exists_on_some_rung();
+    }
+    if (!exists) {
+        absent_from_vertex_on(fmt::format(
+            "no configuration in which all gaps of the contacts are 0 was proved to exist near the stored one (largest "
+            "|gap| of a contact {:.3g}, smallest singular value at least {:.3g})",
+            result_.stored_gap, centre_->inverse.sigma_min));
+        return false;
+    }
+    result_.claims.vertex = VertexClaim{vertex_->radius(), vertex_->unique_radius(), vertex_->rung()};
+    result_.smallest_sigma = vertex_->sigma_min();
+    return true;
+}
+
+template <int Dim> bool Prover<Dim>::prove_forces() {
+    const std::size_t count = state_.contacts.size();
+    ForcesClaim claim;
+    for (std::size_t l = 0; l < count; ++l) {
+        if (subject_->zero[l] != 0) {
+            claim.structural_zeros.push_back(static_cast<int>(l));
+        }
+    }
+    const auto show = [this](std::size_t l, const Interval& f) {
+        return fmt::format("in contact {} is in [{:.6g}, {:.6g}]", name(l), f.lower, f.upper);
+    };
+    std::string negative;
+    std::string doubtful;
+    do {
+        claim.rung = vertex_->rung();
+        claim.finite = vertex_->forces();
+        claim.infinitesimal.clear();
+        negative.clear();
+        doubtful.clear();
+        ForceSigns signs;
+        for (std::size_t l = 0; l < count; ++l) {
+            const Interval& f = claim.finite[l];
+            if (subject_->zero[l] != 0) {
+                ++signs.structural_zero;
+            } else if (f.lower > 0) {
+                ++signs.positive;
+            } else if (f.upper < 0) {
+                ++signs.negative;
+                negative = negative.empty() ? "the force " + show(l, f) : negative;
+            } else {
+                ++signs.undecided;
+                doubtful = doubtful.empty() ? "the force " + show(l, f) : doubtful;
+            }
+        }
+        result_.signs = signs;
+        if (!claim.structural_zeros.empty()) {
+            const std::vector<Interval> infinitesimal = vertex_->infinitesimal();
+            for (const int zero : claim.structural_zeros) {
+                const auto l = static_cast<std::size_t>(zero);
+                const Interval& f = infinitesimal[l];
+                claim.infinitesimal.push_back(f);
+                if (f.upper < 0 && negative.empty()) {
+                    negative = "the finite force is exactly 0 and the infinitesimal one " + show(l, f);
+                } else if (!(f.lower > 0) && doubtful.empty()) {
+                    doubtful = "the finite force is exactly 0 and the infinitesimal one " + show(l, f);
+                }
+            }
+        }
+    } while (negative.empty() && !doubtful.empty() && climb());
+    if (!negative.empty()) {
+        refute("forces", negative + ": not an equilibrium at this load");
+        return false;
+    }
+    if (!doubtful.empty()) {
+        absent("forces", fmt::format("{} ({})", doubtful, to_string(vertex_->rung())));
+        return false;
+    }
+    result_.claims.forces = std::move(claim);
+    return true;
+}
+
+template <int Dim> bool Prover<Dim>::prove_gaps() {
+    const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
+    std::string doubtful;
+    do {
+        // Pairs that are not listed: their gap changes by at most sqrt(2) times the distance to the true vertex.
+        GapsClaim claim{(pairs.reach - 1.4143 * vertex_->distance()) * (1 - 0x1p-50), {}, vertex_->rung()};
+        double nearest = infinity;
+        doubtful.clear();
+        for (const Contact& pair : pairs.near) {
+            const Interval h = vertex_->gap(pair);
+            if (h.upper < 0) {
+                refute("gaps", fmt::format("{} overlap: the gap is in [{:.6g}, {:.6g}]", to_string<Dim>(pair), h.lower,
+                                           h.upper));
+                return false;
+            }
+            if (!(h.lower > 0) && doubtful.empty()) {
+                doubtful = fmt::format("the gap of {} is in [{:.6g}, {:.6g}]", to_string<Dim>(pair), h.lower, h.upper);
+            }
+            claim.smallest = std::min(claim.smallest, h.lower);
+            if (h.upper < nearest) {
+                nearest = h.upper;
+                claim.where = pair;
+            }
+        }
+        if (doubtful.empty() && claim.smallest > 0) {
+            result_.claims.gaps = claim;
+            return true;
+        }
+    } while (climb());
+    absent("gaps", fmt::format("{} ({})", doubtful.empty() ? "the vertex is not known well enough" : doubtful,
+                               to_string(vertex_->rung())));
+    return false;
+}
+
+template <int Dim> void Prover<Dim>::prove_load_interval() {
+    while (true) {
+        const LoadEndAnswer low = vertex_->load_end(-1);
+        const LoadEndAnswer high = vertex_->load_end(+1);
+        if (low.claim && high.claim) {
+            result_.claims.load_interval = LoadIntervalClaim{*low.claim, *high.claim, vertex_->rung()};
+            return;
+        }
+        if (!climb()) {
+            absent("load interval", fmt::format("{}{}{} ({})", low.open_question,
+                                                !low.open_question.empty() && !high.open_question.empty() ? "; " : "",
+                                                high.open_question, to_string(vertex_->rung())));
+            return;
+        }
+    }
+}
+
+template <int Dim> void Prover<Dim>::prove_stability(bool forces, bool gaps) {
+    if (!forces || !gaps) {
+        absent("stability", "it needs positive forces and no overlap");
+    } else if (state_.load.kind != LoadKind::nominal) {
+        absent("stability", "true stresses have no potential; no motion is possible that the load does not oppose");
+    } else {
+        result_.claims.stable = true;
+    }
+}
+
+} // namespace
+
+template <int Dim> Certification certify(const State<Dim>& state, const CertifyOptions& options) {
+    return Prover<Dim>(state, options).run();
+}
+
+template Certification certify<2>(const State<2>&, const CertifyOptions&);
+
+} // namespace isostat

@@ -1,0 +1,55 @@
+#include "certificate/pairs.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/contact/contact_set.hpp>
+
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+template <int Dim> std::vector<Contact> all_pairs(const Packing<Dim>& packing) {
+    std::vector<Contact> pairs;
+    const int n = packing.disk_count();
+    for (int i = 0; i < n; ++i) {
+        const bool fixed = packing.is_fixed(DiskId(i));
+        for (int j = i + 1; j < n; ++j) {
+            if (!fixed || !packing.is_fixed(DiskId(j))) {
+                pairs.push_back({ContactKind::disk_disk, i, j});
+            }
+        }
+        for (int a = 0; a < Dim; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            if (packing.walls.lower[axis] != WallKind::absent && !fixed) {
+                pairs.push_back({ContactKind::lower_wall, i, a});
+            }
+            if (packing.walls.upper[axis] == WallKind::movable ||
+                (packing.walls.upper[axis] == WallKind::fixed && !fixed)) {
+                pairs.push_back({ContactKind::upper_wall, i, a});
+            }
+        }
+    }
+    return pairs;
+}
+
+} // namespace
+
+template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    const ContactSet kept(contacts, packing.disk_count());
+    const auto without_contacts = [&kept](std::vector<Contact> pairs) {
+        std::erase_if(pairs, [&kept](const Contact& pair) { return kept.contains(pair); });
+        return pairs;
+    };
+    constexpr double fraction = 0.82; // the largest that the theorem allows
+    CandidateList<Dim> candidates = find_candidates(packing, fraction);
+    OtherPairs pairs{without_contacts(std::move(candidates.contacts)), candidates.reach};
+    if (pairs.near.empty()) {
+        pairs = {without_contacts(all_pairs(packing)), std::numeric_limits<double>::infinity()};
+    }
+    return pairs;
+}
+
+template OtherPairs other_pairs<2>(const Packing<2>&, const std::vector<Contact>&);
+
+} // namespace isostat

@@ -1,0 +1,24 @@
+#pragma once
+/// \file
+/// The pairs of grains that are not contacts, as far as a claim about their gaps needs them.
+
+#include <isostat/contact/contact.hpp>
+
+#include <vector>
+
+namespace isostat {
+
+/// Pairs that are not contacts, and a bound for those that were left out.
+struct OtherPairs {
+    std::vector<Contact> near; ///< not empty when there is any pair at all
+    double reach =
+        0; ///< every pair that is not in `near` has a gap >= reach in the packing; infinity: none was left out
+};
+
+/// Candidates of the triangulation (T5, T6) without the contacts; when that leaves none, all pairs (O(n^2), in small
+/// packings only). Pairs that cannot move relative to each other do not count.
+template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
+
+extern template OtherPairs other_pairs<2>(const Packing<2>&, const std::vector<Contact>&);
+
+} // namespace isostat

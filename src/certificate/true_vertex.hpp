@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// What one rung of arithmetic knows of the true vertex.
+
+#include "certificate/centre.hpp"
+#include "certificate/subject.hpp"
+
+#include <isostat/io/certificate_file.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// One end of the supported interval, or why it is not decided.
+struct LoadEndAnswer {
+    std::optional<LoadEndClaim> claim;
+    std::string open_question;
+};
+
+/// The true vertex, enclosed around a centre (statement V5), with everything that is asked of it in intervals that
+/// contain the true values. \pre of all but `exists`, `rung`: `exists()`.
+template <int Dim> class TrueVertex {
+  public:
+    virtual ~TrueVertex() = default;
+    [[nodiscard]] virtual Rung rung() const = 0;
+    /// Newton-Kantorovich succeeded, with radii that can be claimed of the *stored* coordinates.
+    [[nodiscard]] virtual bool exists() const = 0;
+    /// Maximum norm about the stored coordinates, as in `VertexClaim`.
+    [[nodiscard]] virtual double radius() const = 0;
+    [[nodiscard]] virtual double unique_radius() const = 0;
+    /// Bound of |q* - q| in the 2-norm, q the doubles of the centre.
+    [[nodiscard]] virtual double distance() const = 0;
+    /// Lower bound of the smallest singular value of the contact matrix there, > 0.
+    [[nodiscard]] virtual double sigma_min() const = 0;
+    /// Gap of any pair.
+    [[nodiscard]] virtual Interval gap(const Contact& contact) const = 0;
+    /// Finite forces under the load of the state; structural zeros are [0, 0].
+    virtual std::vector<Interval> forces() = 0;
+    /// Forces per unit of eps.
+    virtual std::vector<Interval> infinitesimal() = 0;
+    /// Statement V7. \pre every force is positive or a structural zero.
+    virtual LoadEndAnswer load_end(int direction) = 0;
+};
+
+/// The rungs, in the order in which they are tried. The arguments must outlive the result.
+template <int Dim> std::unique_ptr<TrueVertex<Dim>> in_double(const Subject<Dim>& subject, const Centre<Dim>& centre);
+template <int Dim>
+std::unique_ptr<TrueVertex<Dim>> in_double_double(const Subject<Dim>& subject, const Centre<Dim>& centre);
+template <int Dim>
+std::unique_ptr<TrueVertex<Dim>> in_multiprecision(const Subject<Dim>& subject, const Centre<Dim>& centre);
+
+extern template std::unique_ptr<TrueVertex<2>> in_double<2>(const Subject<2>&, const Centre<2>&);
+extern template std::unique_ptr<TrueVertex<2>> in_double_double<2>(const Subject<2>&, const Centre<2>&);
+extern template std::unique_ptr<TrueVertex<2>> in_multiprecision<2>(const Subject<2>&, const Centre<2>&);
+
+} // namespace isostat

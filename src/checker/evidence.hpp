@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// Everything that the checker proves of a state by itself, before it looks at a claim, and words for it.
+
+#include "checker/forces.hpp"
+
+#include <isostat/checker/verify.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat::checker {
+
+struct Evidence {
+    Evidence(const State<2>& checked, CheckerArithmetic arithmetic);
+
+    const State<2>& state;
+    Problem problem;
+    bool square = false;
+    std::optional<int> rank; ///< of the stored matrix
+    InverseBound inverse;
+    TrueVertex vertex;
+    // At the true vertex, when it was found:
+    Forces finite_load;
+    Forces unit_load;
+    std::vector<Range> forces;        ///< under the load of the state
+    std::vector<Range> slopes;        ///< per unit of the loaded stress
+    std::vector<Range> infinitesimal; ///< per unit of eps
+
+    [[nodiscard]] std::string name(std::size_t contact) const { return to_string<2>(state.contacts[contact]); }
+    [[nodiscard]] std::string why_no_inverse() const;
+    [[nodiscard]] std::string why_no_vertex() const;
+};
+
+/// Positions of the ranges that contain 0.
+std::vector<int> having_zero(const std::vector<Range>& ranges);
+
+/// Refuted wins over undecided, undecided over proved.
+Verdict both(Verdict a, Verdict b);
+
+/// A claimed interval against a proved range of the same number.
+Verdict lies_in(const Range& value, const Interval& claimed);
+
+/// "[lower, upper]" with all digits, rounded outwards.
+std::string shown(const Range& range);
+std::string shown(const Interval& interval);
+
+/// The check with an answer.
+ClaimCheck answer(ClaimCheck check, Verdict verdict, const std::string& detail);
+
+// One function per claim; the claims are there.
+ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, bool at_vertex);
+/// `exists`: a true vertex within the claimed radius is proved, whatever the answer to the rest of the claim.
+ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool& exists);
+ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim);
+ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim);
+ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim);
+ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimCheck>& others);
+
+} // namespace isostat::checker

@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// Forces at the true vertex (proofs/checker.md, K6) and what counting alone says of them (K7, K8).
+
+#include "checker/vertex.hpp"
+
+#include <isostat/packing/load.hpp>
+
+namespace isostat::checker {
+
+/// External forces per degree of freedom at the true vertex.
+using Forces = std::vector<Range>;
+
+/// The finite load of a state, its derivative with respect to the loaded stress, and the infinitesimal load.
+Forces finite_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex);
+Forces unit_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex);
+Forces infinitesimal_load(const Problem& problem, const State<2>& state);
+
+/// Ranges of all contact forces (compressive positive) under a load.
+std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                                  const TrueVertex& vertex, const Forces& load);
+
+/// The number of degrees of freedom without load that no contact outside a set touches.
+int free_of_others(const Problem& problem, const std::vector<int>& contacts, const Forces& load);
+
+/// The forces of these contacts are exactly 0 under the load (K7). False says nothing.
+bool vanish_structurally(const Problem& problem, const std::vector<int>& contacts, const Forces& load);
+
+/// The forces of these contacts are, under every load that vanishes where `load` does, fixed multiples of one number
+/// (K8). False says nothing.
+bool vary_together(const Problem& problem, const std::vector<int>& contacts, const Forces& load);
+
+} // namespace isostat::checker

@@ -1,0 +1,22 @@
+#pragma once
+/// \file
+/// All gaps at the true vertex but those of the contacts (proofs/checker.md, K9).
+
+#include "checker/vertex.hpp"
+
+namespace isostat::checker {
+
+/// A pair of grains and its gap at the true vertex.
+struct Gap {
+    Contact pair;
+    Range value;
+};
+
+/// Pairs that are no contacts and can move relative to each other: all that may have the smallest gap. Every pair that
+/// is not listed has a gap above the smallest one. Empty: there is no such pair at all.
+std::vector<Gap> smallest_gaps(const Problem& problem, const State<2>& state, const TrueVertex& vertex);
+
+/// Whether a pair is one of those.
+bool is_free_pair(const State<2>& state, const Contact& pair);
+
+} // namespace isostat::checker

@@ -1,0 +1,304 @@
+#include "checker/inverse.hpp"
+
+#include "checker/elimination.hpp"
+
+#include <cstdint>
+#include <numeric>
+
+namespace isostat::checker {
+
+namespace {
+
+__extension__ using Wide = __int128;
+__extension__ using WideMagnitude = unsigned __int128;
+
+WideMagnitude magnitude(Wide value) {
+    return value < 0 ? -static_cast<WideMagnitude>(value) : static_cast<WideMagnitude>(value);
+}
+
+/// A column by column (one per degree of freedom), in units of the stored coordinates: 2^(fine + spare).
+template <class Number> struct Columns {
+    std::vector<std::size_t> start{0};
+    std::vector<int> contact;
+    std::vector<Number> value;
+};
+
+Columns<Integer> columns_of(const Problem& problem) {
+    Columns<Integer> columns;
+    for (int j = 0; j < problem.dofs(); ++j) {
+        const int coordinate = problem.coordinate_of[static_cast<std::size_t>(j)];
+        for (const int l : problem.contacts_of[static_cast<std::size_t>(j)]) {
+            const Row& row = problem.rows[static_cast<std::size_t>(l)];
+            int k = 0;
+            while (row.coordinate[static_cast<std::size_t>(k)] != coordinate) {
+                ++k;
+            }
+            Integer value;
+            mpz_tdiv_q_2exp(value.get_mpz_t(), problem.entry(l, k, problem.stored).get_mpz_t(),
+                            static_cast<mp_bitcnt_t>(problem.spare)); // exact
+            columns.contact.push_back(l);
+            columns.value.push_back(value);
+        }
+        columns.start.push_back(columns.contact.size());
+    }
+    return columns;
+}
+
+/// Sums of magnitudes in double: one rounding for each term and one for each addition, so the exact sum is at most
+/// `inflation` times the computed one (K3). Values are in units that keep them far from over- and underflow.
+struct Sums {
+    explicit Sums(int size)
+        : inflation(1 + 8 * (size + 8.0) * 0x1p-53), column(static_cast<std::size_t>(size)),
+          residual_column(static_cast<std::size_t>(size)) {}
+    double inflation;
+    double row = 0;
+    double quadratic = 0;
+    double residual_row = 0;
+    std::vector<double> column;
+    std::vector<double> residual_column;
+
+    [[nodiscard]] InverseBound bound(const Problem& problem, const char* arithmetic) const {
+        const auto up = [this](double sum) -> Rational { return Rational(sum) * Rational(inflation); };
+        const Rational per_length = power_of_two(-(problem.fine + problem.spare));
+        InverseBound result;
+        const auto finite = [](double sum) { return std::isfinite(sum); };
+        if (!finite(row) || !finite(residual_row) || !std::all_of(column.begin(), column.end(), finite) ||
+            !std::all_of(residual_column.begin(), residual_column.end(), finite)) {
+            return result;
+        }
+        result.arithmetic = arithmetic;
+        result.residual_row = up(residual_row);
+        result.residual_column = up(*std::max_element(residual_column.begin(), residual_column.end()));
+        result.row_sum = up(row) * per_length;
+        result.quadratic_sum = up(quadratic) * per_length;
+        for (const double sum : column) {
+            result.column_sum.push_back(up(sum) * per_length);
+        }
+        result.column_sum_max = *std::max_element(result.column_sum.begin(), result.column_sum.end());
+        result.found = result.residual_row < 1 && result.residual_column < 1;
+        return result;
+    }
+};
+
+long bits_of_count(int count) {
+    return bits(Integer(count));
+}
+
+/// Rows of R as 64-bit integers times 2^-t, t chosen row by row so that no product or sum leaves 128 bits.
+InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const Columns<Integer>& exact) {
+    const int n = problem.dofs();
+    Columns<std::int64_t> a;
+    a.start = exact.start;
+    a.contact = exact.contact;
+    long entry_bits = 1;
+    for (const Integer& value : exact.value) {
+        entry_bits = std::max(entry_bits, bits(value));
+        if (entry_bits > 60) {
+            return {};
+        }
+        a.value.push_back(value.get_si());
+    }
+    // |r_l| < 2^row_bits, |a| < 2^entry_bits, at most n terms and the identity: below 2^126.
+    const long row_bits = std::min(62L, 124 - entry_bits - bits_of_count(n));
+    const long largest_shift = 125 - bits_of_count(n);
+    if (row_bits < 30) {
+        return {};
+    }
+    // x of the solver is (A / 2^scale)^-1 in units of `fine`; in the units here the entries of A are 2^-spare as large.
+    const long rescale = problem.spare - solver.scale();
+
+    Sums sums(n);
+    constexpr int block = 16;
+    std::vector<std::int64_t> r(static_cast<std::size_t>(n));
+    for (int first = 0; first < n; first += block) {
+        const int width = std::min(block, n - first);
+        Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(n, width);
+        for (int k = 0; k < width; ++k) {
+            unit(first + k, k) = 1;
+        }
+        const Eigen::MatrixXd rows = solver.solve_transposed(unit);
+        for (int k = 0; k < width; ++k) {
+            const double largest = rows.col(k).lpNorm<Eigen::Infinity>();
+            if (!(largest > 0) || !rows.col(k).allFinite()) {
+                return {};
+            }
+            const long shift = std::min(row_bits - 1 - std::ilogb(largest) - rescale, largest_shift);
+            if (shift < 1) {
+                return {};
+            }
+            const double factor = std::ldexp(1.0, static_cast<int>(shift + rescale));
+            WideMagnitude row_sum = 0;
+            WideMagnitude quadratic_sum = 0;
+            const double down = std::ldexp(1.0, static_cast<int>(-shift));
+            for (std::size_t l = 0; l < r.size(); ++l) {
+                r[l] = std::llrint(rows(static_cast<Eigen::Index>(l), k) * factor);
+                const WideMagnitude size = magnitude(r[l]);
+                row_sum += size;
+                quadratic_sum += problem.rows[l].quadratic ? size : 0;
+                sums.column[l] += static_cast<double>(std::abs(r[l])) * down;
+            }
+            const WideMagnitude one = static_cast<WideMagnitude>(1) << static_cast<unsigned>(shift);
+            WideMagnitude residual_sum = 0;
+            for (std::size_t j = 0; j < r.size(); ++j) {
+                Wide s = j == static_cast<std::size_t>(first + k) ? -static_cast<Wide>(one) : 0;
+                for (std::size_t p = a.start[j]; p < a.start[j + 1]; ++p) {
+                    s += static_cast<Wide>(r[static_cast<std::size_t>(a.contact[p])]) * a.value[p];
+                }
+                const WideMagnitude size = magnitude(s);
+                if (size >= one) {
+                    return {};
+                }
+                residual_sum += size;
+                sums.residual_column[j] += static_cast<double>(size) * down;
+            }
+            sums.row = std::max(sums.row, static_cast<double>(row_sum) * down);
+            sums.quadratic = std::max(sums.quadratic, static_cast<double>(quadratic_sum) * down);
+            sums.residual_row = std::max(sums.residual_row, static_cast<double>(residual_sum) * down);
+        }
+    }
+    return sums.bound(problem, "64-bit integers");
+}
+
+/// Rows of R as GMP integers times 2^-shift.
+class GmpRows {
+  public:
+    GmpRows(const Problem& problem, const Columns<Integer>& columns)
+        : problem_(problem), columns_(columns), sums_(problem.dofs()) {
+        for (const Integer& value : columns.value) {
+            entry_bits_ = std::max(entry_bits_, bits(value));
+        }
+        shift_ = entry_bits_ + 2 * bits_of_count(problem.dofs()) + 64;
+    }
+    [[nodiscard]] long shift() const { return shift_; }
+    [[nodiscard]] InverseBound bound(const char* arithmetic) const { return sums_.bound(problem_, arithmetic); }
+
+    /// 2^shift e_row - r A.
+    [[nodiscard]] std::vector<Integer> residual(int row, const std::vector<Integer>& r) const {
+        std::vector<Integer> result(r.size());
+        for (std::size_t j = 0; j < r.size(); ++j) {
+            Integer s = j == static_cast<std::size_t>(row) ? shifted_left(1, shift_) : Integer(0);
+            for (std::size_t p = columns_.start[j]; p < columns_.start[j + 1]; ++p) {
+                s -= r[static_cast<std::size_t>(columns_.contact[p])] * columns_.value[p];
+            }
+            result[j] = s;
+        }
+        return result;
+    }
+    void add(const std::vector<Integer>& r, const std::vector<Integer>& residual) {
+        Integer row;
+        Integer quadratic;
+        Integer error;
+        for (std::size_t l = 0; l < r.size(); ++l) {
+            const Integer size = abs(r[l]);
+            row += size;
+            quadratic += problem_.rows[l].quadratic ? size : Integer(0);
+            sums_.column[l] += up(size);
+        }
+        for (std::size_t j = 0; j < r.size(); ++j) {
+            const Integer size = abs(residual[j]);
+            error += size;
+            sums_.residual_column[j] += up(size);
+        }
+        sums_.row = std::max(sums_.row, up(row));
+        sums_.quadratic = std::max(sums_.quadratic, up(quadratic));
+        sums_.residual_row = std::max(sums_.residual_row, up(error));
+    }
+
+  private:
+    /// Truncated by less than one part in 2^52; tiny numbers must not vanish.
+    [[nodiscard]] double up(const Integer& size) const {
+        return size == 0 ? 0 : std::max(approximate(size, -shift_), 0x1p-900);
+    }
+    const Problem& problem_;
+    const Columns<Integer>& columns_;
+    Sums sums_;
+    long entry_bits_ = 1;
+    long shift_ = 0;
+};
+
+/// Row by row, refined with exact residuals.
+InverseBound bound_gmp(const Problem& problem, const Solver& solver, const Columns<Integer>& columns) {
+    const int n = problem.dofs();
+    GmpRows rows(problem, columns);
+    const long to_row = rows.shift() + problem.spare - solver.scale();
+    const long good = rows.shift() - bits_of_count(n) - 20;
+    for (int k = 0; k < n; ++k) {
+        std::vector<Integer> r(static_cast<std::size_t>(n));
+        std::vector<Integer> residual = rows.residual(k, r);
+        long size = rows.shift() + 1;
+        for (int step = 0; step < 20 && size > good; ++step) {
+            Eigen::MatrixXd b(n, 1);
+            for (int j = 0; j < n; ++j) {
+                b(j, 0) = approximate(residual[static_cast<std::size_t>(j)], -rows.shift());
+            }
+            const Eigen::MatrixXd x = solver.solve_transposed(b);
+            for (int l = 0; l < n; ++l) {
+                r[static_cast<std::size_t>(l)] += scaled_integer(x(l, 0), to_row);
+            }
+            residual = rows.residual(k, r);
+            long now = 0;
+            for (const Integer& s : residual) {
+                now = std::max(now, bits(s));
+            }
+            if (step > 1 && now >= size) {
+                break;
+            }
+            size = now;
+        }
+        if (size >= rows.shift()) {
+            return {};
+        }
+        rows.add(r, residual);
+    }
+    return rows.bound("GMP integers");
+}
+
+/// The exact inverse, rounded to fixed point.
+InverseBound bound_rational(const Problem& problem, const Columns<Integer>& columns) {
+    const int n = problem.dofs();
+    if (n > largest_exact_matrix) {
+        return {};
+    }
+    Matrix a(n, n);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
+        for (std::size_t p = columns.start[j]; p < columns.start[j + 1]; ++p) {
+            a.at(columns.contact[p], static_cast<int>(j)) = columns.value[p];
+        }
+    }
+    Integer determinant;
+    const Matrix adjugate = inverse_times_determinant(a, determinant);
+    if (determinant == 0) {
+        return {};
+    }
+    GmpRows rows(problem, columns);
+    for (int k = 0; k < n; ++k) {
+        std::vector<Integer> r;
+        for (int l = 0; l < n; ++l) {
+            r.emplace_back(shifted_left(adjugate.at(k, l), rows.shift()) / determinant);
+        }
+        rows.add(r, rows.residual(k, r));
+    }
+    return rows.bound("exact elimination");
+}
+
+} // namespace
+
+InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic) {
+    const Columns<Integer> columns = columns_of(problem);
+    const auto allowed = [arithmetic](CheckerArithmetic kind) {
+        return arithmetic == CheckerArithmetic::automatic || arithmetic == kind;
+    };
+    InverseBound bound;
+    if (allowed(CheckerArithmetic::fixed64) && solver.usable()) {
+        bound = bound_fixed64(problem, solver, columns);
+    }
+    if (!bound.found && allowed(CheckerArithmetic::gmp) && solver.usable()) {
+        bound = bound_gmp(problem, solver, columns);
+    }
+    if (!bound.found && allowed(CheckerArithmetic::rational)) {
+        bound = bound_rational(problem, columns);
+    }
+    return bound;
+}
+
+} // namespace isostat::checker

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// What is proved of the inverse of the derivative at the stored coordinates (proofs/checker.md, K2 and K3).
+
+#include "checker/problem.hpp"
+#include "checker/solver.hpp"
+
+#include <isostat/checker/verify.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat::checker {
+
+/// Of some matrix R, kept nowhere: row sums, column sums, and the size of E = I - R A. Lengths are real, not in units.
+struct InverseBound {
+    bool found = false;               ///< residual_row < 1: A is regular; otherwise nothing is known
+    std::string arithmetic;           ///< which integers
+    Rational residual_row;            ///< >= |E|_inf
+    Rational residual_column;         ///< >= |E|_1
+    Rational row_sum;                 ///< >= |R|_inf
+    Rational quadratic_sum;           ///< the same over contacts of two disks only
+    Rational column_sum_max;          ///< >= |R|_1
+    std::vector<Rational> column_sum; ///< per contact l: >= sum_k |R_kl|
+};
+
+/// \pre the problem is square.
+InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic);
+
+} // namespace isostat::checker

@@ -1,0 +1,158 @@
+#include "checker/problem.hpp"
+
+#include <isostat/contact/contact.hpp>
+
+#include <bit>
+#include <cstdint>
+
+namespace isostat::checker {
+
+namespace {
+
+/// The largest e such that a finite double is a multiple of 2^e; `if_zero` for 0.
+long granularity(double value, long if_zero) {
+    if (value == 0) {
+        return if_zero;
+    }
+    int exponent = 0;
+    const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(std::abs(value), &exponent), 53));
+    return exponent - 53 + std::countr_zero(static_cast<std::uint64_t>(mantissa));
+}
+
+/// A double as an integer multiple of 2^unit. \pre it is one.
+Integer in_units(double value, long unit) {
+    int exponent = 0;
+    const double fraction = std::frexp(value, &exponent);
+    const Integer mantissa(std::ldexp(fraction, 53)); // exact: at most 53 bits
+    const long shift = exponent - 53 - unit;
+    if (shift >= 0) {
+        return shifted_left(mantissa, shift);
+    }
+    Integer result;
+    mpz_tdiv_q_2exp(result.get_mpz_t(), mantissa.get_mpz_t(), static_cast<mp_bitcnt_t>(-shift));
+    return result;
+}
+
+/// Bits beyond the stored ones in which the true vertex is sought.
+constexpr long extra_bits = 80;
+
+Row row_of(const Contact& contact, int disks) {
+    Row row;
+    const int i = 2 * contact.i;
+    if (contact.kind == ContactKind::disk_disk) {
+        const int j = 2 * contact.j;
+        row.quadratic = true;
+        row.count = 4;
+        row.coordinate = {i, i + 1, j, j + 1};
+        return row;
+    }
+    const bool lower = contact.kind == ContactKind::lower_wall;
+    row.count = lower ? 1 : 2;
+    row.coordinate = {i + contact.j, 2 * disks + contact.j, 0, 0};
+    row.sign = {lower ? 1 : -1, 1, 0, 0};
+    return row;
+}
+
+} // namespace
+
+Problem::Problem(const State<2>& state) {
+    const Packing<2>& packing = state.packing;
+    disks = packing.disk_count();
+    for (const Contact& contact : state.contacts) {
+        if (contact.kind == ContactKind::held) {
+            unsupported = "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
+            return;
+        }
+        const auto axis = static_cast<std::size_t>(contact.j);
+        const bool lower = contact.kind == ContactKind::lower_wall;
+        if (contact.kind != ContactKind::disk_disk &&
+            (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
+            unsupported = "there is no wall for the contact " + to_string<2>(contact);
+            return;
+        }
+    }
+
+    // Which coordinates move: those of disks that are not fixed, and of movable upper walls.
+    dof_of.assign(packing.q.size(), -1);
+    for (std::size_t k = 0; k < packing.q.size(); ++k) {
+        const std::size_t disk = k / 2;
+        const bool moves = disk < packing.radius.size() ? packing.fixed.empty() || packing.fixed[disk] == 0
+                                                        : packing.walls.upper[k % 2] == WallKind::movable;
+        if (moves) {
+            dof_of[k] = dofs();
+            coordinate_of.push_back(static_cast<int>(k));
+        }
+    }
+
+    int exponent = 0;
+    double mean = 0;
+    for (const double r : packing.radius) {
+        mean += 2 * r / static_cast<double>(disks);
+    }
+    std::frexp(mean, &exponent);
+    const long wall_exponent = exponent;
+    long coordinate_unit = wall_exponent;
+    for (const double x : packing.q) {
+        coordinate_unit = std::min(coordinate_unit, granularity(x, coordinate_unit));
+    }
+    long unit = coordinate_unit;
+    for (const double r : packing.radius) {
+        unit = std::min(unit, granularity(r, unit));
+    }
+    fine = unit - extra_bits;
+    spare = coordinate_unit - fine;
+    weight_bits = wall_exponent - fine;
+    for (const double x : packing.q) {
+        stored.push_back(in_units(x, fine));
+    }
+    for (const double r : packing.radius) {
+        radius.push_back(in_units(r, fine));
+    }
+
+    contacts_of.resize(coordinate_of.size());
+    for (const Contact& contact : state.contacts) {
+        const Row row = row_of(contact, disks);
+        for (int k = 0; k < row.count; ++k) {
+            const int dof = dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
+            if (dof >= 0) {
+                contacts_of[static_cast<std::size_t>(dof)].push_back(contacts());
+            }
+        }
+        rows.push_back(row);
+        const auto i = static_cast<std::size_t>(contact.i);
+        sum.push_back(row.quadratic ? Integer(radius[i] + radius[static_cast<std::size_t>(contact.j)]) : radius[i]);
+    }
+}
+
+Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const {
+    const Row& row = rows[static_cast<std::size_t>(contact)];
+    const auto slot = static_cast<std::size_t>(k);
+    if (!row.quadratic) {
+        return row.sign[slot] * weight();
+    }
+    const auto own = static_cast<std::size_t>(row.coordinate[slot]);
+    const auto other = static_cast<std::size_t>(row.coordinate[(slot + 2) % 4]);
+    return q[own] - q[other];
+}
+
+Integer Problem::twice_residual(int contact, const std::vector<Integer>& q) const {
+    const auto l = static_cast<std::size_t>(contact);
+    const Row& row = rows[l];
+    if (row.quadratic) {
+        const Integer dx = entry(contact, 0, q);
+        const Integer dy = entry(contact, 1, q);
+        return dx * dx + dy * dy - sum[l] * sum[l];
+    }
+    Integer gap = -sum[l];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+        gap += row.sign[k] * q[static_cast<std::size_t>(row.coordinate[k])];
+    }
+    return shifted_left(gap, weight_bits + 1);
+}
+
+Rational Problem::force_factor(int contact) const {
+    const auto l = static_cast<std::size_t>(contact);
+    return length(rows[l].quadratic ? sum[l] : weight());
+}
+
+} // namespace isostat::checker

@@ -1,0 +1,57 @@
+#pragma once
+/// \file
+/// A state as a square polynomial system with integer data (proofs/checker.md, notation and K1).
+
+#include "checker/rational.hpp"
+
+#include <isostat/contact/state.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace isostat::checker {
+
+/// One row of the derivative: the coordinates that the contact depends on. For two disks the entries are (x_i - x_j,
+/// x_j - x_i), for walls +-weight on the coordinates, independent of the configuration.
+struct Row {
+    bool quadratic = false;
+    int count = 0;
+    std::array<int, 4> coordinate{}; ///< quadratic: x_i, y_i, x_j, y_j
+    std::array<int, 4> sign{};       ///< walls only
+};
+
+/// Lengths are integers in units of 2^fine: stored numbers are multiples of 2^(fine + spare), so that `spare` bits are
+/// left for corrections.
+class Problem {
+  public:
+    explicit Problem(const State<2>& state);
+
+    /// Empty, or why this state is outside what the checker handles.
+    std::string unsupported;
+    int disks = 0;
+    std::vector<int> dof_of;        ///< per coordinate: its degree of freedom, or -1
+    std::vector<int> coordinate_of; ///< per degree of freedom
+    std::vector<Row> rows;          ///< per contact
+    std::vector<Integer> sum;       ///< per contact: R_i + R_j, or R of the disk at a wall
+    std::vector<Integer> stored;    ///< coordinates
+    std::vector<Integer> radius;
+    std::vector<std::vector<int>> contacts_of; ///< per degree of freedom: the contacts that touch it
+    long fine = 0;
+    long spare = 0;
+    long weight_bits = 0; ///< the weight of walls is 2^weight_bits units
+
+    [[nodiscard]] int dofs() const { return static_cast<int>(coordinate_of.size()); }
+    [[nodiscard]] int contacts() const { return static_cast<int>(rows.size()); }
+    [[nodiscard]] Integer weight() const { return shifted_left(1, weight_bits); }
+    /// Entry k of row l of A at a configuration, k < row.count.
+    [[nodiscard]] Integer entry(int contact, int k, const std::vector<Integer>& q) const;
+    /// 2 F_l in squares of the unit: |x_i - x_j|^2 - (R_i + R_j)^2, or 2 weight gap.
+    [[nodiscard]] Integer twice_residual(int contact, const std::vector<Integer>& q) const;
+    /// A force per length g_l as a force: times R_i + R_j at the true vertex, times the weight at a wall.
+    [[nodiscard]] Rational force_factor(int contact) const;
+    /// A length in units as a rational.
+    [[nodiscard]] Rational length(const Integer& units) const { return Rational(units) * power_of_two(fine); }
+};
+
+} // namespace isostat::checker

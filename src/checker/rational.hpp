@@ -1,0 +1,96 @@
+#pragma once
+/// \file
+/// Exact numbers of the checker: GMP integers, rationals, and ranges of rationals. No operation rounds.
+
+#include <gmpxx.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat::checker {
+
+using Integer = mpz_class;
+using Rational = mpq_class;
+
+/// 2^exponent.
+inline Rational power_of_two(long exponent) {
+    Rational value(1);
+    if (exponent >= 0) {
+        mpq_mul_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(exponent));
+    } else {
+        mpq_div_2exp(value.get_mpq_t(), value.get_mpq_t(), static_cast<mp_bitcnt_t>(-exponent));
+    }
+    return value;
+}
+
+inline Integer shifted_left(const Integer& value, long bits) {
+    Integer result;
+    mpz_mul_2exp(result.get_mpz_t(), value.get_mpz_t(), static_cast<mp_bitcnt_t>(bits));
+    return result;
+}
+
+/// The number of bits of |value|.
+inline long bits(const Integer& value) {
+    return value == 0 ? 0 : static_cast<long>(mpz_sizeinbase(value.get_mpz_t(), 2));
+}
+
+/// An integer times 2^exponent, as an approximation (for solvers that are not trusted).
+inline double approximate(const Integer& value, long exponent) {
+    long own = 0;
+    const double mantissa = mpz_get_d_2exp(&own, value.get_mpz_t());
+    return std::ldexp(mantissa, static_cast<int>(std::min<long>(std::max<long>(own + exponent, -5000), 5000)));
+}
+
+/// A double that is not below a rational, at most one step above it (or the smallest normal number, for smaller ones;
+/// or infinity).
+inline double rounded_up(const Rational& value) {
+    constexpr double largest = std::numeric_limits<double>::max();
+    if (value > Rational(largest)) {
+        return std::numeric_limits<double>::infinity();
+    }
+    if (value < Rational(-largest)) {
+        return -largest;
+    }
+    double near = value.get_d();
+    if (Rational(near) < value) {
+        near = std::nextafter(near, std::numeric_limits<double>::infinity());
+    }
+    return Rational(near) < value ? std::numeric_limits<double>::min() : near;
+}
+inline double rounded_down(const Rational& value) {
+    return -rounded_up(-value);
+}
+
+/// All numbers from lower to upper.
+struct Range {
+    Rational lower;
+    Rational upper;
+    Range() = default;
+    explicit Range(const Rational& value) : lower(value), upper(value) {}
+    Range(const Rational& from, const Rational& to) : lower(from), upper(to) {}
+    static Range around(const Rational& middle, const Rational& radius) { return {middle - radius, middle + radius}; }
+    [[nodiscard]] bool positive() const { return lower > 0; }
+    [[nodiscard]] bool negative() const { return upper < 0; }
+    [[nodiscard]] bool has_zero() const { return lower <= 0 && upper >= 0; }
+};
+
+inline Range operator+(const Range& a, const Range& b) {
+    return {a.lower + b.lower, a.upper + b.upper};
+}
+inline Range operator-(const Range& a, const Range& b) {
+    return {a.lower - b.upper, a.upper - b.lower};
+}
+inline Range operator*(const Range& a, const Range& b) {
+    const Rational p = a.lower * b.lower;
+    const Rational q = a.lower * b.upper;
+    const Rational r = a.upper * b.lower;
+    const Rational s = a.upper * b.upper;
+    return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
+}
+/// \pre !b.has_zero()
+inline Range operator/(const Range& a, const Range& b) {
+    return a * Range(1 / b.upper, 1 / b.lower);
+}
+
+} // namespace isostat::checker

@@ -1,0 +1,37 @@
+#pragma once
+/// \file
+/// Approximate solutions. Nothing that comes out of here is trusted: every use is followed by an exact residual.
+
+#include "checker/problem.hpp"
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
+
+namespace isostat::checker {
+
+/// Sparse LU factorisations in double of the scaled matrix A / 2^scale at the stored coordinates, and of its transpose.
+class Solver {
+  public:
+    explicit Solver(const Problem& problem);
+    /// False: the factorisation gave up (which says nothing about the matrix).
+    [[nodiscard]] bool usable() const { return usable_; }
+    /// In units of the problem's `fine`: about the size of the largest entry.
+    [[nodiscard]] long scale() const { return scale_; }
+    /// (A / 2^scale)^-1 b: b per contact, result per degree of freedom.
+    [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return lu_.solve(b); }
+    /// (A / 2^scale)^-T b: b per degree of freedom, result per contact.
+    [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const { return transposed_.solve(b); }
+
+  private:
+    using Lu = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>;
+    long scale_ = 0;
+    bool usable_ = false;
+    Lu lu_;
+    Lu transposed_;
+};
+
+/// value * 2^shift, rounded towards zero; 0 for what is not finite.
+Integer scaled_integer(double value, long shift);
+
+} // namespace isostat::checker

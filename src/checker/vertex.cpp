@@ -1,0 +1,106 @@
+#include "checker/vertex.hpp"
+
+namespace isostat::checker {
+
+namespace {
+
+/// |x_i - x_j - (the same elsewhere)| is at most twice the distance; a row of two disks has four entries, and two
+/// factors of it meet in a second derivative (K1).
+constexpr int curvature = 8;
+
+/// Newton steps with the factorisation at the stored configuration and exact residuals.
+std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
+    std::vector<Integer> q = problem.stored;
+    long size = -1;
+    for (int step = 0; step < 40; ++step) {
+        Eigen::MatrixXd b(problem.contacts(), 1);
+        std::vector<Integer> residual;
+        long now = 0;
+        for (int l = 0; l < problem.contacts(); ++l) {
+            residual.push_back(problem.twice_residual(l, q));
+            now = std::max(now, bits(residual.back()));
+        }
+        if (now == 0 || (size >= 0 && now >= size)) {
+            break;
+        }
+        size = now;
+        for (int l = 0; l < problem.contacts(); ++l) {
+            b(l, 0) = approximate(residual[static_cast<std::size_t>(l)], -now);
+        }
+        // F = residual / 2, A = 2^scale times the matrix that was factorised.
+        const Eigen::MatrixXd x = solver.solve(b);
+        for (int k = 0; k < problem.dofs(); ++k) {
+            q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])] -=
+                scaled_integer(x(k, 0), now - 1 - solver.scale());
+        }
+    }
+    return q;
+}
+
+Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
+    Integer most = 0;
+    for (std::size_t k = 0; k < q.size(); ++k) {
+        most = std::max<Integer>(most, abs(q[k] - problem.stored[k]));
+    }
+    return most;
+}
+
+} // namespace
+
+TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse) {
+    TrueVertex vertex;
+    const Rational slope = curvature * inverse.quadratic_sum;
+    std::vector<std::vector<Integer>> starts{problem.stored};
+    if (solver.usable()) {
+        starts.insert(starts.begin(), improved(problem, solver));
+    }
+    for (const std::vector<Integer>& start : starts) {
+        Integer largest = 0;
+        for (int l = 0; l < problem.contacts(); ++l) {
+            largest = std::max<Integer>(largest, abs(problem.twice_residual(l, start)));
+        }
+        const Rational moved = problem.length(largest_move(problem, start));
+        const Rational error = inverse.residual_row + slope * moved;
+        const Rational step = inverse.row_sum * Rational(largest) * power_of_two(2 * problem.fine - 1);
+        const Rational room = 1 - error;
+        // K4 with radius 2 step / room.
+        if (room <= 0 || 2 * slope * step > room * room) {
+            continue;
+        }
+        vertex.middle = start;
+        vertex.radius = 2 * step / room;
+        vertex.moved_least = std::max<Rational>(0, moved - vertex.radius);
+        vertex.moved_most = moved + vertex.radius;
+        std::size_t most = 0;
+        for (const std::vector<int>& touching : problem.contacts_of) {
+            std::size_t quadratic = 0;
+            for (const int l : touching) {
+                quadratic += problem.rows[static_cast<std::size_t>(l)].quadratic ? 1 : 0;
+            }
+            most = std::max(most, quadratic);
+        }
+        vertex.row_residual = inverse.residual_row + slope * vertex.moved_most;
+        vertex.column_residual = inverse.residual_column + inverse.column_sum_max * 2 *
+                                                               Rational(static_cast<unsigned long>(most)) *
+                                                               vertex.moved_most;
+        vertex.found = vertex.row_residual < 1 && vertex.column_residual < 1;
+        if (vertex.found) {
+            return vertex;
+        }
+    }
+    return vertex;
+}
+
+bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance) {
+    return inverse.residual_row + curvature * inverse.quadratic_sum * (vertex.moved_most + distance) / 2 < 1;
+}
+
+double largest_unique_distance(const InverseBound& inverse, const TrueVertex& vertex) {
+    if (inverse.quadratic_sum == 0) {
+        return std::numeric_limits<double>::infinity();
+    }
+    const Rational limit = 2 * (1 - inverse.residual_row) / (curvature * inverse.quadratic_sum) - vertex.moved_most;
+    return std::max(0.0, rounded_down(limit * (1 - power_of_two(-40))));
+}
+
+} // namespace isostat::checker

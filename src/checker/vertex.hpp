@@ -1,0 +1,29 @@
+#pragma once
+/// \file
+/// The true vertex near a stored configuration (proofs/checker.md, K4 and K5).
+
+#include "checker/inverse.hpp"
+
+namespace isostat::checker {
+
+/// A true vertex within `radius` of `middle` (every coordinate), and nowhere else within `unique_within(...)` of the
+/// stored configuration. Lengths are real.
+struct TrueVertex {
+    bool found = false;
+    std::vector<Integer> middle; ///< in units of the problem
+    Rational radius;
+    Rational moved_least; ///< bounds of the largest |q*_k - stored q_k|
+    Rational moved_most;
+    Rational row_residual;    ///< bound of |I - R A(q*)|_inf, below 1
+    Rational column_residual; ///< bound of |I - R A(q*)|_1, below 1
+};
+
+TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse);
+
+/// No two zeros lie within `distance` of the stored configuration (every coordinate), the true vertex being one.
+bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance);
+
+/// Such a distance, nearly as large as the criterion allows; infinity when there are no contacts of two disks.
+double largest_unique_distance(const InverseBound& inverse, const TrueVertex& vertex);
+
+} // namespace isostat::checker

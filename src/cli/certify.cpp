@@ -1,0 +1,46 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+#include "cli/true_vertex_text.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace isostat::cli {
+
+int certify(const CertifyArguments& arguments) {
+    const std::filesystem::path input = arguments.input;
+    Certificate certificate;
+    certificate.input = input.filename().string();
+    certificate.input_hash = sha256(read_text(input));
+    certificate.program = program_name();
+    certificate.state = read_state<2>(input).state;
+    Certification result = isostat::certify(certificate.state);
+    certificate.claims = result.claims;
+    write_certificate(arguments.output, certificate);
+    if (arguments.common.json) {
+        Json object;
+        object["file"] = arguments.input;
+        object["certificate"] = arguments.output;
+        object["verdict"] = to_string(result.verdict);
+        object["claims"] = claims_json(result);
+        object["refuted"] = result.refuted;
+        object["undecided"] = result.claims.undecided;
+        fmt::print("{}\n", object.dump());
+    } else {
+        print_claims(result);
+        fmt::print("{:<14} {}: {}\n", to_string(result.verdict),
+                   result.verdict == Verdict::proved
+                       ? "an isostatic, stable equilibrium without overlap at the true vertex"
+                   : result.verdict == Verdict::refuted ? "not such an equilibrium"
+                                                        : "some claims could not be made",
+                   arguments.output);
+    }
+    return status_of(result.verdict);
+}
+
+} // namespace isostat::cli

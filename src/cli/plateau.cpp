@@ -1,0 +1,186 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+#include "cli/read_packing.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/plateau.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace isostat::cli {
+
+namespace {
+
+using crafted::PlateauCounts;
+using crafted::PlateauRange;
+using crafted::PlateauStep;
+
+std::string word(Verdict verdict) {
+    return std::string(to_string(verdict));
+}
+
+/// A bound is marked: h and k are exact only where the rank is.
+std::string bound(int value, const PlateauCounts& counts) {
+    return fmt::format("{}{}", counts.rank_exact == Verdict::proved ? "" : "<=", value);
+}
+
+std::string range_text(const PlateauRange& range) {
+    return fmt::format("{:.17g} <= threshold {} {:.17g}{}", range.first, range.open ? "<=" : "<", range.last,
+                       range.open ? " (and perhaps beyond)" : "");
+}
+
+void print_ranges(const std::string& title, const std::vector<PlateauRange>& ranges, const std::string& none) {
+    constexpr std::size_t longest = 8;
+    if (ranges.empty()) {
+        fmt::print("{:<28}{}\n", title, none);
+    }
+    for (std::size_t k = 0; k < ranges.size() && k < longest; ++k) {
+        fmt::print("{:<28}{}\n", k == 0 ? title : "", range_text(ranges[k]));
+        fmt::print("{:<28}  from N = {} with {} rattlers, {} candidates\n", "", ranges[k].contacts, ranges[k].rattlers,
+                   ranges[k].candidates);
+    }
+    if (ranges.size() > longest) {
+        fmt::print("{:<28}and {} more ranges\n", "", ranges.size() - longest);
+    }
+}
+
+void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+                const std::array<double, 2>& thresholds) {
+    fmt::print("file                        {} ({})\n", a.file, file.format);
+    for (const std::string& note : file.notes) {
+        fmt::print("                            {}\n", note);
+    }
+    fmt::print("disks                       {}, radii {:.6g} to {:.6g}\n", file.packing.disk_count(),
+               file.packing.min_radius(), file.packing.max_radius());
+    fmt::print("thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
+    fmt::print("candidates                  {}, smallest gap {:.6g}; the contact list changes at {} thresholds\n",
+               plateau.candidates, plateau.deepest_overlap, plateau.changes);
+    fmt::print("rows                        {} of these, {} ranks computed, the rest follows from monotony\n\n",
+               plateau.steps.size(), plateau.ranks_computed);
+    fmt::print("{:>14} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:<10}| {:>8} {:>7} {:>7}\n", "threshold",
+               "candidates", "rattlers", "N_f", "N", "rank", "h", "k", " isostatic", "all N_f", "h", "k");
+    for (const PlateauStep& s : plateau.steps) {
+        fmt::print("{:>14.6g} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {:<9} | {:>8} {:>7} {:>7}\n", s.threshold,
+                   s.candidate_count, s.rattlers, s.backbone.dof_count, s.backbone.contact_count, s.backbone.rank,
+                   bound(s.backbone.hyperstaticity, s.backbone), bound(s.backbone.mechanisms, s.backbone),
+                   word(s.backbone.isostatic), s.all.dof_count, bound(s.all.hyperstaticity, s.all),
+                   bound(s.all.mechanisms, s.all));
+    }
+    const int rigid = plateau.steps.empty() ? 0 : plateau.steps.back().all.rigid_motions;
+    fmt::print("\nN_f, N, rank, h, k: backbone, that is without disks and contacts that can carry no force by the "
+               "position of the normals;\nall: every disk. k includes {} common rigid motions. <=: proved bound.\n\n",
+               rigid);
+    print_ranges("backbone isostatic, proved", plateau.ranges, "at no threshold");
+    print_ranges("all disks isostatic, proved", plateau.ranges_all, "at no threshold");
+    if (!plateau.special.empty()) {
+        print_ranges("N = N_f but rank deficient", plateau.special, "");
+    }
+    fmt::print("no self-stress (h = 0)      {}\n",
+               plateau.no_self_stress_open
+                   ? fmt::format("up to the largest threshold {:.17g}, proved", plateau.no_self_stress_below)
+                   : fmt::format("below {:.17g}, proved", plateau.no_self_stress_below));
+}
+
+Json counts_json(const PlateauCounts& c) {
+    return {{"N_f", c.dof_count},
+            {"N", c.contact_count},
+            {"rank", c.rank},
+            {"h", c.hyperstaticity},
+            {"k", c.mechanisms},
+            {"rigid_motions", c.rigid_motions},
+            {"rank_exact", word(c.rank_exact)},
+            {"isostatic", word(c.isostatic)}};
+}
+
+Json ranges_json(const std::vector<PlateauRange>& ranges) {
+    Json out = Json::array();
+    for (const PlateauRange& r : ranges) {
+        out.push_back({{"first", number(r.first)},
+                       {"last", number(r.last)},
+                       {"open", r.open},
+                       {"N", r.contacts},
+                       {"rattlers", r.rattlers},
+                       {"candidates", r.candidates}});
+    }
+    return out;
+}
+
+Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+             const std::array<double, 2>& thresholds) {
+    Json out;
+    out["format"] = "isostat-plateau 1";
+    out["program"] = program_name();
+    out["command"] = a.common.command;
+    out["file"] = a.file;
+    out["file_format"] = file.format;
+    out["notes"] = file.notes;
+    out["disks"] = file.packing.disk_count();
+    out["thresholds"] = {thresholds[0], thresholds[1]};
+    out["smallest_gap"] = number(plateau.deepest_overlap);
+    out["candidates"] = plateau.candidates;
+    out["changes"] = plateau.changes;
+    out["ranks_computed"] = plateau.ranks_computed;
+    out["isostatic"] = ranges_json(plateau.ranges);
+    out["isostatic_all_disks"] = ranges_json(plateau.ranges_all);
+    out["rank_deficient"] = ranges_json(plateau.special);
+    out["no_self_stress_below"] = number(plateau.no_self_stress_below);
+    out["no_self_stress_open"] = plateau.no_self_stress_open;
+    Json steps = Json::array();
+    for (const PlateauStep& s : plateau.steps) {
+        steps.push_back({{"threshold", number(s.threshold)},
+                         {"candidates", s.candidate_count},
+                         {"rattlers", s.rattlers},
+                         {"backbone", counts_json(s.backbone)},
+                         {"all", counts_json(s.all)}});
+    }
+    out["steps"] = std::move(steps);
+    return out;
+}
+
+std::string to_csv(const crafted::Plateau& plateau) {
+    std::string out = "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,all_rank,all_h,"
+                      "all_k,all_rank_exact,all_isostatic\n";
+    const auto counts = [](const PlateauCounts& c) {
+        return fmt::format("{},{},{},{},{},{},{}", c.dof_count, c.contact_count, c.rank, c.hyperstaticity, c.mechanisms,
+                           c.rank_exact == Verdict::proved ? 1 : 0, word(c.isostatic));
+    };
+    for (const PlateauStep& s : plateau.steps) {
+        out += fmt::format("{},{},{},{},{}\n", s.threshold, s.candidate_count, s.rattlers, counts(s.backbone),
+                           counts(s.all));
+    }
+    return out;
+}
+
+} // namespace
+
+int plateau(const PlateauArguments& a) {
+    std::array<double, 2> thresholds{};
+    if (!a.thresholds.empty()) {
+        thresholds = parse_range(a.thresholds, "--thresholds");
+    }
+    const ReadPacking file = read_any_packing(a.file, a.foreign);
+    if (a.thresholds.empty()) {
+        constexpr double share = 0.1; // of the smallest radius
+        thresholds[1] = share * file.packing.min_radius();
+        thresholds[0] = std::min(crafted::plateau(file.packing, {thresholds[1]}).deepest_overlap, thresholds[1]);
+    }
+    const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows);
+    if (!a.csv.empty()) {
+        write_atomically(a.csv, to_csv(result));
+    }
+    if (a.common.json) {
+        fmt::print("{}\n", to_json(a, file, result, thresholds).dump());
+    } else {
+        print_text(a, file, result, thresholds);
+    }
+    if (!result.ranges.empty()) {
+        return done;
+    }
+    return result.special.empty() ? failed : undecided;
+}
+
+} // namespace isostat::cli

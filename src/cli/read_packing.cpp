@@ -1,0 +1,132 @@
+#include "cli/read_packing.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/packing_file.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/io/vertex_text.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace isostat::cli {
+
+namespace {
+
+std::optional<double> number_in(const std::string& text) {
+    double value = 0;
+    const char* const end = text.data() + text.size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    return error == std::errc() && stop == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+[[noreturn]] void usage(const std::string& option, const std::string& value, const std::string& expected) {
+    throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}", option, value, expected));
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+    std::vector<std::string> out(1);
+    for (const char c : text) {
+        if (c == at) {
+            out.emplace_back();
+        } else {
+            out.back() += c;
+        }
+    }
+    return out;
+}
+
+ForeignOptions options_of(const ForeignArguments& a) {
+    ForeignOptions out;
+    out.format = a.format;
+    if (!a.format.empty() && a.format != "lammps-data" && a.format != "lammps-dump" && a.format != "xyz" &&
+        a.format != "table") {
+        usage("--format", a.format, "lammps-data, lammps-dump, xyz or table");
+    }
+    if (!a.radius.empty() || !a.diameter.empty()) {
+        const bool radius = !a.radius.empty();
+        const std::string& text = radius ? a.radius : a.diameter;
+        SizeStatement size;
+        size.meaning = radius ? SizeMeaning::radius : SizeMeaning::diameter;
+        if (const auto value = number_in(text)) {
+            if (!(*value > 0)) {
+                usage(radius ? "--radius" : "--diameter", text, "a positive number or the name of a column");
+            }
+            size.value = *value;
+        } else {
+            size.column = text;
+        }
+        out.size = size;
+    }
+    out.walls = a.walls == "box" ? ForeignWalls::box : (a.walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::none);
+    if (!a.box.empty()) {
+        const auto axes = split(a.box, ',');
+        if (axes.size() != 2) {
+            usage("--box", a.box, "XLO:XHI,YLO:YHI");
+        }
+        const auto x = parse_range(axes[0], "--box"), y = parse_range(axes[1], "--box");
+        out.box = {x[0], x[1], y[0], y[1]};
+        if (out.walls == ForeignWalls::none) {
+            usage("--box", a.box, "--walls box or --walls fixed beside it");
+        }
+    }
+    if (a.frame != "last") {
+        const auto frame = number_in(a.frame);
+        if (!frame || *frame < 0 || *frame != std::floor(*frame) || *frame > 1e15) {
+            usage("--frame", a.frame, "a number from 0, or last");
+        }
+        out.frame = static_cast<long>(*frame);
+    }
+    if (!a.columns.empty()) {
+        out.columns = split(a.columns, ',');
+    }
+    out.not_periodic = a.not_periodic;
+    return out;
+}
+
+} // namespace
+
+std::array<double, 2> parse_range(const std::string& text, const std::string& option) {
+    const auto ends = split(text, ':');
+    const auto low = number_in(ends[0]), high = ends.size() == 2 ? number_in(ends[1]) : std::nullopt;
+    if (!low || !high || *low > *high) {
+        usage(option, text, "A:B, two numbers with A <= B");
+    }
+    return {*low, *high};
+}
+
+ReadPacking read_any_packing(const std::string& file, const ForeignArguments& arguments) {
+    const ForeignOptions options = options_of(arguments);
+    const std::string text = read_text(file);
+    const std::string format = options.format.empty() ? recognise_format(text) : options.format;
+    const bool own = format == "state" || format == "vertex" || format == "packing";
+    if (!own) {
+        ForeignPacking foreign = parse_foreign(text, file, options);
+        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes)};
+    }
+    if (options.size || options.box || !arguments.walls.empty() || !options.columns.empty() || options.frame ||
+        options.not_periodic) {
+        throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
+                                                  "expected none of --radius, --diameter, --walls, --box, --frame, "
+                                                  "--columns, --not-periodic",
+                                                  file, format));
+    }
+    if (format == "packing") {
+        const crafted::PackingFile crafted = crafted::parse_packing(text, file);
+        ReadPacking out{crafted::approximate(crafted.packing), format, {}};
+        out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
+        return out;
+    }
+    ReadPacking out{format == "state" ? parse_state<2>(text, file).state.packing
+                                      : parse_vertex_text(text, file).packing,
+                    format,
+                    {}};
+    out.notes.emplace_back("the contact list of the file is not used");
+    return out;
+}
+
+} // namespace isostat::cli

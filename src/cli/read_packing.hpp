@@ -1,0 +1,27 @@
+#pragma once
+/// \file
+/// A packing from any file that the program reads.
+
+#include "cli/commands.hpp"
+
+#include <isostat/packing/packing.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat::cli {
+
+struct ReadPacking {
+    Packing<2> packing;
+    std::string format;
+    std::vector<std::string> notes;
+};
+
+/// States, vertex texts, crafted packings (rounded to doubles) and files of other programs. Throws `Error(usage)` for
+/// statements that make no sense, `Error(bad_input)` for the file.
+ReadPacking read_any_packing(const std::string& file, const ForeignArguments& arguments);
+
+/// "A:B" as two finite numbers, A <= B. Throws `Error(usage)` naming the option.
+std::array<double, 2> parse_range(const std::string& text, const std::string& option);
+
+} // namespace isostat::cli

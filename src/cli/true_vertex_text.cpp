@@ -1,0 +1,186 @@
+#include "cli/true_vertex_text.hpp"
+
+#include "cli/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat::cli {
+
+namespace {
+
+void line(const char* claim, const std::string& text, const std::string& rung) {
+    fmt::print("{:<14} {:<88} {}\n", claim, text, rung);
+}
+
+std::string bounds(const Interval& interval) {
+    return fmt::format("{:.12g} +- {:.2g}", 0.5 * (interval.lower + interval.upper),
+                       0.5 * (interval.upper - interval.lower));
+}
+
+std::string end_text(const LoadEndClaim& end) {
+    return end.unbounded ? "unbounded" : fmt::format("{} (opens {})", bounds(end.stress), to_string<2>(end.opens));
+}
+
+/// Smallest lower end, and the largest width, of the intervals that are not structural zeros.
+std::pair<double, double> smallest_and_widest(const ForcesClaim& forces) {
+    double smallest = std::numeric_limits<double>::infinity();
+    double widest = 0;
+    std::size_t next = 0;
+    for (std::size_t l = 0; l < forces.finite.size(); ++l) {
+        if (next < forces.structural_zeros.size() && forces.structural_zeros[next] == static_cast<int>(l)) {
+            ++next;
+            continue;
+        }
+        smallest = std::min(smallest, forces.finite[l].lower);
+        widest = std::max(widest, forces.finite[l].upper - forces.finite[l].lower);
+    }
+    return {smallest, widest};
+}
+
+Json end_json(const LoadEndClaim& end) {
+    Json object;
+    object["unbounded"] = end.unbounded;
+    if (!end.unbounded) {
+        object["stress"] = {number(end.stress.lower), number(end.stress.upper)};
+        object["opens"] = to_string<2>(end.opens);
+    }
+    return object;
+}
+
+std::string signs_text(const ForceSigns& s) {
+    std::string text = fmt::format("{} positive, {} exactly 0 (structural)", s.positive, s.structural_zero);
+    text += s.negative > 0 ? fmt::format(", {} negative", s.negative) : "";
+    return text + (s.undecided > 0 ? fmt::format(", {} undecided", s.undecided) : "");
+}
+
+} // namespace
+
+void print_claims(const Certification& certification) {
+    const CertificateClaims& c = certification.claims;
+    fmt::print("{:<14} {:<88} {}\n", "claim", "proved of the stored coordinates (counting) and of the true vertex",
+               "arithmetic");
+    if (c.counting) {
+        line("counting",
+             fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}", c.counting->dof_count, c.counting->contact_count,
+                         c.counting->rank, c.counting->hyperstaticity, c.counting->hypostaticity),
+             std::string(to_string(c.counting->rung)));
+    }
+    if (c.vertex) {
+        line("vertex",
+             fmt::format("exists within {:.3g} per coordinate, the only one within {:.3g}; sigma_min >= {:.3g}",
+                         c.vertex->radius, c.vertex->unique_radius, certification.smallest_sigma),
+             std::string(to_string(c.vertex->rung)));
+    }
+    if (c.forces) {
+        const auto [smallest, widest] = smallest_and_widest(*c.forces);
+        line("forces",
+             fmt::format("{}; smallest >= {:.6g}, each within {:.2g}", signs_text(certification.signs), smallest,
+                         widest),
+             std::string(to_string(c.forces->rung)));
+    }
+    if (c.gaps) {
+        line("gaps",
+             std::isfinite(c.gaps->smallest)
+                 ? fmt::format("all other gaps >= {:.6g}, nearest {}", c.gaps->smallest, to_string<2>(c.gaps->where))
+                 : "there is no other pair",
+             std::string(to_string(c.gaps->rung)));
+    }
+    if (c.load_interval) {
+        const std::string rung(to_string(c.load_interval->rung));
+        line("load interval", "from " + end_text(c.load_interval->low), rung);
+        line("", "to   " + end_text(c.load_interval->high), rung);
+    }
+    if (c.stable) {
+        line("stable", "strict local minimum of the potential of the load", "");
+    }
+    for (const std::string& reason : c.undecided) {
+        const bool refuted = std::find(certification.refuted.begin(), certification.refuted.end(), reason) !=
+                             certification.refuted.end();
+        fmt::print("{:<14} {}\n", refuted ? "refuted" : "not claimed", reason);
+    }
+}
+
+Json claims_json(const Certification& certification) {
+    const CertificateClaims& c = certification.claims;
+    Json object;
+    object["counting"] = nullptr;
+    if (c.counting) {
+        object["counting"] = {{"N_f", c.counting->dof_count},   {"N", c.counting->contact_count},
+                              {"rank", c.counting->rank},       {"h", c.counting->hyperstaticity},
+                              {"k", c.counting->hypostaticity}, {"rung", to_string(c.counting->rung)}};
+    }
+    object["vertex"] = nullptr;
+    if (c.vertex) {
+        object["vertex"] = {{"radius", number(c.vertex->radius)},
+                            {"unique_radius", number(c.vertex->unique_radius)},
+                            {"sigma_min", number(certification.smallest_sigma)},
+                            {"rung", to_string(c.vertex->rung)}};
+    }
+    object["forces"] = nullptr;
+    if (c.forces) {
+        const auto [smallest, widest] = smallest_and_widest(*c.forces);
+        object["forces"] = {{"positive", certification.signs.positive},
+                            {"structural_zeros", certification.signs.structural_zero},
+                            {"smallest", number(smallest)},
+                            {"widest_interval", number(widest)},
+                            {"rung", to_string(c.forces->rung)}};
+    }
+    object["gaps"] = nullptr;
+    if (c.gaps) {
+        object["gaps"] = {{"smallest", number(c.gaps->smallest)},
+                          {"where", std::isfinite(c.gaps->smallest) ? Json(to_string<2>(c.gaps->where)) : Json()},
+                          {"rung", to_string(c.gaps->rung)}};
+    }
+    object["load_interval"] = nullptr;
+    if (c.load_interval) {
+        object["load_interval"] = {{"low", end_json(c.load_interval->low)},
+                                   {"high", end_json(c.load_interval->high)},
+                                   {"rung", to_string(c.load_interval->rung)}};
+    }
+    object["stable"] = c.stable;
+    return object;
+}
+
+void print_true_vertex(const Certification& certification) {
+    const CertificateClaims& c = certification.claims;
+    if (!c.vertex) {
+        fmt::print("true configuration       not proved to exist\n");
+    } else {
+        fmt::print(
+            "true configuration       exists within {:.3g} of the stored coordinates ({}); rank {}, h = 0, k = 0 "
+            "there (sigma_min >= {:.3g})\n",
+            c.vertex->radius, to_string(c.vertex->rung), c.counting->rank, certification.smallest_sigma);
+        fmt::print("  its forces             {}\n", signs_text(certification.signs));
+    }
+    for (const std::string& reason : c.undecided) {
+        fmt::print("  not proved there       {}\n", reason);
+    }
+}
+
+Json true_vertex_json(const Certification& certification) {
+    const CertificateClaims& c = certification.claims;
+    Json object;
+    object["exists"] = c.vertex ? "proved" : "undecided";
+    if (c.vertex) {
+        object["radius"] = number(c.vertex->radius);
+        object["unique_radius"] = number(c.vertex->unique_radius);
+        object["rank"] = c.counting->rank;
+        object["h"] = 0;
+        object["k"] = 0;
+        object["sigma_min"] = number(certification.smallest_sigma);
+        const ForceSigns& s = certification.signs;
+        object["forces"] = {{"positive", s.positive},
+                            {"structural_zeros", s.structural_zero},
+                            {"negative", s.negative},
+                            {"undecided", s.undecided}};
+        object["decided_by"] = to_string(c.forces ? c.forces->rung : c.vertex->rung);
+    }
+    object["not_proved"] = c.undecided;
+    return object;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,21 @@
+#pragma once
+/// \file
+/// How `certify` and `inspect` say what is proved of the true vertex.
+
+#include "cli/common.hpp"
+
+#include <isostat/certificate/certify.hpp>
+
+namespace isostat::cli {
+
+/// One line per claim with its bounds and the arithmetic that proved it; absent ones with the reason.
+void print_claims(const Certification& certification);
+
+/// The same for programs; null where a claim is absent.
+Json claims_json(const Certification& certification);
+
+/// What is proved of the true configuration near a stored one, in the words of `inspect`.
+void print_true_vertex(const Certification& certification);
+Json true_vertex_json(const Certification& certification);
+
+} // namespace isostat::cli

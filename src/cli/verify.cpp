@@ -1,0 +1,84 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+
+#include <isostat/checker/verify.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat::cli {
+
+namespace {
+
+int status_of_verdict(Verdict verdict) {
+    switch (verdict) {
+    case Verdict::proved: return done;
+    case Verdict::refuted: return failed;
+    case Verdict::undecided: return undecided;
+    }
+    return undecided;
+}
+
+/// Whether the bytes of a file are those that the certificate names.
+ClaimCheck check_input(const Certificate& certificate, const std::string& input) {
+    ClaimCheck check;
+    check.claim = "input";
+    check.claimed = true;
+    const std::string hash = sha256(read_text(input));
+    const bool same = hash == certificate.input_hash;
+    check.verdict = same ? Verdict::proved : Verdict::refuted;
+    check.detail = same ? fmt::format("{} has the SHA-256 that is named", input)
+                        : fmt::format("{} has the SHA-256 {}, not {}", input, hash, certificate.input_hash);
+    return check;
+}
+
+Json json_of(const ClaimCheck& check) {
+    Json object;
+    object["claim"] = check.claim;
+    object["claimed"] = check.claimed;
+    object["verdict"] = to_string(check.verdict);
+    object["detail"] = check.detail;
+    Json& numbers = object["numbers"] = Json::object();
+    for (const auto& [name, value] : check.numbers) {
+        numbers[name] = number(value);
+    }
+    return object;
+}
+
+} // namespace
+
+int verify(const VerifyArguments& arguments) {
+    const Certificate certificate = read_certificate(arguments.certificate);
+    Verification verification = isostat::verify(certificate);
+    if (!arguments.input.empty()) {
+        verification.checks.push_back(check_input(certificate, arguments.input));
+        if (verification.checks.back().verdict == Verdict::refuted) {
+            verification.verdict = Verdict::refuted;
+        }
+    }
+    if (arguments.common.json) {
+        Json object;
+        object["certificate"] = arguments.certificate;
+        object["program"] = certificate.program;
+        object["input"] = certificate.input;
+        object["input_hash"] = certificate.input_hash;
+        for (const ClaimCheck& check : verification.checks) {
+            object["checks"].push_back(json_of(check));
+        }
+        object["verdict"] = to_string(verification.verdict);
+        fmt::print("{}\n", object.dump());
+        return status_of_verdict(verification.verdict);
+    }
+    fmt::print("{}: claims of {} about {} ({} disks, {} contacts)\n", arguments.certificate, certificate.program,
+               certificate.input, certificate.state.packing.disk_count(), certificate.state.contacts.size());
+    for (const ClaimCheck& check : verification.checks) {
+        fmt::print("{:<14} {:<9} {}\n", check.claim, check.claimed ? to_string(check.verdict) : "absent", check.detail);
+    }
+    for (const std::string& reason : certificate.claims.undecided) {
+        fmt::print("not claimed by the program: {}\n", reason);
+    }
+    fmt::print("{:<14} {}\n", "equilibrium", to_string(verification.verdict));
+    return status_of_verdict(verification.verdict);
+}
+
+} // namespace isostat::cli

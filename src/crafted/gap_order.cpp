@@ -1,0 +1,162 @@
+#include "crafted/gap_order.hpp"
+
+#include <boost/multiprecision/gmp.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+
+namespace isostat::crafted {
+
+namespace {
+
+using Integer = boost::multiprecision::number<boost::multiprecision::gmp_int, boost::multiprecision::et_off>;
+
+constexpr double u = 0x1p-53;
+/// Rounding of a gap from the lengths that enter (four operations and hypot, below 1 ulp), with room for the rounding
+/// of the bound itself and of the comparison.
+constexpr double relative_bound = 16 * u;
+constexpr int mantissa_bits = 53;
+
+/// Exponent of the lowest bit of a finite double; the largest integer for 0.
+int lowest_exponent(double x) {
+    if (x == 0) {
+        return std::numeric_limits<int>::max();
+    }
+    int exponent = 0;
+    auto mantissa = static_cast<long long>(std::ldexp(std::frexp(x, &exponent), mantissa_bits));
+    exponent -= mantissa_bits;
+    while (mantissa % 2 == 0) {
+        mantissa /= 2;
+        ++exponent;
+    }
+    return exponent;
+}
+
+/// sqrt(square) - sum, in units of 2^exponent (square: 4^exponent).
+struct Root {
+    Integer square, sum;
+};
+
+int sign(const Integer& x) {
+    return x.sign();
+}
+
+/// Sign of sqrt(a) - sqrt(b) - c for a, b >= 0: compare squares of sides that are known not to be negative, twice.
+int root_sign(const Integer& a, const Integer& b, const Integer& c) {
+    const Integer cc = c * c;
+    if (c < 0 && b < cc) {
+        return 1; // sqrt(b) + c < 0 <= sqrt(a)
+    }
+    const Integer rest = a - b - cc; // sign of rest - 2 c sqrt(b)
+    const int left = sign(rest);
+    const int right = b == 0 ? 0 : sign(c);
+    if (left != right) {
+        return left > right ? 1 : -1;
+    }
+    return left * sign(rest * rest - 4 * cc * b);
+}
+
+} // namespace
+
+struct GapOrder::Exact {
+    int exponent = 0; ///< every coordinate and radius is an integer multiple of 2^exponent
+
+    [[nodiscard]] Integer integer(double x, int unit) const {
+        int e = 0;
+        const auto mantissa = static_cast<long long>(std::ldexp(std::frexp(x, &e), mantissa_bits));
+        e -= mantissa_bits + unit;
+        Integer out = mantissa;
+        return e >= 0 ? out << e : out >> -e; // the shift to the right drops zeros only
+    }
+
+    [[nodiscard]] Root root(const Packing<2>& packing, const Contact& contact, int unit) const {
+        const auto i = static_cast<std::size_t>(contact.i);
+        const auto j = static_cast<std::size_t>(contact.j);
+        const Integer r = integer(packing.radius[i], unit);
+        if (contact.kind == ContactKind::disk_disk) {
+            const Integer dx = integer(packing.q[2 * j], unit) - integer(packing.q[2 * i], unit);
+            const Integer dy = integer(packing.q[2 * j + 1], unit) - integer(packing.q[2 * i + 1], unit);
+            return {dx * dx + dy * dy, r + integer(packing.radius[j], unit)};
+        }
+        const Integer x = integer(packing.q[2 * i + j], unit);
+        if (contact.kind == ContactKind::lower_wall) {
+            return {0, r - x};
+        }
+        return {0, r + x - integer(packing.length(contact.j), unit)};
+    }
+};
+
+GapOrder::GapOrder(const Packing<2>& packing) : packing_(&packing), exact_(std::make_unique<Exact>()) {
+    exact_->exponent = std::numeric_limits<int>::max();
+    for (const auto* values : {&packing.q, &packing.radius}) {
+        for (const double x : *values) {
+            exact_->exponent = std::min(exact_->exponent, lowest_exponent(x));
+        }
+    }
+}
+
+GapOrder::~GapOrder() = default;
+GapOrder::GapOrder(GapOrder&&) noexcept = default;
+
+GapOrder::Item GapOrder::item(const Contact& contact) const {
+    const auto i = static_cast<std::size_t>(contact.i);
+    const auto j = static_cast<std::size_t>(contact.j);
+    const std::vector<double>& q = packing_->q;
+    const double r = packing_->radius[i];
+    if (contact.kind == ContactKind::disk_disk) {
+        const double distance = std::hypot(q[2 * j] - q[2 * i], q[2 * j + 1] - q[2 * i + 1]);
+        const double radii = r + packing_->radius[j];
+        return {contact, distance - radii, relative_bound * (distance + radii)};
+    }
+    const double x = q[2 * i + j];
+    if (contact.kind == ContactKind::lower_wall) {
+        return {contact, x - r, relative_bound * (std::abs(x) + r)};
+    }
+    const double length = packing_->length(contact.j);
+    return {contact, length - x - r, relative_bound * (std::abs(length) + std::abs(x) + r)};
+}
+
+int GapOrder::compare(const Item& a, const Item& b) const {
+    const double difference = a.gap - b.gap;
+    if (std::abs(difference) > a.error + b.error) {
+        return difference > 0 ? 1 : -1;
+    }
+    const Root s = exact_->root(*packing_, a.contact, exact_->exponent);
+    const Root t = exact_->root(*packing_, b.contact, exact_->exponent);
+    return root_sign(s.square, t.square, s.sum - t.sum);
+}
+
+int GapOrder::compare(const Item& a, double threshold) const {
+    const double difference = a.gap - threshold;
+    if (std::abs(difference) > a.error + relative_bound * std::abs(threshold)) {
+        return difference > 0 ? 1 : -1;
+    }
+    const int unit = std::min(exact_->exponent, lowest_exponent(threshold));
+    const Root s = exact_->root(*packing_, a.contact, unit);
+    return root_sign(s.square, 0, s.sum + exact_->integer(threshold, unit));
+}
+
+double GapOrder::threshold_of(const Item& a) const {
+    // Bisection over the doubles in their order: near a gap of 0 there are very many of them.
+    const auto rank = [](double x) {
+        const auto bits = std::bit_cast<std::int64_t>(x);
+        return bits >= 0 ? bits : std::numeric_limits<std::int64_t>::min() - bits;
+    };
+    const auto value = [](std::int64_t r) {
+        return std::bit_cast<double>(r >= 0 ? r : std::numeric_limits<std::int64_t>::min() - r);
+    };
+    std::int64_t below = rank(a.gap - 2 * a.error) - 1; // a double below the gap
+    std::int64_t above = rank(a.gap + 2 * a.error) + 1; // a double above it
+    // Two doubles of different sign may be farther apart than 2^63.
+    for (auto middle = std::midpoint(below, above); middle != below && middle != above;
+         middle = std::midpoint(below, above)) {
+        (compare(a, value(middle)) > 0 ? below : above) = middle;
+    }
+    return value(above) == 0 ? 0 : value(above);
+}
+
+} // namespace isostat::crafted

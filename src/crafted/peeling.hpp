@@ -1,0 +1,23 @@
+#pragma once
+// Rattlers and carrying contacts for every initial part of a list of contacts at once.
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/packing/packing.hpp>
+
+#include <vector>
+
+namespace isostat::crafted {
+
+/// What `exclude_contacts` finds with the first m contacts of a list, for every m: more contacts never make another one
+/// unable to carry, so each contact and each disk has one m from which on it carries.
+struct Peeling {
+    std::vector<int> contact_from; ///< contact l carries with the first m contacts exactly when m >= contact_from[l]
+    std::vector<int> disk_from;    ///< disk i is no rattler exactly when m >= disk_from[i]; 0 for fixed disks
+};
+
+/// By removing the contacts from the last to the first; each removal looks at the two neighbours in angle only. Every
+/// sign is decided. Throws `Error(bad_input)` when two disks of a contact have the same centre. Cost O(N log N) beside
+/// near-parallel normals, which are decided in rationals.
+Peeling peel(const Packing<2>& packing, const std::vector<Contact>& contacts);
+
+} // namespace isostat::crafted

@@ -1,0 +1,195 @@
+#include "io/foreign_source.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+using foreign::Boundary;
+using foreign::Line;
+using foreign::Lines;
+using foreign::Raw;
+
+[[noreturn]] void refuse(const std::string& source, const std::string& message) {
+    throw Error(ErrorKind::bad_input, source + ": " + message);
+}
+
+void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions& options) {
+    for (std::size_t a = 0; a < 2; ++a) {
+        const char axis = a == 0 ? 'x' : 'y';
+        if (options.not_periodic) {
+            continue;
+        }
+        if (raw.boundary[a] == Boundary::periodic) {
+            refuse(source, fmt::format("boundaries along {} are periodic: expected open ones or walls; contacts across "
+                                       "them are not supported (--not-periodic looks at the disks as they lie)",
+                                       axis));
+        }
+        if (raw.boundary[a] == Boundary::unknown && raw.box) {
+            raw.notes.push_back(fmt::format(
+                "the file does not say whether {} is periodic: no contact is looked for across the boundary", axis));
+        }
+    }
+}
+
+/// x - origin; the rounding of the difference (Knuth's, exact) goes to `worst` if it is larger.
+double shifted(double x, double origin, double& worst) {
+    const double d = x - origin;
+    const double moved = x - d;
+    worst = std::max(worst, std::abs((x - (d + moved)) + (moved - origin)));
+    return d;
+}
+
+void add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
+    Packing<2>& packing = out.packing;
+    packing.walls = Walls<2>::none();
+    if (options.walls == ForeignWalls::none) {
+        packing.q.insert(packing.q.end(), {0, 0});
+        if (options.box) {
+            refuse(source, "a box was stated without walls: expected walls box or fixed");
+        }
+        if (raw.box) {
+            out.notes.emplace_back("no walls: the bounds of the box in the file are not used");
+        }
+        return;
+    }
+    if (!options.box && !raw.box) {
+        refuse(source, "walls were asked for and the file has no bounds of a box: expected --box xlo:xhi,ylo:yhi");
+    }
+    const std::array<double, 4> box = options.box ? *options.box : *raw.box;
+    double worst = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+        if (!options.box && raw.loose[a]) {
+            refuse(source, fmt::format("bounds along {} are shrink-wrapped: expected fixed ones for walls, or --box",
+                                       a == 0 ? 'x' : 'y'));
+        }
+        const double low = box[2 * a], high = box[2 * a + 1];
+        if (!(low < high)) {
+            refuse(source, fmt::format("box from {} to {}: expected a lower and a higher bound", low, high));
+        }
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            double& x = packing.q[2 * i + a];
+            if (!(low < x && x < high)) {
+                refuse(source, fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}",
+                                           a == 0 ? 'x' : 'y', i, x, low, high));
+            }
+            x = shifted(x, low, worst);
+        }
+        packing.q.push_back(shifted(high, low, worst));
+        packing.walls.lower[a] = WallKind::fixed;
+        packing.walls.upper[a] = options.walls == ForeignWalls::box ? WallKind::movable : WallKind::fixed;
+    }
+    out.notes.push_back(
+        fmt::format("walls at x = {}, {} and y = {}, {}: {}", box[0], box[1], box[2], box[3],
+                    options.walls == ForeignWalls::box ? "left and bottom fixed, right and top movable" : "fixed"));
+    if (worst > 0) {
+        out.notes.push_back(fmt::format("coordinates were shifted to the lower walls: rounded by up to {:.2g}", worst));
+    }
+}
+
+} // namespace
+
+const std::vector<std::string>& foreign_formats() {
+    static const std::vector<std::string> formats{"lammps-data", "lammps-dump", "xyz", "table"};
+    return formats;
+}
+
+std::string recognise_format(const std::string& text) {
+    const std::string source;
+    Lines lines(text, source);
+    const auto blank = [](std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; };
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string::npos) {
+        return "";
+    }
+    if (text[first] == '{') {
+        return "state";
+    }
+    if (text.compare(first, 5, "ITEM:") == 0) {
+        return "lammps-dump";
+    }
+    // Vertex texts and XYZ start with a number of rows; the next row tells them apart.
+    Lines rows = lines;
+    std::vector<Line> start;
+    while (!rows.at_end() && start.size() < 2) {
+        const std::string_view line = rows.take("");
+        if (start.empty() && (blank(line) || line[line.find_first_not_of(" \t\r")] == '#')) {
+            continue;
+        }
+        start.emplace_back(line, rows.number(), &source);
+    }
+    const auto is_count = [](const Line& line) {
+        return line.size() == 1 && line.field(0).find_first_not_of("0123456789") == std::string_view::npos;
+    };
+    if (start.size() == 2 && is_count(start[0])) {
+        const bool numbers = start[1].size() == 5 && foreign::to_number(start[1].field(0)).has_value();
+        return numbers || (!start[1].text().empty() && start[1].text().starts_with('#')) ? "vertex" : "xyz";
+    }
+    constexpr int header_lines = 60;
+    for (int k = 0; k < header_lines && !lines.at_end(); ++k) {
+        const Line line = lines.next("");
+        if (line.size() >= 2 && foreign::to_number(line.field(0)) && line.field(1) == "atoms") {
+            return "lammps-data";
+        }
+        const std::string_view word = line.size() > 0 ? line.field(0) : std::string_view();
+        if ((word == "format" || word.starts_with("format=")) &&
+            line.text().find("isostat-packing") != std::string_view::npos) {
+            return "packing";
+        }
+    }
+    return "table";
+}
+
+ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options) {
+    ForeignPacking out;
+    out.format = options.format.empty() ? recognise_format(text) : options.format;
+    if (options.size && options.size->column.empty() &&
+        !(options.size->value > 0 && std::isfinite(options.size->value))) {
+        refuse(source, fmt::format("stated size {}: expected a positive number", options.size->value));
+    }
+    if (!options.columns.empty() && out.format != "table") {
+        refuse(source, fmt::format("names of columns were stated: expected a table, the format is {}", out.format));
+    }
+    if (out.format == "lammps-data" && options.frame.value_or(0) != 0) {
+        refuse(source, fmt::format("frame {} was asked for: expected frame 0, a data file has one", *options.frame));
+    }
+    Raw raw;
+    if (out.format == "lammps-data") {
+        raw = foreign::read_lammps_data(text, source, options);
+    } else if (out.format == "lammps-dump") {
+        raw = foreign::read_lammps_dump(text, source, options);
+    } else if (out.format == "xyz") {
+        raw = foreign::read_xyz(text, source, options);
+    } else if (out.format == "table") {
+        raw = foreign::read_table(text, source, options);
+    } else {
+        refuse(source, fmt::format("format '{}': expected one of {}", out.format, fmt::join(foreign_formats(), ", ")));
+    }
+    check_boundaries(raw, source, options);
+    out.notes = raw.notes;
+    for (std::size_t i = 0; i < raw.x.size(); ++i) {
+        out.packing.q.push_back(raw.x[i]);
+        out.packing.q.push_back(raw.y[i]);
+        out.packing.radius.push_back(raw.meaning == SizeMeaning::radius ? raw.size[i] : raw.size[i] / 2);
+        if (!(out.packing.radius.back() > 0)) {
+            refuse(source, fmt::format("diameter {} of disk {}: expected a larger one", raw.size[i], i));
+        }
+    }
+    add_walls(out, raw, source, options);
+    return out;
+}
+
+ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOptions& options) {
+    return parse_foreign(read_text(path), path.string(), options);
+}
+
+} // namespace isostat

@@ -1,0 +1,396 @@
+// LAMMPS: data files (atom_style sphere) and text dumps.
+#include "io/foreign_source.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace isostat::foreign {
+
+namespace {
+
+std::string_view without_comment(std::string_view line) {
+    line = line.substr(0, line.find('#'));
+    const std::size_t last = line.find_last_not_of(" \t\r");
+    line = last == std::string_view::npos ? std::string_view() : line.substr(0, last + 1);
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    return first == std::string_view::npos ? std::string_view() : line.substr(first);
+}
+
+std::string comment_of(std::string_view line) {
+    const std::size_t at = line.find('#');
+    if (at == std::string_view::npos) {
+        return "";
+    }
+    line = line.substr(at + 1);
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    return first == std::string_view::npos
+               ? ""
+               : std::string(line.substr(first, line.find_last_not_of(" \t\r") - first + 1));
+}
+
+/// Sections that may stand beside Atoms; all of them are skipped.
+bool is_section(std::string_view name) {
+    static const std::vector<std::string_view> names{"Velocities", "Masses",    "Ellipsoids",      "Lines",
+                                                     "Triangles",  "Bodies",    "Bonds",           "Angles",
+                                                     "Dihedrals",  "Impropers", "Atom Type Labels"};
+    return std::find(names.begin(), names.end(), name) != names.end() || name.ends_with(" Coeffs") ||
+           name.ends_with(" Labels");
+}
+
+/// "12 atoms", "0 1 xlo xhi": the numbers and the words after them.
+struct HeaderLine {
+    Line line;
+    std::size_t numbers = 0;
+    std::string keyword;
+    explicit HeaderLine(const Line& l) : line(l) {
+        while (numbers < line.size() && to_number(line.field(numbers))) {
+            ++numbers;
+        }
+        for (std::size_t k = numbers; k < line.size(); ++k) {
+            keyword += (keyword.empty() ? "" : " ") + std::string(line.field(k));
+        }
+    }
+};
+
+bool is_counter(const std::string& keyword) {
+    static const std::vector<std::string_view> names{"bonds",
+                                                     "angles",
+                                                     "dihedrals",
+                                                     "impropers",
+                                                     "atom types",
+                                                     "bond types",
+                                                     "angle types",
+                                                     "dihedral types",
+                                                     "improper types",
+                                                     "ellipsoids",
+                                                     "lines",
+                                                     "triangles",
+                                                     "bodies",
+                                                     "extra bond per atom",
+                                                     "extra angle per atom",
+                                                     "extra dihedral per atom",
+                                                     "extra improper per atom",
+                                                     "extra special per atom"};
+    return std::find(names.begin(), names.end(), keyword) != names.end();
+}
+
+struct DataHeader {
+    long atoms = -1;
+    std::array<std::optional<std::array<double, 2>>, 2> bounds;
+
+    void take(const HeaderLine& header) {
+        const Line& line = header.line;
+        const auto once = [&](bool known) {
+            if (known) {
+                line.fail(header.keyword, "a second header line", "it once");
+            }
+        };
+        const auto numbers = [&](std::size_t count) {
+            if (header.numbers != count) {
+                line.fail(line.text(), "header line", fmt::format("{} numbers before '{}'", count, header.keyword));
+            }
+        };
+        if (header.keyword == "atoms") {
+            once(atoms >= 0);
+            numbers(1);
+            atoms = line.integer(0, "number of atoms", 1, most_disks);
+        } else if (header.keyword == "xlo xhi" || header.keyword == "ylo yhi" || header.keyword == "zlo zhi") {
+            numbers(2);
+            const auto axis = static_cast<std::size_t>(header.keyword[0] - 'x');
+            const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
+            if (!(low < high)) {
+                line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
+            }
+            if (axis < 2) {
+                once(bounds[axis].has_value());
+                bounds[axis] = {low, high};
+            }
+        } else if (header.keyword == "xy xz yz") {
+            numbers(3);
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (line.number(k, "tilt") != 0) {
+                    line.fail(line.field(k), "tilt of the box", "0: only rectangular boxes are read");
+                }
+            }
+        } else if (is_counter(header.keyword)) {
+            numbers(1);
+            (void)line.integer(0, "number of " + header.keyword, 0, most_disks);
+        } else {
+            line.fail(line.text(), "header line",
+                      "'N atoms', 'xlo xhi', ... or a section (LAMMPS data file; the first line is a comment)");
+        }
+    }
+};
+
+void read_atoms(Lines& lines, const std::string& style, const DataHeader& header, const ForeignOptions& options,
+                Raw& raw) {
+    // read_data of LAMMPS: sphere: id type diameter density x y z; bpm/sphere: id molecule type diameter density x y z.
+    if (style != "sphere" && style != "bpm/sphere") {
+        lines.fail(fmt::format("section Atoms {}: expected 'Atoms # sphere' or 'Atoms # bpm/sphere': other styles have "
+                               "no diameter, and columns are not guessed",
+                               style.empty() ? "does not name its style" : "has style '" + style + "'"));
+    }
+    Columns columns;
+    const int shift = style == "sphere" ? 0 : 1;
+    columns.id = 0;
+    columns.size = 2 + shift;
+    columns.x = 4 + shift;
+    columns.y = 5 + shift;
+    columns.z = 6 + shift;
+    columns.meaning = raw.meaning = SizeMeaning::diameter;
+    if (options.size) {
+        if (!options.size->column.empty() || options.size->meaning != SizeMeaning::diameter) {
+            lines.fail("the third column of atom style sphere is the diameter by definition: expected no other "
+                       "statement (a constant --diameter may replace it)");
+        }
+        columns.size = -1;
+        columns.constant = options.size->value;
+        raw.notes.push_back(fmt::format("diameter {} for every disk, as stated", columns.constant));
+    } else {
+        raw.notes.emplace_back("diameters, as atom style " + style + " defines");
+    }
+    const auto width = static_cast<std::size_t>(7 + shift);
+    Rows rows(columns, lines.source());
+    while (static_cast<long>(raw.x.size()) < header.atoms) {
+        const std::string what =
+            fmt::format("atom {} of {}: {} values, and 3 image flags or none", raw.x.size() + 1, header.atoms, width);
+        const std::string_view text = without_comment(lines.take(what));
+        if (text.empty()) {
+            continue;
+        }
+        const Line line(text, lines.number(), &lines.source());
+        if (line.size() != width + 3) {
+            line.require_size(width, what);
+        }
+        for (std::size_t k = width; k < line.size(); ++k) {
+            if (line.integer(k, "image flag", -1000000, 1000000) != 0 && k < width + 2) {
+                raw.boundary[k - width] = Boundary::periodic;
+            }
+        }
+        rows.add(line, raw);
+    }
+    rows.finish();
+}
+
+/// A frame of a dump, up to its atoms.
+struct Frame {
+    long timestep = 0;
+    long atoms = -1;
+    std::array<double, 4> box{};
+    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
+    std::array<bool, 2> loose{};
+    bool boxed = false;
+    std::vector<std::string> names;
+};
+
+void read_bounds(Lines& lines, std::string_view flags_text, Frame& frame) {
+    const Line flags(flags_text, lines.number(), &lines.source());
+    std::vector<std::string_view> codes;
+    bool tilted = false;
+    for (std::size_t k = 0; k < flags.size(); ++k) {
+        const std::string_view code = flags.field(k);
+        if (code == "xy" || code == "xz" || code == "yz") {
+            tilted = true;
+        } else if (code.size() == 2 && code.find_first_not_of("pfsm") == std::string_view::npos) {
+            codes.push_back(code);
+        } else {
+            flags.fail(code, "boundary", "two of the letters p f s m, for instance ff");
+        }
+    }
+    if (!codes.empty() && codes.size() != 3) {
+        flags.fail(flags_text, "boundaries", "three of them");
+    }
+    for (std::size_t a = 0; a < codes.size() && a < 2; ++a) {
+        frame.boundary[a] = codes[a].find('p') != std::string_view::npos ? Boundary::periodic : Boundary::open;
+        frame.loose[a] = codes[a].find_first_of("sm") != std::string_view::npos;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+        const Line line = lines.next("the bounds of the box: low high");
+        line.require_size(tilted ? 3 : 2, "bounds of the box");
+        const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
+        if (!(low <= high)) {
+            line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
+        }
+        if (tilted && line.number(2, "tilt") != 0) {
+            line.fail(line.field(2), "tilt of the box", "0: only rectangular boxes are read");
+        }
+        if (a < 2) {
+            frame.box[2 * a] = low;
+            frame.box[2 * a + 1] = high;
+        }
+    }
+    frame.boxed = true;
+}
+
+/// Reads the items up to ITEM: ATOMS.
+Frame read_frame_header(Lines& lines) {
+    Frame frame;
+    bool first = true;
+    while (true) {
+        const std::string_view item = lines.take("ITEM: ATOMS");
+        const Line line(item, lines.number(), &lines.source());
+        const auto starts = [&](std::string_view name) {
+            return item.starts_with(name) &&
+                   (item.size() == name.size() || std::isspace(static_cast<unsigned char>(item[name.size()])) != 0);
+        };
+        if (first && !starts("ITEM: TIMESTEP") && !starts("ITEM: UNITS") && !starts("ITEM: TIME")) {
+            line.fail(item, "start of a frame", "ITEM: TIMESTEP");
+        }
+        first = false;
+        if (starts("ITEM: TIMESTEP")) {
+            const Line value = lines.next("the time step");
+            value.require_size(1, "the time step");
+            frame.timestep = value.integer(0, "time step", 0, 1L << 62);
+        } else if (starts("ITEM: UNITS") || starts("ITEM: TIME")) {
+            (void)lines.take("units or time");
+        } else if (starts("ITEM: NUMBER OF ATOMS")) {
+            const Line value = lines.next("the number of atoms");
+            value.require_size(1, "the number of atoms");
+            frame.atoms = value.integer(0, "number of atoms", 0, most_disks);
+        } else if (starts("ITEM: BOX BOUNDS")) {
+            read_bounds(lines, item.substr(std::string_view("ITEM: BOX BOUNDS").size()), frame);
+        } else if (starts("ITEM: ATOMS")) {
+            if (frame.atoms < 0 || !frame.boxed) {
+                line.fail(item, "item", "ITEM: NUMBER OF ATOMS and ITEM: BOX BOUNDS before it");
+            }
+            for (std::size_t k = 2; k < line.size(); ++k) {
+                frame.names.emplace_back(line.field(k));
+            }
+            return frame;
+        } else {
+            line.fail(item, "item", "TIMESTEP, UNITS, TIME, NUMBER OF ATOMS, BOX BOUNDS or ATOMS");
+        }
+    }
+}
+
+/// Coordinates as wrapped, unwrapped or scaled to the box.
+struct Coordinates {
+    bool scaled = false;
+    void find(Columns& columns, const std::vector<std::string>& names, const std::string& where, Raw& raw) {
+        for (const auto& [x, y, z, is_scaled, note] : {std::tuple{"x", "y", "z", false, ""},
+                                                       {"xu", "yu", "zu", false, "unwrapped coordinates xu yu"},
+                                                       {"xs", "ys", "zs", true, "scaled coordinates xs ys"},
+                                                       {"xsu", "ysu", "zsu", true, "scaled coordinates xsu ysu"}}) {
+            columns.x = find_column(names, x, where);
+            columns.y = find_column(names, y, where);
+            if (columns.x >= 0 && columns.y >= 0) {
+                columns.z = find_column(names, z, where);
+                scaled = is_scaled;
+                if (*note != '\0') {
+                    raw.notes.emplace_back(note);
+                }
+                return;
+            }
+        }
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: no coordinates: expected columns x y, xu yu, xs ys or xsu ysu", where));
+    }
+};
+
+} // namespace
+
+Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options) {
+    Lines lines(text, source);
+    Raw raw;
+    DataHeader header;
+    (void)lines.take("a comment"); // LAMMPS ignores the first line
+    bool read = false;
+    bool in_section = false;
+    bool in_atoms = false;
+    while (!lines.at_end()) {
+        const std::string_view whole = lines.take("a line");
+        const std::string_view content = without_comment(whole);
+        if (content.empty()) {
+            continue;
+        }
+        const Line line(content, lines.number(), &source);
+        if (content == "Atoms") {
+            if (read) {
+                line.fail(content, "section", "one section Atoms");
+            }
+            if (header.atoms < 0) {
+                line.fail(content, "section", "'N atoms' before it");
+            }
+            read_atoms(lines, comment_of(whole), header, options, raw);
+            read = in_section = in_atoms = true;
+        } else if (is_section(content)) {
+            in_section = true;
+            in_atoms = false;
+        } else if (in_atoms) {
+            line.fail(content, "line after the atoms",
+                      fmt::format("a section, or the end: {} atoms were announced", header.atoms));
+        } else if (!in_section) {
+            header.take(HeaderLine(line));
+        } else if (std::isalpha(static_cast<unsigned char>(content.front())) != 0) {
+            line.fail(content, "section", "a section of a LAMMPS data file");
+        } else if (read && line.size() > 0 && !to_number(line.field(0))) {
+            line.fail(line.field(0), "first value of the row", "a number");
+        }
+    }
+    if (!read) {
+        lines.fail("the file ends here: expected a section 'Atoms # sphere'");
+    }
+    if (header.bounds[0] && header.bounds[1]) {
+        raw.box = {(*header.bounds[0])[0], (*header.bounds[0])[1], (*header.bounds[1])[0], (*header.bounds[1])[1]};
+    }
+    return raw;
+}
+
+Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options) {
+    Lines lines(text, source);
+    Raw raw;
+    for (long number = 0;; ++number) {
+        if (lines.only_blanks()) {
+            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
+                                   options.frame.value_or(number)));
+        }
+        const Frame frame = read_frame_header(lines);
+        Lines atoms = lines;
+        for (long k = 0; k < frame.atoms; ++k) {
+            const std::string_view row =
+                lines.take(fmt::format("atom {} of {} in frame {}", k + 1, frame.atoms, number));
+            if (row.starts_with("ITEM:")) {
+                lines.fail(fmt::format("'{}': expected atom {} of {} in frame {}", row.substr(0, 40), k + 1,
+                                       frame.atoms, number));
+            }
+        }
+        if (options.frame ? number < *options.frame : !lines.only_blanks()) {
+            continue;
+        }
+        const std::string where = fmt::format("{}:{}", source, atoms.number());
+        if (frame.atoms == 0) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, number));
+        }
+        Columns columns;
+        Coordinates coordinates;
+        coordinates.find(columns, frame.names, where, raw);
+        find_size(columns, frame.names, options, where, raw);
+        columns.id = find_column(frame.names, "id", where);
+        Rows rows(columns, source);
+        for (long k = 0; k < frame.atoms; ++k) {
+            const Line line = atoms.next("an atom");
+            line.require_size(frame.names.size(), fmt::format("atom {} of {}", k + 1, frame.atoms));
+            rows.add(line, raw);
+        }
+        rows.finish();
+        raw.box = frame.box;
+        raw.boundary = frame.boundary;
+        raw.loose = frame.loose;
+        if (coordinates.scaled) {
+            for (std::size_t i = 0; i < raw.x.size(); ++i) {
+                raw.x[i] = frame.box[0] + raw.x[i] * (frame.box[1] - frame.box[0]);
+                raw.y[i] = frame.box[2] + raw.y[i] * (frame.box[3] - frame.box[2]);
+            }
+            raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
+        }
+        raw.notes.push_back(fmt::format("frame {} (time step {})", number, frame.timestep));
+        return raw;
+    }
+}
+
+} // namespace isostat::foreign

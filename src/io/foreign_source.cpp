@@ -1,0 +1,215 @@
+#include "io/foreign_source.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace isostat::foreign {
+
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+constexpr std::size_t longest_quote = 60; ///< characters of a bad line that a message repeats
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    text = text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
+}
+
+template <class T> bool parse(std::string_view field, T& value) {
+    if (field.starts_with('+')) {
+        field.remove_prefix(1);
+    }
+    const char* const end = field.data() + field.size();
+    const auto [stop, error] = std::from_chars(field.data(), end, value);
+    return error == std::errc() && stop == end && !field.empty() && !field.starts_with("+");
+}
+
+} // namespace
+
+std::optional<double> to_number(std::string_view text) {
+    double value = 0;
+    if (!parse(text, value) || !std::isfinite(value)) {
+        return std::nullopt;
+    }
+    return value;
+}
+
+Line::Line(std::string_view text, int number, const std::string* source, char separator)
+    : text_(text), number_(number), source_(source) {
+    if (separator != ' ') {
+        while (true) {
+            const std::size_t end = text.find(separator);
+            fields_.push_back(trimmed(text.substr(0, end)));
+            if (end == std::string_view::npos) {
+                return;
+            }
+            text.remove_prefix(end + 1);
+        }
+    }
+    for (std::size_t at = text.find_first_not_of(blanks); at != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(blanks, at), text.size());
+        fields_.push_back(text.substr(at, end - at));
+        at = text.find_first_not_of(blanks, end);
+    }
+}
+
+void Line::fail(std::string_view value, const std::string& name, const std::string& expected) const {
+    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {} is '{}': expected {}", *source_, number_, name,
+                                                  value.substr(0, longest_quote), expected));
+}
+
+void Line::require_size(std::size_t count, const std::string& what) const {
+    if (fields_.size() != count) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: {} values in '{}': expected {} ({} values)", *source_, number_, fields_.size(),
+                                text_.substr(0, longest_quote), what, count));
+    }
+}
+
+double Line::number(std::size_t k, const std::string& name) const {
+    const std::optional<double> value = to_number(fields_[k]);
+    if (!value) {
+        fail(fields_[k], name, "a finite number");
+    }
+    return *value;
+}
+
+long Line::integer(std::size_t k, const std::string& name, long lowest, long highest) const {
+    long value = 0;
+    if (!parse(fields_[k], value) || value < lowest || value > highest) {
+        fail(fields_[k], name, fmt::format("an integer from {} to {}", lowest, highest));
+    }
+    return value;
+}
+
+std::string_view Lines::peek() const {
+    return rest_.substr(0, rest_.find('\n'));
+}
+
+std::string_view Lines::take(const std::string& what) {
+    if (at_end()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: the file ends here: expected {}", *source_, number_, what));
+    }
+    const std::string_view line = peek();
+    rest_.remove_prefix(std::min(line.size() + 1, rest_.size()));
+    ++number_;
+    return line;
+}
+
+void Lines::fail(const std::string& message) const {
+    throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", *source_, number_, message));
+}
+
+int find_column(const std::vector<std::string>& names, std::string_view name, const std::string& where) {
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) {
+        return -1;
+    }
+    if (std::find(at + 1, names.end(), name) != names.end()) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: column '{}' is given twice: expected it once", where, name));
+    }
+    return static_cast<int>(at - names.begin());
+}
+
+void find_size(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
+               const std::string& where, Raw& raw) {
+    const auto word = [](SizeMeaning meaning) { return meaning == SizeMeaning::radius ? "radius" : "diameter"; };
+    const std::string listed = names.empty() ? "none" : fmt::format("{}", fmt::join(names, " "));
+    if (options.size) {
+        columns.meaning = raw.meaning = options.size->meaning;
+        columns.size_name = options.size->column;
+        columns.constant = options.size->value;
+        if (columns.size_name.empty()) {
+            raw.notes.push_back(fmt::format("{} {} for every disk, as stated", word(raw.meaning), columns.constant));
+            return;
+        }
+        columns.size = find_column(names, columns.size_name, where);
+        if (columns.size < 0) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}' for the {}: expected one of: {}", where,
+                                                          columns.size_name, word(raw.meaning), listed));
+        }
+        raw.notes.push_back(fmt::format("{} from column '{}', as stated", word(raw.meaning), columns.size_name));
+        return;
+    }
+    for (const SizeMeaning meaning : {SizeMeaning::radius, SizeMeaning::diameter}) {
+        for (const char* name : meaning == SizeMeaning::radius
+                                    ? std::array<const char*, 4>{"radius", "Radius", "r", "R"}
+                                    : std::array<const char*, 4>{"diameter", "Diameter", "d", "D"}) {
+            const int column = find_column(names, name, where);
+            if (column < 0) {
+                continue;
+            }
+            if (columns.size >= 0) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}: columns '{}' and '{}' both state the size of the disks: expected one, or "
+                                        "the choice with --radius COLUMN or --diameter COLUMN",
+                                        where, columns.size_name, name));
+            }
+            columns.size = column;
+            columns.size_name = name;
+            columns.meaning = raw.meaning = meaning;
+        }
+    }
+    if (columns.size < 0) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: no column states the size of the disks (columns: {}): "
+                                                      "expected radius or diameter, or the statement --radius "
+                                                      "COLUMN|NUMBER or --diameter COLUMN|NUMBER",
+                                                      where, listed));
+    }
+    raw.notes.push_back(fmt::format("{} from column '{}'", word(raw.meaning), columns.size_name));
+}
+
+void Rows::add(const Line& line, Raw& raw) {
+    const std::size_t disk = raw.x.size();
+    const auto number = [&](int column, const char* name) {
+        return line.number(static_cast<std::size_t>(column), fmt::format("{} of disk {}", name, disk));
+    };
+    raw.x.push_back(number(columns_.x, "x"));
+    raw.y.push_back(number(columns_.y, "y"));
+    if (columns_.z >= 0) {
+        const double z = number(columns_.z, "z");
+        if (z != z_.value_or(z)) {
+            line.fail(line.field(static_cast<std::size_t>(columns_.z)), fmt::format("z of disk {}", disk),
+                      fmt::format("{}, as before: only packings in a plane are read", *z_));
+        }
+        z_ = z;
+    }
+    if (columns_.id >= 0) {
+        ids_.emplace_back(
+            line.integer(static_cast<std::size_t>(columns_.id), fmt::format("id of disk {}", disk), 0, 1L << 62),
+            line.number());
+    }
+    double size = columns_.constant;
+    const std::string name = columns_.meaning == SizeMeaning::radius ? "radius" : "diameter";
+    if (columns_.size >= 0) {
+        size = number(columns_.size, name.c_str());
+        if (!(size > 0)) {
+            line.fail(line.field(static_cast<std::size_t>(columns_.size)), fmt::format("{} of disk {}", name, disk),
+                      "a positive number");
+        }
+    }
+    raw.size.push_back(size);
+}
+
+void Rows::finish() {
+    std::sort(ids_.begin(), ids_.end());
+    const auto twice =
+        std::adjacent_find(ids_.begin(), ids_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+    if (twice != ids_.end()) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: id {} was given in line {} already: expected another",
+                                                      source_, (twice + 1)->second, twice->first, twice->second));
+    }
+}
+
+} // namespace isostat::foreign

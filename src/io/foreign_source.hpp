@@ -1,0 +1,118 @@
+#pragma once
+// What the readers of foreign formats share: lines with numbers, named columns, the raw packing.
+
+#include <isostat/io/foreign.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace isostat::foreign {
+
+/// One line, split into fields.
+class Line {
+  public:
+    /// At blanks and tabs, or at every `separator` (then fields may be empty, and are trimmed and unquoted).
+    Line(std::string_view text, int number, const std::string* source, char separator = ' ');
+
+    [[nodiscard]] std::string_view text() const { return text_; }
+    [[nodiscard]] int number() const { return number_; }
+    [[nodiscard]] std::size_t size() const { return fields_.size(); }
+    [[nodiscard]] std::string_view field(std::size_t k) const { return fields_[k]; }
+
+    /// "FILE:LINE: NAME is 'VALUE': expected WHAT".
+    [[noreturn]] void fail(std::string_view value, const std::string& name, const std::string& expected) const;
+    /// Throws when there are not `count` fields.
+    void require_size(std::size_t count, const std::string& what) const;
+    /// A finite number, all of the field.
+    [[nodiscard]] double number(std::size_t k, const std::string& name) const;
+    [[nodiscard]] long integer(std::size_t k, const std::string& name, long lowest, long highest) const;
+
+  private:
+    std::string_view text_;
+    std::vector<std::string_view> fields_;
+    int number_;
+    const std::string* source_;
+};
+
+/// A number, all of the text; empty when it is none or not finite.
+std::optional<double> to_number(std::string_view text);
+
+/// Walks through a text line by line. \pre text and source outlive it and its lines.
+class Lines {
+  public:
+    Lines(std::string_view text, const std::string& source) : rest_(text), source_(&source) {}
+    [[nodiscard]] bool at_end() const { return rest_.empty(); }
+    /// True when only blank lines are left.
+    [[nodiscard]] bool only_blanks() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
+    /// The next line without taking it; empty at the end.
+    [[nodiscard]] std::string_view peek() const;
+    /// Throws at the end of the file; `what` says what was expected.
+    std::string_view take(const std::string& what);
+    Line next(const std::string& what, char separator = ' ') {
+        const std::string_view text = take(what); // before number() is asked
+        return {text, number_, source_, separator};
+    }
+    [[nodiscard]] int number() const { return number_; }
+    [[nodiscard]] const std::string& source() const { return *source_; }
+    [[noreturn]] void fail(const std::string& message) const;
+
+  private:
+    std::string_view rest_;
+    const std::string* source_;
+    int number_ = 0;
+};
+
+constexpr long most_disks = 100'000'000;
+
+enum class Boundary { open, periodic, unknown };
+
+/// What a reader found, before walls and checks.
+struct Raw {
+    std::vector<double> x, y, size;
+    SizeMeaning meaning = SizeMeaning::radius;
+    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
+    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
+    std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
+    std::vector<std::string> notes;
+};
+
+/// Which columns hold what.
+struct Columns {
+    int x = -1, y = -1, z = -1, id = -1, size = -1; ///< -1: not there
+    SizeMeaning meaning = SizeMeaning::radius;
+    std::string size_name; ///< empty: a constant
+    double constant = 0;
+};
+
+/// Takes the size from the statement of the user, or from one of the names that state it. Throws when nothing or more
+/// than one does; `where` starts the message.
+void find_size(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
+               const std::string& where, Raw& raw);
+
+/// Column `name`, or -1. Throws when there are two.
+int find_column(const std::vector<std::string>& names, std::string_view name, const std::string& where);
+
+/// Adds rows to a raw packing; finds ids given twice and different z.
+class Rows {
+  public:
+    Rows(const Columns& columns, std::string source) : columns_(columns), source_(std::move(source)) {}
+    void add(const Line& line, Raw& raw);
+    /// Throws when an id was given twice.
+    void finish();
+
+  private:
+    Columns columns_;
+    std::string source_;
+    std::optional<double> z_;
+    std::vector<std::pair<long, int>> ids_; ///< with their lines
+};
+
+Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);
+Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);
+Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options);
+Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options);
+
+} // namespace isostat::foreign

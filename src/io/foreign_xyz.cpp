@@ -1,0 +1,200 @@
+// Extended XYZ: a number of rows, a line of key=value, the rows; frames follow each other.
+#include "io/foreign_source.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+namespace isostat::foreign {
+
+namespace {
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    return out;
+}
+
+/// key=value, key="several words", key='..', key={..}; words without '=' are flags. Keys in lower case.
+std::map<std::string, std::string> key_values(const Line& line) {
+    std::map<std::string, std::string> out;
+    std::string_view rest = line.text();
+    const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r"), rest.size())); };
+    for (skip_blanks(); !rest.empty(); skip_blanks()) {
+        const std::size_t end = std::min(rest.find_first_of("= \t\r"), rest.size());
+        const std::string key = lower(rest.substr(0, end));
+        rest.remove_prefix(end);
+        std::string value;
+        if (rest.starts_with('=')) {
+            rest.remove_prefix(1);
+            const std::size_t quote = rest.empty() ? std::string_view::npos : std::string_view("\"'{[").find(rest[0]);
+            if (quote != std::string_view::npos) {
+                const char closing = "\"'}]"[quote];
+                const std::size_t stop = rest.find(closing, 1);
+                if (stop == std::string_view::npos) {
+                    line.fail(rest, "value of " + key, fmt::format("an end {}", closing));
+                }
+                value = std::string(rest.substr(1, stop - 1));
+                rest.remove_prefix(stop + 1);
+            } else {
+                const std::size_t stop = std::min(rest.find_first_of(" \t\r"), rest.size());
+                value = std::string(rest.substr(0, stop));
+                rest.remove_prefix(stop);
+            }
+        }
+        if (!key.empty() && !out.emplace(key, value).second) {
+            line.fail(key, "key", "it once");
+        }
+        if (key.empty() && value.empty()) {
+            break;
+        }
+    }
+    return out;
+}
+
+/// Properties=name:type:count:... as one name per column; vectors as name.0, name.1, ...
+std::vector<std::string> property_columns(const Line& line, const std::string& properties) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at <= properties.size();) {
+        const std::size_t end = std::min(properties.find(':', at), properties.size());
+        parts.push_back(properties.substr(at, end - at));
+        at = end + 1;
+    }
+    if (parts.size() % 3 != 0) {
+        line.fail(properties, "Properties", "name:type:count, repeated");
+    }
+    std::vector<std::string> names;
+    constexpr double most_columns = 1000;
+    for (std::size_t k = 0; k < parts.size(); k += 3) {
+        const std::string& type = parts[k + 1];
+        const double count = to_number(parts[k + 2]).value_or(0);
+        if (parts[k].empty() || type.size() != 1 || std::string_view("SRIL").find(type[0]) == std::string_view::npos ||
+            !(count >= 1 && count <= most_columns) || count != static_cast<int>(count)) {
+            line.fail(parts[k] + ":" + type + ":" + parts[k + 2], "Properties",
+                      "name:type:count with type S, R, I or L and count from 1");
+        }
+        for (int c = 0; c < static_cast<int>(count); ++c) {
+            names.push_back(count == 1 ? parts[k] : fmt::format("{}.{}", parts[k], c));
+        }
+    }
+    return names;
+}
+
+std::vector<double> numbers_of(const Line& line, const std::string& key, const std::string& value, std::size_t count) {
+    std::string blanks = value;
+    std::replace(blanks.begin(), blanks.end(), ',', ' ');
+    const std::string source;
+    const Line fields(blanks, 0, &source);
+    std::vector<double> out;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+        const auto number = to_number(fields.field(k));
+        if (!number) {
+            line.fail(fields.field(k), key, "a finite number");
+        }
+        out.push_back(*number);
+    }
+    if (out.size() != count) {
+        line.fail(value, key, fmt::format("{} numbers", count));
+    }
+    return out;
+}
+
+void read_box(const Line& line, const std::map<std::string, std::string>& keys, Raw& raw) {
+    const auto lattice = keys.find("lattice");
+    if (lattice != keys.end()) {
+        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9);
+        std::array<double, 2> origin{};
+        if (const auto o = keys.find("origin"); o != keys.end()) {
+            const std::vector<double> w = numbers_of(line, "Origin", o->second, 3);
+            origin = {w[0], w[1]};
+        }
+        for (const std::size_t off : {1U, 2U, 3U, 5U, 6U, 7U}) {
+            if (v[off] != 0) {
+                line.fail(lattice->second, "Lattice", "a box along the axes: only these are read");
+            }
+        }
+        if (!(v[0] > 0 && v[4] > 0)) {
+            line.fail(lattice->second, "Lattice", "positive lengths");
+        }
+        raw.box = {origin[0], origin[0] + v[0], origin[1], origin[1] + v[4]};
+        raw.boundary = {Boundary::periodic, Boundary::periodic}; // unless pbc says otherwise
+        if (origin[0] != 0 || origin[1] != 0) {
+            raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
+        }
+    }
+    if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
+        const std::string source;
+        std::string text = pbc->second;
+        std::replace(text.begin(), text.end(), ',', ' ');
+        const Line fields(text, 0, &source);
+        if (fields.size() != 3 && fields.size() != 2) {
+            line.fail(pbc->second, "pbc", "three of T and F");
+        }
+        for (std::size_t a = 0; a < 2; ++a) {
+            const std::string word = lower(fields.field(a));
+            const bool yes = word == "t" || word == "true" || word == "1";
+            if (!yes && word != "f" && word != "false" && word != "0") {
+                line.fail(fields.field(a), "pbc", "T or F");
+            }
+            raw.boundary[a] = yes ? Boundary::periodic : Boundary::open;
+        }
+    }
+}
+
+} // namespace
+
+Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options) {
+    Lines lines(text, source);
+    for (long number = 0;; ++number) {
+        if (lines.only_blanks()) {
+            lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
+                                   options.frame.value_or(number)));
+        }
+        const Line count = lines.next("the number of rows");
+        count.require_size(1, "the number of rows");
+        const long rows = count.integer(0, "number of rows", 1, most_disks);
+        const Line comment = lines.next("the line of key=value");
+        Lines body = lines;
+        for (long k = 0; k < rows; ++k) {
+            (void)lines.take(fmt::format("row {} of {} in frame {}", k + 1, rows, number));
+        }
+        if (options.frame ? number < *options.frame : !lines.only_blanks()) {
+            continue;
+        }
+        Raw raw;
+        const auto keys = key_values(comment);
+        const auto properties = keys.find("properties");
+        const std::vector<std::string> names =
+            property_columns(comment, properties == keys.end() ? "species:S:1:pos:R:3" : properties->second);
+        const std::string where = fmt::format("{}:{}", source, comment.number());
+        Columns columns;
+        columns.x = find_column(names, "pos.0", where);
+        columns.y = find_column(names, "pos.1", where);
+        columns.z = find_column(names, "pos.2", where);
+        columns.id = find_column(names, "id", where);
+        if (columns.x < 0) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
+        }
+        find_size(columns, names, options, where, raw);
+        read_box(comment, keys, raw);
+        Rows reader(columns, source);
+        for (long k = 0; k < rows; ++k) {
+            const Line line = body.next("a row");
+            line.require_size(names.size(), fmt::format("row {} of {}", k + 1, rows));
+            reader.add(line, raw);
+        }
+        reader.finish();
+        if (number > 0) {
+            raw.notes.push_back(fmt::format("frame {}", number));
+        }
+        return raw;
+    }
+}
+
+} // namespace isostat::foreign

@@ -1,0 +1,131 @@
+#include "verified/exact_forces.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+/// value = mantissa 2^exponent, mantissa odd or 0.
+struct Dyadic {
+    mpz_class mantissa;
+    long exponent = 0;
+};
+
+Dyadic dyadic(const mpq_class& value) {
+    Dyadic result{value.get_num(), 0};
+    if (result.mantissa != 0) {
+        const auto zeros = mpz_scan1(result.mantissa.get_mpz_t(), 0);
+        result.mantissa >>= zeros;
+        // The denominator is a power of two.
+        result.exponent = static_cast<long>(zeros) - static_cast<long>(mpz_scan1(value.get_den_mpz_t(), 0));
+    }
+    return result;
+}
+
+/// Integers value 2^-shift with the largest common shift; returns the shift (0 when all are 0).
+long common_integers(const std::vector<mpq_class>& values, std::vector<mpz_class>& integers) {
+    std::vector<Dyadic> parts;
+    long shift = std::numeric_limits<long>::max();
+    for (const mpq_class& value : values) {
+        parts.push_back(dyadic(value));
+        if (parts.back().mantissa != 0) {
+            shift = std::min(shift, parts.back().exponent);
+        }
+    }
+    integers.clear();
+    for (const Dyadic& part : parts) {
+        integers.push_back(part.mantissa == 0
+                               ? mpz_class(0)
+                               : mpz_class(part.mantissa << static_cast<mp_bitcnt_t>(part.exponent - shift)));
+    }
+    return shift == std::numeric_limits<long>::max() ? 0 : shift;
+}
+
+} // namespace
+
+template <int Dim>
+sparse::Matrix<mpz_class> ExactForces<Dim>::scaled(const Packing<Dim>& packing,
+                                                   const IsostaticStructure<Dim>& structure,
+                                                   std::vector<mpz_class>& square) {
+    const sparse::Matrix<double>& h = structure.matrix();
+    const DofMap<Dim>& dofs = structure.dofs();
+    sparse::Matrix<mpz_class> matrix{h.rows, h.cols, h.start, h.row, {}};
+    matrix.value.resize(h.value.size());
+    for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
+        const Contact& contact = structure.contacts()[l];
+        std::vector<mpz_class> integers;
+        const bool pair = contact.kind == ContactKind::disk_disk;
+        mpz_class sum = pair ? 0 : 1;
+        if (pair) {
+            std::vector<mpq_class> d;
+            for (int a = 0; a < Dim; ++a) {
+                d.emplace_back(mpq_class(packing.coordinate(DiskId(contact.j), a)) -
+                               mpq_class(packing.coordinate(DiskId(contact.i), a)));
+            }
+            common_integers(d, integers);
+            for (const mpz_class& c : integers) {
+                sum += c * c;
+            }
+        }
+        square.push_back(sum);
+        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+            if (!pair) {
+                matrix.value[e] = h.value[e] < 0 ? -1 : 1;
+                continue;
+            }
+            const int coordinate = dofs.coordinate_of(h.row[e]);
+            matrix.value[e] = integers[static_cast<std::size_t>(coordinate % Dim)];
+            if (coordinate / Dim == contact.j) {
+                matrix.value[e] = -matrix.value[e];
+            }
+        }
+    }
+    return matrix;
+}
+
+template <int Dim>
+ExactForces<Dim>::ExactForces(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure)
+    : solver_(scaled(packing, structure, square_), structure.ordering()) {}
+
+template <int Dim> std::vector<mpq_class> ExactForces<Dim>::solve(const std::vector<double>& force) const {
+    std::vector<mpq_class> values(force.begin(), force.end());
+    std::vector<mpz_class> b;
+    const long shift = common_integers(values, b);
+    const auto x = solver_.solve(b);
+    assert(x && "asked only when regular");
+    std::vector<mpq_class> unknown;
+    unknown.reserve(b.size());
+    for (const mpz_class& numerator : x->numerator) {
+        mpq_class value(numerator, x->denominator);
+        value.canonicalize();
+        if (shift >= 0) {
+            value <<= static_cast<mp_bitcnt_t>(shift);
+        } else {
+            value >>= static_cast<mp_bitcnt_t>(-shift);
+        }
+        unknown.push_back(std::move(value));
+    }
+    return unknown;
+}
+
+template <int Dim> mpq_class ExactForces<Dim>::mechanism_square(ContactId contact) const {
+    std::vector<mpz_class> unit(square_.size(), 0);
+    unit[contact.index()] = 1; // the scaled rows ask for v with A^T v = sqrt(square) e
+    const auto v = solver_.solve(unit, true);
+    assert(v && "asked only when regular");
+    mpz_class sum = 0;
+    for (const mpz_class& c : v->numerator) {
+        sum += c * c;
+    }
+    mpq_class result(sum, v->denominator * v->denominator);
+    result.canonicalize();
+    return result;
+}
+
+template class ExactForces<2>;
+
+} // namespace isostat

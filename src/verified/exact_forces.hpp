@@ -1,0 +1,38 @@
+#pragma once
+// Forces as exact numbers: private to the room.
+
+#include "exact/rational_solver.hpp"
+
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <gmpxx.h>
+
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+/// The scaled system: column l of H times the distance of the centres and times a power of two has integer entries
+/// (stored doubles are dyadic), so f_l = unknown_l sqrt(square_l) with a rational unknown and an integer square.
+/// Signs are those of the unknowns, ratios of two right-hand sides in one contact are ratios of the unknowns.
+template <int Dim> class ExactForces {
+  public:
+    ExactForces(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
+    /// \pre of the others
+    [[nodiscard]] bool regular() const { return solver_.regular(); }
+    /// unknown of H f = force, the doubles taken as exact.
+    [[nodiscard]] std::vector<mpq_class> solve(const std::vector<double>& force) const;
+    [[nodiscard]] const mpz_class& square(ContactId contact) const { return square_[contact.index()]; }
+    /// |v|^2 / square_l, v the velocity that opens contact l at unit rate, all others kept (G v = e_l).
+    [[nodiscard]] mpq_class mechanism_square(ContactId contact) const;
+
+  private:
+    static sparse::Matrix<mpz_class> scaled(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                            std::vector<mpz_class>& square);
+    std::vector<mpz_class> square_;
+    exact::RationalSolver solver_;
+};
+
+extern template class ExactForces<2>;
+
+} // namespace isostat

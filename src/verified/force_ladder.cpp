@@ -1,0 +1,445 @@
+#include "verified/exact_forces.hpp"
+#include "verified/real.hpp"
+#include "verified/refinement.hpp"
+
+#include <isostat/verified/force_ladder.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+namespace isostat {
+
+namespace {
+
+constexpr mpfr_prec_t low_bits = 160; ///< of comparisons on the rungs double and double-double, and of exact roots
+
+bool all_zero(const std::vector<double>& x) {
+    return std::all_of(x.begin(), x.end(), [](double c) { return c == 0; });
+}
+
+/// Rational times the root of an integer, to `bits` bits (a few units of rounding).
+Real root_product(const mpq_class& factor, const mpz_class& square, mpfr_prec_t bits) {
+    Real root(bits + 8);
+    mpfr_set_z(root.get(), square.get_mpz_t(), MPFR_RNDN);
+    mpfr_sqrt(root.get(), root.get(), MPFR_RNDN);
+    Real result(bits + 8);
+    mpfr_set_q(result.get(), factor.get_mpq_t(), MPFR_RNDN);
+    mpfr_mul(result.get(), result.get(), root.get(), MPFR_RNDN);
+    return result;
+}
+
+/// One right-hand side with what is known of its solution on every rung reached.
+struct Part {
+    std::vector<double> force;
+    bool zero = false;
+    ForceSolution solution; ///< on the rung `solution.rung` with `solution.bits`; empty before the first request
+    RefinedVector refined;  ///< rung multiprecision
+    std::vector<mpq_class> unknown; ///< rung exact
+};
+
+/// Rounds a vector of MPFR numbers to value + low, the rounding included in the bound.
+void round(const std::vector<Real>& x, const Real& error, ForceSolution& solution) {
+    const std::size_t n = x.size();
+    solution.value.resize(n);
+    solution.low.resize(n);
+    Real bound(64);
+    Real rest(64);
+    for (std::size_t l = 0; l < n; ++l) {
+        Real left = x[l];
+        solution.value[l] = left.nearest();
+        mpfr_sub_d(left.get(), left.get(), solution.value[l], MPFR_RNDN); // exact: cancels the leading bits
+        solution.low[l] = left.nearest();
+        mpfr_sub_d(left.get(), left.get(), solution.low[l], MPFR_RNDN);
+        if (mpfr_number_p(left.get()) == 0) { // beyond the range of double
+            solution.bound = std::numeric_limits<double>::infinity();
+            return;
+        }
+        mpfr_abs(rest.get(), left.get(), MPFR_RNDU);
+        mpfr_max(bound.get(), bound.get(), rest.get(), MPFR_RNDU);
+    }
+    mpfr_add(bound.get(), bound.get(), error.get(), MPFR_RNDU);
+    solution.bound = bound.above();
+}
+
+} // namespace
+
+template <int Dim> struct ForceLadder<Dim>::Implementation {
+    const Packing<Dim>* packing;
+    const IsostaticStructure<Dim>* structure;
+    const Factorisation* factorisation;
+    const InverseBound* inverse;
+    LadderOptions options;
+    Rung rung = Rung::double_bound;
+    int bits = 53;
+    mutable std::vector<Part> parts;
+    std::optional<ExtendedMatrix> extended;
+    std::optional<RefinedSystem<Dim>> system;
+    std::optional<ExactForces<Dim>> exact;
+    /// By contact: the norm of the mechanism on the present rung.
+    mutable std::map<std::size_t, Interval> mechanism;
+    mutable std::map<std::size_t, mpq_class> mechanism_square;
+
+    void bring(Part& part) const;
+    [[nodiscard]] Interval evaluate(const ForceExpression& e) const;
+    [[nodiscard]] Interval component(int part, std::size_t l) const;
+    [[nodiscard]] Interval mechanism_norm(std::size_t l) const;
+    /// A number with the sign of the expression, and the square of the expression: only on the rung exact.
+    [[nodiscard]] mpq_class exact_value(const ForceExpression& e, mpq_class& square) const;
+    bool open_exact();
+    [[nodiscard]] bool converged() const;
+};
+
+template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) const {
+    ForceSolution& s = part.solution;
+    if (!s.value.empty() && s.rung == rung && s.bits == bits) {
+        return;
+    }
+    const std::size_t n = part.force.size();
+    if (part.zero) {
+        s.value.assign(n, 0.0);
+        s.low.assign(rung == Rung::double_bound ? 0 : n, 0.0);
+        part.unknown.assign(rung == Rung::exact ? n : 0, mpq_class(0));
+        part.refined.value.assign(rung == Rung::multiprecision ? n : 0, Real());
+    } else if (rung == Rung::exact) {
+        part.unknown = exact->solve(part.force);
+        std::vector<Real> x;
+        Real error(64);
+        Real size(64);
+        for (std::size_t l = 0; l < n; ++l) {
+            x.push_back(root_product(part.unknown[l], exact->square(ContactId(l)), low_bits));
+            mpfr_abs(size.get(), x.back().get(), MPFR_RNDU);
+            mpfr_max(error.get(), error.get(), size.get(), MPFR_RNDU);
+        }
+        mpfr_mul_2si(error.get(), error.get(), -low_bits, MPFR_RNDU); // 8 bits more were carried
+        round(x, error, s);
+        s.residual = 0;
+    } else {
+        if (s.value.empty()) {
+            s = solve_forces(*structure, *factorisation, *inverse, part.force);
+        }
+        if (rung != Rung::double_bound && s.rung == Rung::double_bound) {
+            refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force);
+        }
+        if (rung == Rung::multiprecision) {
+            std::vector<Real> b;
+            std::vector<Real> start;
+            for (std::size_t l = 0; l < n; ++l) {
+                b.emplace_back(part.force[l], 53);
+                Real x(128);
+                mpfr_set_d(x.get(), s.value[l], MPFR_RNDN);
+                if (!s.low.empty()) {
+                    mpfr_add_d(x.get(), x.get(), s.low[l], MPFR_RNDN);
+                }
+                start.push_back(std::move(x));
+            }
+            part.refined = system->solve(b, part.refined.value.size() == n ? part.refined.value : start);
+            if (part.refined.value.size() == n) {
+                round(part.refined.value, part.refined.bound, s);
+                s.residual = part.refined.residual;
+            } else {
+                part.refined.value = std::move(start); // nothing is known
+                s.bound = std::numeric_limits<double>::infinity();
+            }
+        }
+    }
+    s.rung = rung;
+    s.bits = bits;
+}
+
+template <int Dim> Interval ForceLadder<Dim>::Implementation::component(int part, std::size_t l) const {
+    Part& p = parts[static_cast<std::size_t>(part)];
+    bring(p);
+    if (p.zero) {
+        return Interval(low_bits);
+    }
+    if (rung == Rung::multiprecision) {
+        return {p.refined.value[l], p.refined.bound, bits + 32};
+    }
+    Real value(low_bits);
+    mpfr_set_d(value.get(), p.solution.value[l], MPFR_RNDN);
+    Interval result(value, Real(p.solution.bound, 53), low_bits);
+    if (!p.solution.low.empty()) {
+        mpfr_add_d(result.low.get(), result.low.get(), p.solution.low[l], MPFR_RNDD);
+        mpfr_add_d(result.high.get(), result.high.get(), p.solution.low[l], MPFR_RNDU);
+    }
+    return result;
+}
+
+template <int Dim> Interval ForceLadder<Dim>::Implementation::mechanism_norm(std::size_t l) const {
+    const auto known = mechanism.find(l);
+    if (known != mechanism.end()) {
+        return known->second;
+    }
+    // On the rungs below MPFR the system of the first MPFR rung is used: it contains them.
+    const auto n = static_cast<std::size_t>(structure->size());
+    Interval norm(low_bits);
+    mpfr_set_nan(norm.low.get());
+    mpfr_set_nan(norm.high.get());
+    if (inverse->verdict == Verdict::proved) {
+        std::optional<RefinedSystem<Dim>> own;
+        if (!system) {
+            own.emplace(*packing, *structure, *factorisation, *inverse, low_bits);
+        }
+        const RefinedSystem<Dim>& use = system ? *system : *own;
+        std::vector<Real> unit(n, Real(53));
+        mpfr_set_ui(unit[l].get(), 1, MPFR_RNDN);
+        const RefinedVector v = use.solve(unit, std::vector<Real>(n, Real(53)), true);
+        if (v.value.size() == n) {
+            norm = Interval(use.bits() + 32);
+            for (const Real& c : v.value) {
+                Interval point(use.bits() + 32);
+                mpfr_set(point.low.get(), c.get(), MPFR_RNDD);
+                mpfr_set(point.high.get(), c.get(), MPFR_RNDU);
+                norm = norm + point * point;
+            }
+            mpfr_sqrt(norm.low.get(), norm.low.get(), MPFR_RNDD);
+            mpfr_sqrt(norm.high.get(), norm.high.get(), MPFR_RNDU);
+            mpfr_sub(norm.low.get(), norm.low.get(), v.bound.get(), MPFR_RNDD);
+            mpfr_add(norm.high.get(), norm.high.get(), v.bound.get(), MPFR_RNDU);
+        }
+    }
+    mechanism.insert_or_assign(l, norm);
+    return norm;
+}
+
+template <int Dim> Interval ForceLadder<Dim>::Implementation::evaluate(const ForceExpression& e) const {
+    const std::size_t l = e.contact.index();
+    Interval value = component(e.part, l);
+    if (e.slope_part >= 0 && e.at != e.from) {
+        value = value + difference(e.at, e.from, value.bits()) * component(e.slope_part, l);
+    }
+    if (e.minus_magnitude) {
+        value = -magnitude(value);
+    }
+    if (e.divisor != ForceExpression::Divisor::none) {
+        const Interval by =
+            e.divisor == ForceExpression::Divisor::part ? magnitude(component(e.divisor_part, l)) : mechanism_norm(l);
+        if (!by.positive()) {
+            mpfr_set_nan(value.low.get());
+            mpfr_set_nan(value.high.get());
+            return value;
+        }
+        value = value / by;
+    }
+    return value;
+}
+
+template <int Dim>
+mpq_class ForceLadder<Dim>::Implementation::exact_value(const ForceExpression& e, mpq_class& square) const {
+    const std::size_t l = e.contact.index();
+    const auto unknown = [&](int part) -> const mpq_class& {
+        Part& p = parts[static_cast<std::size_t>(part)];
+        bring(p);
+        return p.unknown[l];
+    };
+    mpq_class value = unknown(e.part);
+    if (e.slope_part >= 0 && e.at != e.from) {
+        value += (mpq_class(e.at) - mpq_class(e.from)) * unknown(e.slope_part);
+    }
+    if (e.minus_magnitude) {
+        value = -abs(value);
+    }
+    switch (e.divisor) {
+    case ForceExpression::Divisor::none: square = value * value * exact->square(e.contact); break;
+    case ForceExpression::Divisor::part: {
+        value /= abs(unknown(e.divisor_part)); // the roots cancel
+        square = value * value;
+        break;
+    }
+    case ForceExpression::Divisor::mechanism: {
+        auto known = mechanism_square.find(l);
+        if (known == mechanism_square.end()) {
+            known = mechanism_square.emplace(l, exact->mechanism_square(e.contact)).first;
+        }
+        square = value * value / known->second; // the roots cancel
+        break;
+    }
+    }
+    return value;
+}
+
+template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
+    if (structure->size() > options.exact_size) {
+        return false;
+    }
+    exact.emplace(*packing, *structure);
+    if (!exact->regular()) {
+        exact.reset();
+        return false;
+    }
+    rung = Rung::exact;
+    bits = 0;
+    return true;
+}
+
+/// The last rung in MPFR used its bits: more of them will tell more.
+template <int Dim> bool ForceLadder<Dim>::Implementation::converged() const {
+    return std::all_of(parts.begin(), parts.end(), [&](const Part& part) {
+        if (part.zero || part.solution.value.empty() || part.solution.rung != rung || part.solution.bits != bits) {
+            return true;
+        }
+        Real size(64);
+        Real upper(64);
+        for (const Real& x : part.refined.value) {
+            mpfr_abs(upper.get(), x.get(), MPFR_RNDU);
+            mpfr_max(size.get(), size.get(), upper.get(), MPFR_RNDU);
+        }
+        mpfr_mul_2si(size.get(), size.get(), -bits / 2, MPFR_RNDN);
+        return mpfr_lessequal_p(part.refined.bound.get(), size.get()) != 0;
+    });
+}
+
+template <int Dim>
+ForceLadder<Dim>::ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                              const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options)
+    : implementation_(std::make_unique<Implementation>()) {
+    implementation_->packing = &packing;
+    implementation_->structure = &structure;
+    implementation_->factorisation = &factorisation;
+    implementation_->inverse = &inverse;
+    implementation_->options = options;
+}
+
+template <int Dim> ForceLadder<Dim>::~ForceLadder() = default;
+template <int Dim> ForceLadder<Dim>::ForceLadder(ForceLadder&&) noexcept = default;
+template <int Dim> ForceLadder<Dim>& ForceLadder<Dim>::operator=(ForceLadder&&) noexcept = default;
+
+template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force) {
+    Part part;
+    part.zero = all_zero(force);
+    part.force = std::move(force);
+    implementation_->parts.push_back(std::move(part));
+    return static_cast<int>(implementation_->parts.size()) - 1;
+}
+
+template <int Dim> const std::vector<double>& ForceLadder<Dim>::force(int part) const {
+    return implementation_->parts[static_cast<std::size_t>(part)].force;
+}
+
+template <int Dim> const ForceSolution& ForceLadder<Dim>::solution(int part) const {
+    Part& p = implementation_->parts[static_cast<std::size_t>(part)];
+    implementation_->bring(p);
+    return p.solution;
+}
+
+template <int Dim> std::string ForceLadder<Dim>::digits(int part, ContactId contact, int bits) const {
+    const Implementation& self = *implementation_;
+    Part& p = self.parts[static_cast<std::size_t>(part)];
+    self.bring(p);
+    const std::size_t l = contact.index();
+    Real value(std::max<mpfr_prec_t>(bits, 2));
+    if (self.rung == Rung::exact && !p.zero) {
+        const Real product = root_product(p.unknown[l], self.exact->square(contact), bits); // mpfr_set is a macro
+        mpfr_set(value.get(), product.get(), MPFR_RNDN);
+    } else if (self.rung == Rung::multiprecision && !p.zero) {
+        mpfr_set(value.get(), p.refined.value[l].get(), MPFR_RNDN);
+    } else {
+        Real sum(2200); // exact for any two doubles
+        mpfr_set_d(sum.get(), p.solution.value[l], MPFR_RNDN);
+        mpfr_add_d(sum.get(), sum.get(), p.solution.low.empty() ? 0.0 : p.solution.low[l], MPFR_RNDN);
+        mpfr_set(value.get(), sum.get(), MPFR_RNDN);
+    }
+    char* text = nullptr;
+    mpfr_asprintf(&text, "%Ra", value.get());
+    std::string result(text);
+    mpfr_free_str(text);
+    return result;
+}
+
+template <int Dim> double ForceLadder<Dim>::bound_exponent(int part) const {
+    Part& p = implementation_->parts[static_cast<std::size_t>(part)];
+    implementation_->bring(p);
+    if (p.zero || implementation_->rung == Rung::exact) {
+        return -std::numeric_limits<double>::infinity();
+    }
+    if (implementation_->rung != Rung::multiprecision) {
+        return std::log2(p.solution.bound) + 1e-12;
+    }
+    Real logarithm(64);
+    mpfr_log2(logarithm.get(), p.refined.bound.get(), MPFR_RNDU);
+    return logarithm.above();
+}
+
+template <int Dim> bool ForceLadder<Dim>::climb() {
+    Implementation& self = *implementation_;
+    const bool bounded = self.inverse->verdict == Verdict::proved;
+    self.mechanism.clear();
+    switch (self.rung) {
+    case Rung::double_bound:
+        if (!bounded) {
+            return self.open_exact();
+        }
+        self.extended = extended_contact_matrix(*self.packing, *self.structure);
+        self.rung = Rung::double_double;
+        self.bits = 106;
+        return true;
+    case Rung::double_double:
+    case Rung::multiprecision: {
+        const int next = self.rung == Rung::double_double ? self.options.first_bits : 2 * self.bits;
+        if (next > self.options.max_bits || (self.rung == Rung::multiprecision && !self.converged())) {
+            return self.open_exact();
+        }
+        self.system.emplace(*self.packing, *self.structure, *self.factorisation, *self.inverse, next);
+        self.rung = Rung::multiprecision;
+        self.bits = next;
+        return true;
+    }
+    default: return false;
+    }
+}
+
+template <int Dim> Rung ForceLadder<Dim>::rung() const {
+    return implementation_->rung;
+}
+
+template <int Dim> int ForceLadder<Dim>::bits() const {
+    return implementation_->bits;
+}
+
+namespace {
+
+Order order_of(const Interval& value, Rung rung, int bits) {
+    Order order{false, 0, 0, rung, bits};
+    if (value.positive() || value.negative()) {
+        order.decided = true;
+        order.sign = value.positive() ? 1 : -1;
+        order.margin = value.margin();
+    } else if (value.zero()) {
+        order.decided = true;
+        order.margin = std::numeric_limits<double>::infinity();
+    }
+    return order;
+}
+
+} // namespace
+
+template <int Dim> Order ForceLadder<Dim>::sign(const ForceExpression& a) const {
+    const Implementation& self = *implementation_;
+    if (self.rung != Rung::exact) {
+        return order_of(self.evaluate(a), self.rung, self.bits);
+    }
+    ForceExpression numerator = a; // divisors are positive
+    numerator.divisor = ForceExpression::Divisor::none;
+    mpq_class square;
+    return {true, sgn(self.exact_value(numerator, square)), std::numeric_limits<double>::infinity(), self.rung, 0};
+}
+
+template <int Dim> Order ForceLadder<Dim>::compare(const ForceExpression& a, const ForceExpression& b) const {
+    const Implementation& self = *implementation_;
+    if (self.rung != Rung::exact) {
+        return order_of(self.evaluate(a) - self.evaluate(b), self.rung, self.bits);
+    }
+    mpq_class square_a;
+    mpq_class square_b;
+    const int sign_a = sgn(self.exact_value(a, square_a));
+    const int sign_b = sgn(self.exact_value(b, square_b));
+    const int sign = sign_a != sign_b ? (sign_a > sign_b ? 1 : -1) : sign_a * sgn(mpq_class(square_a - square_b));
+    return {true, sign, std::numeric_limits<double>::infinity(), self.rung, 0};
+}
+
+template class ForceLadder<2>;
+
+} // namespace isostat

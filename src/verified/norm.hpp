@@ -1,0 +1,36 @@
+#pragma once
+// Upper bounds of 2-norms over the whole range of double: private to the room.
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace isostat {
+
+/// One product or quotient that underflows errs by at most this (2^-1075 in truth).
+inline constexpr double underflow_unit = 0x1p-1074;
+
+/// An upper bound of the 2-norm of a non-negative vector: scaled by a power of two, so that no square under- or
+/// overflows. NaN or infinity when an entry is.
+inline double norm_above(const std::vector<double>& x) {
+    double largest = 0;
+    for (const double c : x) {
+        if (!(c <= 0x1p1020)) {
+            return c * 16; // NaN, infinity, or too large to be of use
+        }
+        largest = std::max(largest, c);
+    }
+    if (largest == 0) {
+        return 0;
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    double sum = 0;
+    for (const double c : x) {
+        const double scaled = std::ldexp(c, -exponent);
+        sum += scaled * scaled; // what underflows here is below 2^-1022 n, the largest term at least 1/4
+    }
+    return std::ldexp(std::sqrt(sum) * (1 + 1e-10), exponent) + underflow_unit;
+}
+
+} // namespace isostat

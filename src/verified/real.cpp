@@ -1,0 +1,89 @@
+#include "verified/real.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace isostat {
+
+double Interval::margin() const {
+    Real centre(64);
+    Real radius(64);
+    mpfr_add(centre.get(), low.get(), high.get(), MPFR_RNDN);
+    mpfr_sub(radius.get(), high.get(), low.get(), MPFR_RNDU);
+    mpfr_div(centre.get(), centre.get(), radius.get(), MPFR_RNDD);
+    mpfr_abs(centre.get(), centre.get(), MPFR_RNDD);
+    return centre.below();
+}
+
+Interval difference(double at, double from, mpfr_prec_t bits) {
+    const Real a(at, 53);
+    const Real b(from, 53);
+    Interval result(bits);
+    mpfr_sub(result.low.get(), a.get(), b.get(), MPFR_RNDD);
+    mpfr_sub(result.high.get(), a.get(), b.get(), MPFR_RNDU);
+    return result;
+}
+
+Interval operator-(const Interval& a) {
+    Interval result(a.bits());
+    mpfr_neg(result.low.get(), a.high.get(), MPFR_RNDD);
+    mpfr_neg(result.high.get(), a.low.get(), MPFR_RNDU);
+    return result;
+}
+
+Interval operator+(const Interval& a, const Interval& b) {
+    Interval result(std::max(a.bits(), b.bits()));
+    mpfr_add(result.low.get(), a.low.get(), b.low.get(), MPFR_RNDD);
+    mpfr_add(result.high.get(), a.high.get(), b.high.get(), MPFR_RNDU);
+    return result;
+}
+
+Interval operator-(const Interval& a, const Interval& b) {
+    return a + -b;
+}
+
+Interval operator*(const Interval& a, const Interval& b) {
+    Interval result(std::max(a.bits(), b.bits()));
+    Real product(result.bits());
+    bool first = true;
+    for (const Real* x : {&a.low, &a.high}) {
+        for (const Real* y : {&b.low, &b.high}) {
+            mpfr_mul(product.get(), x->get(), y->get(), MPFR_RNDD);
+            if (first || mpfr_nan_p(product.get()) != 0) {
+                mpfr_set(result.low.get(), product.get(), MPFR_RNDD);
+            } else if (mpfr_nan_p(result.low.get()) == 0) {
+                mpfr_min(result.low.get(), result.low.get(), product.get(), MPFR_RNDD);
+            }
+            mpfr_mul(product.get(), x->get(), y->get(), MPFR_RNDU);
+            if (first || mpfr_nan_p(product.get()) != 0) {
+                mpfr_set(result.high.get(), product.get(), MPFR_RNDU);
+            } else if (mpfr_nan_p(result.high.get()) == 0) {
+                mpfr_max(result.high.get(), result.high.get(), product.get(), MPFR_RNDU);
+            }
+            first = false;
+        }
+    }
+    return result;
+}
+
+Interval operator/(const Interval& a, const Interval& b) {
+    Interval result(std::max(a.bits(), b.bits()));
+    mpfr_div(result.low.get(), a.low.get(), (a.low.sign() >= 0 ? b.high : b.low).get(), MPFR_RNDD);
+    mpfr_div(result.high.get(), a.high.get(), (a.high.sign() >= 0 ? b.low : b.high).get(), MPFR_RNDU);
+    return result;
+}
+
+Interval magnitude(const Interval& a) {
+    if (a.low.sign() >= 0) {
+        return a;
+    }
+    if (a.high.sign() <= 0) {
+        return -a;
+    }
+    Interval result = -a;
+    mpfr_max(result.high.get(), result.high.get(), a.high.get(), MPFR_RNDU);
+    mpfr_set_zero(result.low.get(), 1);
+    return result;
+}
+
+} // namespace isostat

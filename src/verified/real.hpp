@@ -1,0 +1,73 @@
+#pragma once
+// MPFR numbers with their lifetime, and intervals of them: private to the room.
+
+#include <mpfr.h>
+
+#include <utility>
+
+namespace isostat {
+
+/// An MPFR number of a precision of its own. Assignment takes value and precision. MPFR's exponents have 63 bits:
+/// nothing over- or underflows here.
+class Real {
+  public:
+    explicit Real(mpfr_prec_t bits = 53) {
+        mpfr_init2(x_, bits);
+        mpfr_set_zero(x_, 1);
+    }
+    /// The double, exactly.
+    Real(double value, mpfr_prec_t bits) : Real(bits < 53 ? 53 : bits) { mpfr_set_d(x_, value, MPFR_RNDN); }
+    Real(const Real& other) : Real(mpfr_get_prec(other.x_)) { mpfr_set(x_, other.x_, MPFR_RNDN); }
+    Real(Real&& other) noexcept : Real(MPFR_PREC_MIN) { mpfr_swap(x_, other.x_); }
+    Real& operator=(Real other) noexcept {
+        mpfr_swap(x_, other.x_);
+        return *this;
+    }
+    ~Real() { mpfr_clear(x_); }
+
+    [[nodiscard]] mpfr_ptr get() { return x_; }
+    [[nodiscard]] mpfr_srcptr get() const { return x_; }
+    [[nodiscard]] int sign() const { return mpfr_sgn(x_); }
+    /// Nearest double (may underflow to 0).
+    [[nodiscard]] double nearest() const { return mpfr_get_d(x_, MPFR_RNDN); }
+    /// Smallest double that is not below: positive for every positive number.
+    [[nodiscard]] double above() const { return mpfr_get_d(x_, MPFR_RNDU); }
+    [[nodiscard]] double below() const { return mpfr_get_d(x_, MPFR_RNDD); }
+
+  private:
+    mpfr_t x_;
+};
+
+/// A real number between low and high; all operations round outwards, with `bits` of the object. NaN: nothing is known.
+class Interval {
+  public:
+    explicit Interval(mpfr_prec_t bits) : low(bits), high(bits) {}
+    /// value +- radius, radius >= 0.
+    Interval(const Real& value, const Real& radius, mpfr_prec_t bits) : Interval(bits) {
+        mpfr_sub(low.get(), value.get(), radius.get(), MPFR_RNDD);
+        mpfr_add(high.get(), value.get(), radius.get(), MPFR_RNDU);
+    }
+
+    Real low;
+    Real high;
+
+    [[nodiscard]] mpfr_prec_t bits() const { return mpfr_get_prec(low.get()); }
+    [[nodiscard]] bool positive() const { return low.sign() > 0 && mpfr_nan_p(high.get()) == 0; }
+    [[nodiscard]] bool negative() const { return high.sign() < 0 && mpfr_nan_p(low.get()) == 0; }
+    /// Both ends are 0.
+    [[nodiscard]] bool zero() const { return mpfr_zero_p(low.get()) != 0 && mpfr_zero_p(high.get()) != 0; }
+    /// |centre| / radius, infinite for a point.
+    [[nodiscard]] double margin() const;
+};
+
+/// at - from.
+Interval difference(double at, double from, mpfr_prec_t bits);
+Interval operator-(const Interval& a);
+Interval operator+(const Interval& a, const Interval& b);
+Interval operator-(const Interval& a, const Interval& b);
+Interval operator*(const Interval& a, const Interval& b);
+/// \pre b positive
+Interval operator/(const Interval& a, const Interval& b);
+Interval magnitude(const Interval& a);
+
+} // namespace isostat

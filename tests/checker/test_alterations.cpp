@@ -1,0 +1,316 @@
+// No field of a certificate can be altered so that it claims more than is true and still verifies.
+#include "checker/maker.hpp"
+#include "checker/oracle_claims.hpp"
+#include "checker/small_states.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/checker/verify.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <functional>
+#include <random>
+
+using namespace isostat;
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// One alteration, and the claims of which at least one must not be proved any more; the first of them is refuted when
+/// `refuted`.
+struct Alteration {
+    std::string name;
+    std::function<void(Certificate&)> apply;
+    bool refuted = true;
+};
+
+std::string digest_in(const std::string& text) {
+    return text.substr(text.find("\"digest\": \"") + 11, 64);
+}
+
+/// The alteration in a file whose digest was kept: bad input. With a digest of its own: read, and not verified.
+void does_not_verify(const Certificate& original, const Alteration& alteration) {
+    BOOST_TEST_CONTEXT(alteration.name) {
+        Certificate altered = original;
+        alteration.apply(altered);
+        const std::string text = certificate_text(altered);
+        BOOST_REQUIRE(text != certificate_text(original));
+        const std::string kept = scratch::replaced(text, digest_in(text), digest_in(certificate_text(original)));
+        BOOST_CHECK_THROW((void)parse_certificate(kept, "kept"), Error);
+
+        const Verification verification = verify(altered);
+        BOOST_TEST((verification.verdict != Verdict::proved));
+        if (alteration.refuted) {
+            BOOST_TEST((verification.verdict == Verdict::refuted));
+        }
+    }
+}
+
+std::vector<Alteration> alterations_of_claims(const Certificate& original) {
+    std::vector<Alteration> list;
+    const auto add = [&list](const std::string& name, std::function<void(Certificate&)> apply, bool refuted = true) {
+        list.push_back({name, std::move(apply), refuted});
+    };
+    using Count = int CountingClaim::*;
+    const std::vector<Count> counts{&CountingClaim::dof_count, &CountingClaim::contact_count, &CountingClaim::rank,
+                                    &CountingClaim::hyperstaticity, &CountingClaim::hypostaticity};
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+        for (const int change : {1, -1}) {
+            add("count " + std::to_string(k), [=](Certificate& c) { (*c.claims.counting).*counts[k] += change; });
+        }
+    }
+    add("rank, h and k together", [](Certificate& c) {
+        --c.claims.counting->rank;
+        ++c.claims.counting->hyperstaticity;
+        ++c.claims.counting->hypostaticity;
+    });
+    add("N_f and k together", [](Certificate& c) {
+        ++c.claims.counting->dof_count;
+        ++c.claims.counting->hypostaticity;
+    });
+    add("radius", [](Certificate& c) { c.claims.vertex->radius = 0; });
+    add(
+        "unique radius", [](Certificate& c) { c.claims.vertex->unique_radius = 1e3; }, false);
+    add(
+        "unique radius without end", [](Certificate& c) { c.claims.vertex->unique_radius = inf; }, false);
+
+    const ForcesClaim& forces = *original.claims.forces;
+    for (std::size_t l = 0; l < forces.finite.size(); ++l) {
+        const double width = std::max(forces.finite[l].upper - forces.finite[l].lower, 1e-12);
+        const std::string which = "force " + std::to_string(l);
+        add(which + " above", [=](Certificate& c) {
+            c.claims.forces->finite[l].upper += 2 * width, c.claims.forces->finite[l].lower += 2 * width;
+        });
+        add(which + " below", [=](Certificate& c) {
+            c.claims.forces->finite[l].lower -= 2 * width, c.claims.forces->finite[l].upper -= 2 * width;
+        });
+        const bool zero =
+            std::binary_search(forces.structural_zeros.begin(), forces.structural_zeros.end(), static_cast<int>(l));
+        if (!zero) {
+            add(which + " as a structural zero", [=](Certificate& c) {
+                auto& zeros = c.claims.forces->structural_zeros;
+                const auto at = std::lower_bound(zeros.begin(), zeros.end(), static_cast<int>(l));
+                c.claims.forces->infinitesimal.insert(c.claims.forces->infinitesimal.begin() + (at - zeros.begin()),
+                                                      Interval{-inf, inf});
+                zeros.insert(at, static_cast<int>(l));
+            });
+        }
+    }
+    for (std::size_t k = 0; k < forces.structural_zeros.size(); ++k) {
+        const std::string which = "structural zero " + std::to_string(k);
+        add(which + " left out", [=](Certificate& c) {
+            auto& claim = *c.claims.forces;
+            claim.structural_zeros.erase(claim.structural_zeros.begin() + static_cast<std::ptrdiff_t>(k));
+            claim.infinitesimal.erase(claim.infinitesimal.begin() + static_cast<std::ptrdiff_t>(k));
+        });
+        const double width = std::max(forces.infinitesimal[k].upper - forces.infinitesimal[k].lower, 1e-12);
+        for (const double change : {2 * width, -2 * width}) {
+            add(which + " moved", [=](Certificate& c) {
+                c.claims.forces->infinitesimal[k].lower += change;
+                c.claims.forces->infinitesimal[k].upper += change;
+            });
+        }
+    }
+
+    add("smallest gap", [](Certificate& c) { c.claims.gaps->smallest *= 1 + 1e-6; });
+    add("smallest gap without end", [](Certificate& c) { c.claims.gaps->smallest = inf; });
+    for (const Contact& pair : maker::all_pairs(original.state)) {
+        if (pair != original.claims.gaps->where && original.state.packing.disk_count() < 10) {
+            add("nearest pair " + to_string<2>(pair), [=](Certificate& c) { c.claims.gaps->where = pair; });
+        }
+    }
+
+    using End = LoadEndClaim LoadIntervalClaim::*;
+    for (const End end : {&LoadIntervalClaim::low, &LoadIntervalClaim::high}) {
+        const std::string which = end == &LoadIntervalClaim::low ? "low end" : "high end";
+        if (((*original.claims.load_interval).*end).unbounded) {
+            add(which + " bounded", [=](Certificate& c) {
+                (*c.claims.load_interval).*end = {false, {-inf, inf}, c.state.contacts[0]};
+            });
+            continue;
+        }
+        add(which + " unbounded", [=](Certificate& c) { ((*c.claims.load_interval).*end).unbounded = true; });
+        for (const double change : {1e-6, -1e-6}) {
+            add(which + " moved", [=](Certificate& c) {
+                Interval& stress = ((*c.claims.load_interval).*end).stress;
+                stress = {stress.lower + change, stress.upper + change};
+            });
+        }
+        for (const Contact& contact : original.state.contacts) {
+            if (contact != ((*original.claims.load_interval).*end).opens) {
+                // Whatever the stress is said to be: another contact does not open there.
+                add(
+                    which + " opens " + to_string<2>(contact),
+                    [=](Certificate& c) {
+                        ((*c.claims.load_interval).*end).opens = contact;
+                        ((*c.claims.load_interval).*end).stress = {-inf, inf};
+                    },
+                    false);
+            }
+        }
+    }
+    return list;
+}
+
+std::vector<Alteration> alterations_of_the_state(const Certificate& original) {
+    std::vector<Alteration> list;
+    const auto add = [&list](const std::string& name, std::function<void(Certificate&)> apply, bool refuted = true) {
+        list.push_back({name, std::move(apply), refuted});
+    };
+    constexpr double little = 1e-8;
+    const std::size_t disks = original.state.packing.radius.size();
+    for (const double change : {little, -little}) {
+        for (std::size_t i = 0; i < disks; ++i) {
+            add("radius of " + std::to_string(i), [=](Certificate& c) { c.state.packing.radius[i] += change; });
+        }
+        for (std::size_t k = 0; k < original.state.packing.q.size(); ++k) {
+            add("coordinate " + std::to_string(k), [=](Certificate& c) { c.state.packing.q[k] += change; });
+        }
+        for (const std::size_t a : {0, 1}) {
+            add("stress", [=](Certificate& c) { c.state.load.stress[a] += change; });
+            add("reference length", [=](Certificate& c) { c.state.load.reference_length[a] += change; });
+        }
+        for (const int l : original.claims.forces->structural_zeros) {
+            const auto disk = static_cast<std::size_t>(original.state.contacts[static_cast<std::size_t>(l)].i);
+            add("infinitesimal load of " + std::to_string(disk), [=](Certificate& c) {
+                c.state.load.infinitesimal[2 * disk] += 10 * change;
+                c.state.load.infinitesimal[2 * disk + 1] += 10 * change;
+            });
+        }
+    }
+    add("no infinitesimal load", [](Certificate& c) { c.state.load.infinitesimal.clear(); });
+    add("loaded axis", [](Certificate& c) { c.state.load.loaded_axis = 0; });
+    add("kind of load", [](Certificate& c) { c.state.load.kind = LoadKind::true_stress; });
+    for (std::size_t k = 0; k < 2 * disks; ++k) {
+        add("force on a disk", [=](Certificate& c) {
+            c.state.load.disk_force.assign(2 * disks, 0.0);
+            c.state.load.disk_force[k] = little;
+        });
+    }
+    for (std::size_t a = 0; a < 2; ++a) {
+        for (const WallKind kind : {WallKind::fixed, WallKind::absent}) {
+            add(
+                "upper wall", [=](Certificate& c) { c.state.packing.walls.upper[a] = kind; }, kind == WallKind::fixed);
+        }
+    }
+    for (std::size_t i = 0; i < disks; ++i) {
+        add("fixed disk", [=](Certificate& c) {
+            c.state.packing.fixed.assign(disks, 0);
+            c.state.packing.fixed[i] = 1;
+        });
+    }
+    const std::size_t contacts = original.state.contacts.size();
+    for (std::size_t l = 0; l < contacts; ++l) {
+        add("contact left out", [=](Certificate& c) {
+            c.state.contacts.erase(c.state.contacts.begin() + static_cast<std::ptrdiff_t>(l));
+            c.claims.forces->finite.pop_back();
+            c.claims.forces->structural_zeros.clear();
+            c.claims.forces->infinitesimal.clear();
+            c.claims.load_interval = {};
+        });
+        add(
+            "contact exchanged", [=](Certificate& c) { c.state.contacts[l] = c.claims.gaps->where; }, false);
+    }
+    add("order of contacts", [](Certificate& c) { std::swap(c.state.contacts[1], c.state.contacts[3]); });
+    return list;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(no_altered_claim_of_a_small_packing_verifies) {
+    const Certificate original = maker::certificate(small_states::with_a_rattler());
+    BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
+    for (const Alteration& alteration : alterations_of_claims(original)) {
+        does_not_verify(original, alteration);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(no_altered_state_of_a_small_packing_verifies) {
+    const Certificate original = maker::certificate(small_states::with_a_rattler());
+    for (const Alteration& alteration : alterations_of_the_state(original)) {
+        does_not_verify(original, alteration);
+    }
+}
+
+// A sample of each kind of alteration.
+BOOST_AUTO_TEST_CASE(no_altered_claim_or_state_of_a_hundred_disks_verifies) {
+    const Certificate original = maker::certificate(read_state<2>(scratch::data("vertex100.txt")).state);
+    BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
+    std::vector<Alteration> all = alterations_of_claims(original);
+    for (Alteration& alteration : alterations_of_the_state(original)) {
+        all.push_back(std::move(alteration));
+    }
+    for (std::size_t k = 0; k < all.size(); k += 29) {
+        does_not_verify(original, all[k]);
+    }
+}
+
+// What is weaker than the original and true may verify, and does.
+BOOST_AUTO_TEST_CASE(weaker_claims_verify) {
+    Certificate weaker = maker::certificate(small_states::with_a_rattler());
+    weaker.claims.vertex->radius *= 3;
+    weaker.claims.vertex->unique_radius /= 3;
+    for (Interval& force : weaker.claims.forces->finite) {
+        force = {-inf, force.upper + 1};
+    }
+    weaker.claims.gaps->smallest /= 2;
+    weaker.claims.load_interval->high.stress.upper += 1;
+    BOOST_TEST((verify(weaker).verdict == Verdict::proved));
+}
+
+// Bytes are spoilt at random and the digest is made to fit, as a forger would. Whatever is read and proved must agree
+// with approximations that share nothing with the checker.
+BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong) {
+    const std::string text = certificate_text(maker::certificate(small_states::with_a_rattler()));
+    std::mt19937_64 random(7);
+    const auto below = [&random](std::size_t limit) { return static_cast<std::size_t>(random() % limit); };
+    const std::string digits = "0123456789.-e";
+    int read = 0;
+    int proved = 0;
+    for (int trial = 0; trial < 1500; ++trial) {
+        std::string spoilt = text;
+        for (std::size_t k = 1 + below(2); k > 0; --k) {
+            std::size_t at = below(spoilt.size());
+            while (digits.find(spoilt[at]) == std::string::npos) {
+                at = below(spoilt.size());
+            }
+            if (below(4) == 0) {
+                spoilt.insert(at, 1, digits[below(digits.size())]);
+            } else {
+                spoilt[at] = digits[below(digits.size())];
+            }
+        }
+        Certificate forged;
+        try {
+            try {
+                forged = parse_certificate(spoilt, "forged");
+            } catch (const Error& error) {
+                const std::string message = error.what();
+                const std::size_t at = message.find("expected \"");
+                if (message.find("digest is") == std::string::npos || at == std::string::npos) {
+                    continue;
+                }
+                forged = parse_certificate(scratch::replaced(spoilt, digest_in(spoilt), message.substr(at + 10, 64)),
+                                           "forged");
+            }
+        } catch (const Error&) {
+            continue;
+        }
+        ++read;
+        if (verify(forged).verdict == Verdict::proved) {
+            ++proved;
+            BOOST_TEST(maker::contradiction(forged) == "", spoilt);
+        }
+    }
+    BOOST_TEST(read > 200);
+    BOOST_TEST(proved > 5);
+    BOOST_TEST(proved < read);
+    BOOST_TEST_MESSAGE(read << " read, " << proved << " proved");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,213 @@
+// Certificates of small packings whose answers are known in closed form, or that need something special.
+#include "checker/maker.hpp"
+#include "checker/small_states.hpp"
+
+#include <isostat/checker/verify.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+void is_proved(const State<2>& state, CheckerArithmetic arithmetic = CheckerArithmetic::automatic) {
+    const Verification verification = verify(maker::certificate(state), arithmetic);
+    for (const ClaimCheck& check : verification.checks) {
+        BOOST_TEST((check.verdict == Verdict::proved),
+                   check.claim << ": " << to_string(check.verdict) << ": " << check.detail);
+    }
+    BOOST_TEST((verification.verdict == Verdict::proved));
+}
+
+Verdict verdict_of(const Verification& verification, const std::string& claim) {
+    for (const ClaimCheck& check : verification.checks) {
+        if (check.claim == claim) {
+            return check.verdict;
+        }
+    }
+    BOOST_ERROR("no claim " << claim);
+    return Verdict::undecided;
+}
+
+double number_of(const Verification& verification, const std::string& claim, const std::string& name) {
+    for (const ClaimCheck& check : verification.checks) {
+        for (const auto& [key, value] : check.numbers) {
+            if (check.claim == claim && key == name) {
+                return value;
+            }
+        }
+    }
+    BOOST_ERROR("no number " << name << " of " << claim);
+    return std::nan("");
+}
+
+/// The doubles next to a number.
+Interval neighbours(double value) {
+    return {std::nextafter(value, -inf), std::nextafter(value, inf)};
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(every_arithmetic_proves_the_small_cases) {
+    for (const CheckerArithmetic arithmetic : {CheckerArithmetic::automatic, CheckerArithmetic::fixed64,
+                                               CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+        is_proved(crafted::one_disk(1, 2), arithmetic);
+        is_proved(crafted::two_disks(1, 2, 1, 1), arithmetic);
+        is_proved(crafted::three_disks(1, 1.1, 1.3, 1, 1), arithmetic);
+        is_proved(small_states::with_a_rattler(), arithmetic);
+        is_proved(small_states::with_a_fixed_disk(), arithmetic);
+        is_proved(small_states::in_a_corner(), arithmetic);
+    }
+}
+
+// Case 2: every force, gap and stress within one unit in the last place of the closed form; beside it: refuted.
+BOOST_AUTO_TEST_CASE(two_disks_with_the_tightest_claims) {
+    Certificate certificate = maker::certificate(crafted::two_disks(1, 2, 1, 1.5));
+    const double t = 1 / (2 * std::sqrt(2.0)); // (R2 - R1) / (2 sqrt(R1 R2))
+    const double pair = std::sqrt(1 + t * t);  // 1 / cos
+    const std::vector<double> forces{1, t, pair, 1, 1.5, 1.5 - t};
+    ForcesClaim& claim = *certificate.claims.forces;
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        claim.finite[l] = neighbours(forces[l]);
+    }
+    certificate.claims.load_interval->low.stress = neighbours(t);
+    BOOST_TEST((certificate.claims.load_interval->low.opens == crafted::bottom(1)));
+    BOOST_TEST(certificate.claims.load_interval->high.unbounded);
+    // Disk 1 and the left wall: R1 + 2 sqrt(R1 R2) - R2. Disk 0 and the upper walls are further away.
+    const double gap = 2 * std::sqrt(2.0) - 1;
+    certificate.claims.gaps->smallest = std::nextafter(gap, 0);
+    certificate.claims.gaps->where = crafted::left(1);
+    const Verification tight = verify(certificate);
+    BOOST_TEST((tight.verdict == Verdict::proved));
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        Certificate beside = certificate;
+        beside.claims.forces->finite[l] = {std::nextafter(std::nextafter(forces[l], inf), inf), 10};
+        BOOST_TEST((verdict_of(verify(beside), "forces") == Verdict::refuted), "force " << l);
+        beside.claims.forces->finite[l] = {-1, std::nextafter(std::nextafter(forces[l], -inf), -inf)};
+        BOOST_TEST((verdict_of(verify(beside), "forces") == Verdict::refuted), "force " << l);
+    }
+    certificate.claims.gaps->smallest = std::nextafter(gap, 2);
+    BOOST_TEST((verdict_of(verify(certificate), "gaps") == Verdict::refuted));
+}
+
+// The distance to the true vertex is known in closed form: both sides of it are told apart.
+BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_is_known_from_both_sides) {
+    State<2> state = crafted::two_disks(1, 2, 1, 1.5);
+    const double shift = 0x1p-12;
+    state.packing.q[0] += shift; // the disk in the corner is off the wall by this much; nothing else must move
+    Certificate certificate = maker::certificate(state);
+    certificate.claims.vertex->radius = shift * (1 + 1e-12);
+    BOOST_TEST((verdict_of(verify(certificate), "vertex") == Verdict::proved));
+    certificate.claims.vertex->radius = shift * (1 - 1e-12);
+    BOOST_TEST((verdict_of(verify(certificate), "vertex") == Verdict::refuted));
+    BOOST_TEST(number_of(verify(certificate), "vertex", "radius") == shift, boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(a_configuration_far_from_any_vertex_is_undecided) {
+    Certificate certificate = maker::certificate(crafted::two_disks(1, 2, 1, 1.5));
+    for (double& x : certificate.state.packing.q) {
+        x += x > 2 ? 1 : 0;
+    }
+    const Verification verification = verify(certificate);
+    BOOST_TEST((verdict_of(verification, "vertex") != Verdict::proved));
+    BOOST_TEST((verification.verdict != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(a_negative_force_refutes_the_forces_and_the_stability) {
+    const Verification verification = verify(maker::certificate(crafted::two_disks(1, 2, 1, 0.3)));
+    BOOST_TEST((verdict_of(verification, "vertex") == Verdict::proved));
+    BOOST_TEST((verdict_of(verification, "forces") == Verdict::refuted));
+    BOOST_TEST((verdict_of(verification, "stable") == Verdict::refuted));
+}
+
+BOOST_AUTO_TEST_CASE(true_stresses_have_forces_but_no_potential) {
+    State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1);
+    state.load.kind = LoadKind::true_stress;
+    const Verification verification = verify(maker::certificate(state));
+    for (const char* claim : {"counting", "vertex", "forces", "gaps", "load_interval"}) {
+        BOOST_TEST((verdict_of(verification, claim) == Verdict::proved), claim);
+    }
+    BOOST_TEST((verdict_of(verification, "stable") == Verdict::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(held_coordinates_are_undecided) {
+    State<2> state = crafted::two_disks(1, 2, 1, 1.5);
+    Certificate certificate = maker::certificate(state);
+    certificate.state.contacts[0] = {ContactKind::held, 0, 0};
+    for (const ClaimCheck& check : verify(certificate).checks) {
+        BOOST_TEST((check.verdict == Verdict::undecided));
+        BOOST_TEST((check.detail.find("held x") != std::string::npos), check.detail);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(absent_claims_are_undecided_and_nothing_may_speak_of_a_vertex_that_is_not_claimed) {
+    Certificate certificate = maker::certificate(crafted::three_disks(1, 1.1, 1.3, 1, 1));
+    certificate.claims.vertex = {};
+    const Verification verification = verify(certificate);
+    BOOST_TEST((verdict_of(verification, "counting") == Verdict::proved));
+    for (const char* claim : {"vertex", "forces", "gaps", "load_interval", "stable"}) {
+        BOOST_TEST((verdict_of(verification, claim) == Verdict::undecided), claim);
+    }
+    certificate.claims = {};
+    BOOST_TEST((verify(certificate).verdict == Verdict::undecided));
+}
+
+// Case 4: h = 2m - 2. The rank is eliminated exactly when the matrix is not square.
+BOOST_AUTO_TEST_CASE(the_rank_of_a_hyperstatic_lattice_is_exact) {
+    Certificate certificate;
+    certificate.state = crafted::square_lattice(4);
+    certificate.claims.counting = CountingClaim{34, 40, 34, 6, 0, Rung::exact};
+    BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::proved));
+    certificate.claims.counting = CountingClaim{34, 40, 33, 7, 1, Rung::exact};
+    BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::refuted));
+}
+
+// A disk that is nearly on the line of its two contacts. Above the line the matrix is regular, on it singular: the
+// first must be proved down to heights that no double factorisation survives, the second never.
+BOOST_AUTO_TEST_CASE(a_family_that_approaches_a_singular_matrix) {
+    Certificate certificate;
+    for (const int exponent : {-1, -10, -26, -40, -52, -60, -100, -500, -1000}) {
+        certificate.state = small_states::between_two(std::ldexp(1.0, exponent));
+        certificate.claims.counting = CountingClaim{2, 2, 2, 0, 0, Rung::exact};
+        BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::proved), "2^" << exponent);
+        certificate.claims.counting = CountingClaim{2, 2, 1, 1, 1, Rung::exact};
+        BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::refuted), "2^" << exponent);
+    }
+    certificate.state = small_states::between_two(0);
+    for (const CheckerArithmetic arithmetic : {CheckerArithmetic::automatic, CheckerArithmetic::fixed64,
+                                               CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+        certificate.claims.counting = CountingClaim{2, 2, 2, 0, 0, Rung::exact};
+        BOOST_TEST((verdict_of(verify(certificate, arithmetic), "counting") == Verdict::refuted));
+        certificate.claims.counting = CountingClaim{2, 2, 1, 1, 1, Rung::exact};
+        BOOST_TEST((verdict_of(verify(certificate, arithmetic), "counting") == Verdict::proved));
+    }
+}
+
+// Scaled by powers of two, moved far from the origin: the same answers.
+BOOST_AUTO_TEST_CASE(scales_from_tiny_to_huge) {
+    for (const int exponent : {-400, -60, 60, 400}) {
+        State<2> state = small_states::with_a_rattler();
+        for (double& x : state.packing.q) {
+            x = std::ldexp(x, exponent);
+        }
+        for (double& r : state.packing.radius) {
+            r = std::ldexp(r, exponent);
+        }
+        Certificate certificate = maker::certificate(small_states::with_a_rattler());
+        certificate.state = state;
+        certificate.claims.vertex->radius = std::ldexp(certificate.claims.vertex->radius, exponent);
+        certificate.claims.vertex->unique_radius = std::ldexp(certificate.claims.vertex->unique_radius, exponent);
+        certificate.claims.gaps->smallest = std::ldexp(certificate.claims.gaps->smallest, exponent);
+        const Verification verification = verify(certificate);
+        for (const ClaimCheck& check : verification.checks) {
+            BOOST_TEST((check.verdict == Verdict::proved),
+                       "2^" << exponent << " " << check.claim << ": " << check.detail);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,87 @@
+// isostat certify and the two facts of isostat inspect: exit statuses, what is printed and written.
+#include "cli/program.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
+
+using namespace program;
+using isostat::state_text;
+namespace fs = std::filesystem;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
+    const scratch::Folder folder;
+    const std::string input = scratch::data("vertex100.txt");
+    const std::string output = (folder / "cert.json").string();
+    const Outcome made = run({"certify", input, "-o", output});
+    expect(made, 0);
+    for (const char* words : {"rank 202, h = 0, k = 0", "exists within", "188 positive, 14 exactly 0", "opens 64-95",
+                              "opens 64-73", "strict local minimum", "proved"}) {
+        BOOST_TEST(contains(made.out, words), words << " not in " << made.out);
+    }
+    BOOST_TEST(!contains(made.out, "not claimed"));
+    const isostat::Certificate certificate = isostat::read_certificate(output);
+    BOOST_TEST(certificate.input == "vertex100.txt");
+    BOOST_TEST(certificate.input_hash == isostat::sha256(scratch::read(input)));
+    BOOST_TEST((certificate.state.packing.q == isostat::read_state<2>(input).state.packing.q)); // bit for bit
+    expect(run({"verify", output}), 0);
+    // The same state gives the same bytes.
+    const Outcome again = run({"certify", input, "-o", (folder / "again.json").string(), "--json"});
+    expect(again, 0);
+    BOOST_TEST(scratch::read(folder / "again.json") == scratch::read(output));
+    BOOST_TEST((contains(again.out, "\"verdict\":\"proved\"") && contains(again.out, "\"refuted\":[]")));
+}
+
+BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_still_writes_what_is_proved) {
+    const scratch::Folder folder;
+    const auto certify = [&folder](const std::string& name, const isostat::State<2>& state) {
+        scratch::write(folder / (name + ".json"), state_text(state));
+        return run({"certify", (folder / (name + ".json")).string(), "-o", (folder / (name + ".cert")).string()});
+    };
+    const Outcome pulled = certify("pulled", crafted::two_disks(1, 2, 1, 0.3));
+    expect(pulled, 1);
+    BOOST_TEST(contains(pulled.out, "refuted        forces: the force in contact 1-bottom"), pulled.out);
+    BOOST_TEST(contains(pulled.out, "counting       N_f = 6"), pulled.out);
+    BOOST_TEST(isostat::read_certificate(folder / "pulled.cert").claims.vertex.has_value());
+    const Outcome lattice = certify("lattice", crafted::square_lattice(3));
+    expect(lattice, 1);
+    BOOST_TEST(contains(lattice.out, "not isostatic: N_f = 20, N = 24, rank 20, h = 4, k = 0"), lattice.out);
+    const Outcome none = certify("none", crafted::one_disk(1, 0));
+    expect(none, 2);
+    BOOST_TEST(contains(none.out, "not claimed    forces"), none.out);
+    BOOST_TEST(contains(none.out, "mpfr"), none.out);
+    const Outcome bad = run({"certify", (folder / "absent.json").string(), "-o", (folder / "x.cert").string()});
+    expect(bad, 65, {"absent.json"});
+    BOOST_TEST(!fs::exists(folder / "x.cert"));
+    expect(run({"certify", (folder / "none.json").string(), "-o", (folder / "no/such/folder/x").string()}), 74);
+    expect(run({"certify", (folder / "none.json").string()}), 64);
+}
+
+BOOST_AUTO_TEST_CASE(inspect_states_the_rank_as_stored_and_what_is_proved_of_the_true_configuration) {
+    const scratch::Folder folder;
+    isostat::State<2> state = crafted::two_disks(1, 2, 1, 1);
+    scratch::write(folder / "good.json", state_text(state));
+    const Outcome good = run({"inspect", (folder / "good.json").string()});
+    expect(good, 0);
+    BOOST_TEST(contains(good.out, "rank, stored coordinates 6 (exact)"), good.out);
+    BOOST_TEST(contains(good.out, "true configuration       exists within"), good.out);
+    BOOST_TEST(contains(good.out, "6 positive, 0 exactly 0"), good.out);
+    // Far from any vertex: the first fact stands, the second is not claimed.
+    state.packing.q[2] -= 0.5;
+    scratch::write(folder / "far.json", state_text(state));
+    const Outcome far = run({"inspect", (folder / "far.json").string()});
+    BOOST_TEST(contains(far.out, "rank, stored coordinates 6 (exact)"), far.out);
+    BOOST_TEST(contains(far.out, "true configuration       not proved to exist"), far.out);
+    const Outcome json = run({"inspect", (folder / "far.json").string(), "--json"});
+    BOOST_TEST((contains(json.out, "\"rank_exact\":\"proved\"") && contains(json.out, "\"exists\":\"undecided\"")),
+               json.out);
+    // A negative force at the true vertex.
+    scratch::write(folder / "pulled.json", state_text(crafted::two_disks(1, 2, 1, 0.3)));
+    const Outcome pulled = run({"inspect", (folder / "pulled.json").string(), "--json"});
+    expect(pulled, 1);
+    BOOST_TEST(contains(pulled.out, "\"negative\":1"), pulled.out);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

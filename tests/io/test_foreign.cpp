@@ -1,0 +1,239 @@
+// Packings of other programs: every format, what each says of sizes, walls and boundaries, and what is refused.
+
+#include "io/bad_input.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/io/foreign.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+namespace {
+
+using namespace isostat;
+
+const std::string dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n-0.5 0.5\n"
+                         "ITEM: ATOMS id x y radius\n1 0.5 0.5 0.5\n"
+                         "ITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff pp\n-1 3\n0.5 2.5\n"
+                         "-0.5 0.5\nITEM: ATOMS id type x y z radius\n2 1 2 1.5 0 0.75\n1 1 0 1.25 0 0.25\n";
+
+const std::string data_file = "LAMMPS data file\n\n2 atoms\n1 atom types\n\n-1 3 xlo xhi\n0.5 2.5 ylo yhi\n"
+                              "-0.5 0.5 zlo zhi\n\nAtoms # sphere\n\n1 1 0.5 2.5 0 1.25 0\n2 1 1.5 2.5 2 1.5 0 # c\n\n"
+                              "Velocities\n\n1 0 0 0 0 0 0\n2 0 0 0 0 0 0\n";
+
+const std::string xyz = "2\nLattice=\"4 0 0 0 2 0 0 0 1\" Origin=\"-1 0.5 0\" pbc=\"F F F\" "
+                        "Properties=species:S:1:pos:R:3:radius:R:1 Time=3\nA 0 1.25 0 0.25\nB 2 1.5 0 0.75\n";
+
+ForeignPacking read(const std::string& text, const ForeignOptions& options = {}) {
+    return parse_foreign(text, "FILE", options);
+}
+
+ForeignOptions with_walls(ForeignWalls walls) {
+    ForeignOptions out;
+    out.walls = walls;
+    return out;
+}
+
+ForeignOptions stated(SizeMeaning meaning, const std::string& column, double value = 0) {
+    ForeignOptions out;
+    out.size = SizeStatement{meaning, column, value};
+    return out;
+}
+
+bool says(const ForeignPacking& packing, const std::string& words) {
+    for (const std::string& note : packing.notes) {
+        if (note.find(words) != std::string::npos) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The two disks of all the samples, whatever their order.
+void expect_disks(const ForeignPacking& file, const std::string& format) {
+    BOOST_TEST_CONTEXT(format) {
+        BOOST_TEST(file.format == format);
+        BOOST_REQUIRE_EQUAL(file.packing.radius.size(), 2u);
+        const std::size_t small = file.packing.radius[0] < file.packing.radius[1] ? 0 : 1;
+        BOOST_TEST(file.packing.radius[small] == 0.25);
+        BOOST_TEST(file.packing.radius[1 - small] == 0.75);
+        BOOST_TEST(file.packing.q[2 * small] == 0.0);
+        BOOST_TEST(file.packing.q[2 * small + 1] == 1.25);
+        BOOST_TEST(file.packing.q[2 - 2 * small] == 2.0);
+        BOOST_TEST(file.packing.q[3 - 2 * small] == 1.5);
+        BOOST_TEST((file.packing.walls == Walls<2>::none()));
+    }
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(io_foreign)
+
+BOOST_AUTO_TEST_CASE(the_same_two_disks_in_every_format) {
+    expect_disks(read(dump), "lammps-dump");
+    expect_disks(read(data_file), "lammps-data");
+    expect_disks(read(xyz), "xyz");
+    for (const char* text :
+         {"# x y r\n0 1.25 0.25\n2 1.5 0.75\n", "x y r\n0 1.25 0.25\n\n2\t1.5  0.75\n",
+          "#format x_y_z_r\n0 1.25 7 0.25\n2 1.5 7 0.75\n", "id,x,y,diameter,name\n7,0,1.25,0.5,a\n3,2,1.5,1.5,b\n",
+          "\"x\";\"y\";\"radius\"\r\n0;1.25;0.25\r\n2;1.5;0.75\r\n",
+          "# made by hand\n# x y d\n+0 1.25 5e-1\n2 1.5 1.5"}) {
+        expect_disks(read(text), "table");
+    }
+    ForeignOptions columns;
+    columns.columns = {"-", "x", "y", "d"};
+    expect_disks(read("9 0 1.25 0.5\n9 2 1.5 1.5\n", columns), "table");
+}
+
+BOOST_AUTO_TEST_CASE(a_frame_is_the_last_one_or_the_one_asked_for) {
+    ForeignOptions options;
+    options.frame = 0;
+    BOOST_TEST(read(dump, options).packing.disk_count() == 1);
+    options.frame = 1;
+    expect_disks(read(dump, options), "lammps-dump");
+    options.frame = 2;
+    expect_bad_input([&] { read(dump, options); }, {"FILE", "2 frames", "frame 2"});
+    options.frame = 1;
+    const std::string two = "1\nProperties=pos:R:2:r:R:1\n5 5 1\n" + xyz;
+    expect_disks(read(two, options), "xyz");
+    options.frame = 0;
+    BOOST_TEST(read(two, options).packing.disk_count() == 1);
+    options.frame = 1;
+    expect_bad_input([&] { read(data_file, options); }, {"frame 1"});
+    expect_bad_input([&] { read("# x y r\n1 2 3\n", options); }, {"frame 1"});
+}
+
+BOOST_AUTO_TEST_CASE(an_earlier_frame_is_read_from_a_file_cut_in_a_later_one) {
+    ForeignOptions options;
+    options.frame = 0;
+    const std::string cut = dump.substr(0, dump.size() - 20);
+    BOOST_TEST(read(cut, options).packing.disk_count() == 1);
+    expect_bad_input([&] { read(cut); }, {"FILE:"});
+}
+
+BOOST_AUTO_TEST_CASE(walls_are_the_bounds_of_the_box_and_the_lower_ones_are_at_zero) {
+    for (const std::string& text : {dump, data_file, xyz}) {
+        const ForeignPacking box = read(text, with_walls(ForeignWalls::box));
+        BOOST_TEST((box.packing.walls == Walls<2>::box()));
+        const std::size_t small = box.packing.radius[0] < box.packing.radius[1] ? 0 : 1;
+        BOOST_TEST(box.packing.q[2 * small] == 1.0);
+        BOOST_TEST(box.packing.q[2 * small + 1] == 0.75);
+        BOOST_TEST(box.packing.length(0) == 4.0);
+        BOOST_TEST(box.packing.length(1) == 2.0);
+        BOOST_TEST(!says(box, "rounded by"));
+        const ForeignPacking fixed = read(text, with_walls(ForeignWalls::fixed));
+        BOOST_TEST((fixed.packing.walls.upper[0] == WallKind::fixed));
+    }
+    ForeignOptions options = with_walls(ForeignWalls::box);
+    expect_bad_input([&] { read("# x y r\n1 2 3\n", options); }, {"FILE", "--box"});
+    options.box = {0.1, 4, 1, 4};
+    const ForeignPacking shifted = read("# x y r\n1 2 0.25\n", options);
+    BOOST_TEST(shifted.packing.q[0] == 1 - 0.1);
+    BOOST_TEST(says(shifted, "rounded by up to")); // 1 - 0.1 is no double
+    options.box = {1, 4, 1, 4};
+    expect_bad_input([&] { read("# x y r\n1 2 0.25\n", options); }, {"x of disk 0", "between the walls"});
+}
+
+BOOST_AUTO_TEST_CASE(whether_a_size_is_radius_or_diameter_is_never_guessed) {
+    expect_bad_input([&] { read("1 2 3\n4 5 6\n"); }, {"FILE:1", "--columns x,y,r"});
+    expect_bad_input([&] { read("x,y,size\n1,2,3\n"); }, {"FILE:1", "x y size", "--radius COLUMN"});
+    expect_bad_input([&] { read("x,y,radius,diameter\n1,2,3,6\n"); }, {"'radius' and 'diameter'"});
+    BOOST_TEST(read("x,y,size\n1,2,3\n", stated(SizeMeaning::radius, "size")).packing.radius[0] == 3.0);
+    BOOST_TEST(read("x,y,size\n1,2,3\n", stated(SizeMeaning::diameter, "size")).packing.radius[0] == 1.5);
+    BOOST_TEST(read("x,y,radius,diameter\n1,2,3,6\n", stated(SizeMeaning::diameter, "diameter")).packing.radius[0] ==
+               3.0);
+    BOOST_TEST(read("x,y\n1,2\n", stated(SizeMeaning::diameter, "", 3)).packing.radius[0] == 1.5);
+    BOOST_TEST(read("1\ncomment\nAr 1 2 0\n", stated(SizeMeaning::radius, "", 2)).packing.radius[0] == 2.0);
+    expect_bad_input([&] { read("1\ncomment\nAr 1 2 0\n"); }, {"FILE:2", "species pos.0"});
+    expect_bad_input([&] { read("x,y,size\n1,2,3\n", stated(SizeMeaning::radius, "R")); },
+                     {"no column 'R'", "x y size"});
+    expect_bad_input([&] { read("x,y\n1,2\n", stated(SizeMeaning::radius, "", -1)); }, {"-1"});
+    // By definition of the atom style a diameter: a contrary statement is refused.
+    BOOST_TEST(says(read(data_file), "diameters, as atom style sphere defines"));
+    expect_bad_input([&] { read(data_file, stated(SizeMeaning::radius, "diameter")); }, {"diameter by definition"});
+    expect_bad_input([&] { read(scratch::replaced(data_file, " # sphere", "")); }, {"FILE:10", "Atoms # sphere"});
+    expect_bad_input([&] { read(scratch::replaced(data_file, "# sphere", "# atomic")); }, {"style 'atomic'"});
+}
+
+BOOST_AUTO_TEST_CASE(periodic_boundaries_are_refused_unless_the_user_takes_them_for_open) {
+    ForeignOptions open;
+    open.not_periodic = true;
+    const std::string periodic_dump =
+        scratch::replaced(dump, "-0.5 0.5\nITEM: ATOMS id x", "-0.5 0.5\nITEM: ATOMS id x");
+    std::string p = dump;
+    for (std::size_t at = p.find("ff ff pp"); at != std::string::npos; at = p.find("ff ff pp")) {
+        p.replace(at, 8, "pp ff pp");
+    }
+    expect_bad_input([&] { read(p); }, {"along x are periodic", "--not-periodic"});
+    expect_disks(read(p, open), "lammps-dump");
+    const std::string q = scratch::replaced(xyz, "pbc=\"F F F\" ", "");
+    expect_bad_input([&] { read(q); }, {"periodic"}); // a lattice without pbc is periodic by convention
+    expect_disks(read(q, open), "xyz");
+    expect_bad_input([&] { read(scratch::replaced(xyz, "F F F", "F T F")); }, {"along y"});
+    BOOST_TEST(says(read(data_file), "does not say whether x is periodic"));
+    // Image flags tell that the box was periodic.
+    const std::string flags = scratch::replaced(scratch::replaced(data_file, "0 1.25 0\n", "0 1.25 0 0 1 0\n"),
+                                                "2 1.5 0 #", "2 1.5 0 0 0 0 #");
+    expect_bad_input([&] { read(flags); }, {"along y"});
+    std::string s = scratch::replaced(dump, "ff ff pp\n-1", "ss ff pp\n-1");
+    expect_disks(read(s), "lammps-dump");
+    expect_bad_input([&] { read(s, with_walls(ForeignWalls::box)); }, {"shrink-wrapped", "--box"});
+}
+
+BOOST_AUTO_TEST_CASE(scaled_and_unwrapped_coordinates) {
+    const std::string scaled =
+        scratch::replaced(scratch::replaced(scratch::replaced(dump, "id type x y z", "id type xs ys zs"), "2 1 2 1.5 0",
+                                            "2 1 0.75 0.5 0.5"),
+                          "1 1 0 1.25 0", "1 1 0.25 0.375 0.5");
+    expect_disks(read(scaled), "lammps-dump");
+    BOOST_TEST(says(read(scaled), "scaled"));
+    const std::string unwrapped = scratch::replaced(dump, "id type x y z", "id type xu yu zu");
+    expect_disks(read(unwrapped), "lammps-dump");
+    BOOST_TEST(says(read(unwrapped), "unwrapped"));
+}
+
+BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_expected) {
+    const auto refused = [&](const std::string& text, const std::vector<std::string>& words) {
+        expect_bad_input([&] { read(text); }, words);
+    };
+    using scratch::replaced;
+    refused(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 1 0.25"), {"FILE:21", "z of disk 1", "in a plane"});
+    refused(replaced(dump, "1 1 0 1.25 0 0.25", "2 1 0 1.25 0 0.25"), {"FILE:21", "id 2", "line 20"});
+    refused(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 0 -0.25"),
+            {"FILE:21", "radius of disk 1", "-0.25", "positive"});
+    refused(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 nan 1.25 0 0.25"), {"x of disk 1", "nan", "finite"});
+    refused(replaced(dump, "1 1 0 1.25 0 0.25", "1 1 0 1.25 0"), {"FILE:21", "6 values"});
+    refused(replaced(dump, "1 1 0 1.25 0 0.25\n", ""), {"the file ends here", "atom 2 of 2"});
+    refused(replaced(dump, "NUMBER OF ATOMS\n2", "NUMBER OF ATOMS\n1"), {"FILE:21", "ITEM: TIMESTEP"});
+    refused(replaced(dump, "NUMBER OF ATOMS\n2", "NUMBER OF ATOMS\n99999999999"), {"number of atoms"});
+    refused(replaced(dump, "ff ff pp\n-1 3", "xy xz yz ff ff pp\n-1 3"), {"bounds of the box"});
+    refused(replaced(dump, "ff ff pp\n-1 3", "ff fx pp\n-1 3"), {"'fx'", "p f s m"});
+    refused(replaced(dump, "type x y z radius", "type x y z radius radius"), {"'radius' is given twice"});
+    refused(replaced(dump, "-1 3\n", "3 -1\n"), {"upper bound"});
+    refused(replaced(data_file, "2 atoms", "3 atoms"), {"FILE:15", "7 values"});
+    refused(replaced(data_file, "2 atoms", "2 atoms\n2 atoms"), {"FILE:4", "once"});
+    refused(replaced(data_file, "Velocities", "Velocitie"), {"'Velocitie'", "section"});
+    refused(replaced(data_file, "ylo yhi", "ylo yhj"), {"FILE:7", "header line"});
+    refused(replaced(data_file, "0.5 2.5 ylo", "2.5 0.5 ylo"), {"upper bound"});
+    refused(replaced(xyz, "0 2 0 0", "1 2 0 0"), {"Lattice", "along the axes"});
+    refused(replaced(xyz, "pbc=\"F F F\"", "pbc=\"F F F"), {"Properties"});
+    refused(replaced(xyz, "radius:R:1", "radius:R"), {"FILE:2", "name:type:count"});
+    refused(replaced(xyz, "B 2 1.5 0 0.75\n", ""), {"FILE:3", "row 2 of 2"});
+    refused("# x y r\n", {"the file ends here"});
+    refused("x,y,r\n1,,2\n", {"FILE:2", "y of disk 0"});
+    refused("x,y,r\n1,2\n", {"FILE:2", "3 values"});
+    refused("x,y,r\n1,2,1e999\n", {"finite"});
+}
+
+BOOST_AUTO_TEST_CASE(more_rows_in_a_data_file_than_atoms_are_refused) {
+    expect_bad_input([&] { read(scratch::replaced(data_file, "2 atoms", "1 atoms")); }, {"FILE:13"});
+}
+
+BOOST_AUTO_TEST_CASE(our_own_formats_are_recognised) {
+    BOOST_TEST(recognise_format(scratch::read(scratch::data("vertex100.txt"))) == "vertex");
+    BOOST_TEST(recognise_format("{\"format\": \"isostat-state\"}") == "state");
+    BOOST_TEST(recognise_format(scratch::read(std::string(ISOSTAT_EXAMPLES) + "/packings/wedge.toml")) == "packing");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -12,8 +12,10 @@ isostat_packages=(
 
 # For the machine-checked part of proofs/: optional, installed by continuous integration.
 isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify)
+# For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
+isostat_count_packages=(valgrind)
 if [ "${CI:-}" = true ]; then
-  isostat_packages+=("${isostat_proof_packages[@]}")
+  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_count_packages[@]}")
 fi
 
 # Installs what is missing; a message with the list when it cannot.

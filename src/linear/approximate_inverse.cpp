@@ -50,7 +50,19 @@ struct ApproximateInverse::Base {
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
     sparse::Matrix<double> matrix;
-    Base() = default;
+    explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
+        klu_defaults(&common);
+        // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
+        common.scale = 0;
+        // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.
+        common.halt_if_singular = 0;
+    }
+    void factorise() {
+        if (symbolic != nullptr) {
+            numeric = klu_factor(mutable_data(matrix.start), mutable_data(matrix.row), mutable_data(matrix.value),
+                                 symbolic, &common);
+        }
+    }
     Base(const Base&) = delete;
     Base& operator=(const Base&) = delete;
     ~Base() {
@@ -61,7 +73,8 @@ struct ApproximateInverse::Base {
     }
 };
 
-/// M' = M with row `slot` of G replaced by g: M'^-1 = (I - v (g - a)^T / (g.v)) M^-1, v = M^-1 e_slot, a the row before.
+/// M' = M with row `slot` of G replaced by g: M'^-1 = (I - v (g - a)^T / (g.v)) M^-1, v = M^-1 e_slot, a the row
+/// before.
 struct ApproximateInverse::Exchange {
     int slot = 0;
     SparseVector row;         ///< g
@@ -72,22 +85,12 @@ struct ApproximateInverse::Exchange {
 };
 
 ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic) {
-    auto base = std::make_shared<Base>();
-    klu_defaults(&base->common);
-    // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
-    base->common.scale = 0;
-    // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.
-    base->common.halt_if_singular = 0;
-    base->matrix = matrix;
+    auto base = std::make_shared<Base>(matrix);
     base->analysis = std::move(symbolic);
-    base->symbolic =
-        base->analysis != nullptr
-            ? static_cast<klu_symbolic*>(base->analysis.get())
-            : klu_analyze(matrix.rows, mutable_data(matrix.start), mutable_data(matrix.row), &base->common);
-    if (base->symbolic != nullptr) {
-        base->numeric = klu_factor(mutable_data(matrix.start), mutable_data(matrix.row), mutable_data(matrix.value),
-                                   base->symbolic, &base->common);
-    }
+    base->symbolic = base->analysis != nullptr ? static_cast<klu_symbolic*>(base->analysis.get())
+                                               : klu_analyze(matrix.rows, mutable_data(matrix.start),
+                                                             mutable_data(matrix.row), &base->common);
+    base->factorise();
     base_ = std::move(base);
 }
 
@@ -145,8 +148,8 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
         std::fill(rhs.begin(), rhs.end(), std::nan("")); // every bound fails, nothing is decided
         return;
     }
-    // Row r of the newest matrix asks for rhs[r]; the factors solve for the base with the same right-hand side, and each
-    // exchange corrects its own row.
+    // Row r of the newest matrix asks for rhs[r]; the factors solve for the base with the same right-hand side, and
+    // each exchange corrects its own row.
     klu_common common = base_->common; // the factors may be shared by threads
     std::vector<double> wanted(exchanges_.size());
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {

@@ -14,6 +14,7 @@ namespace {
 constexpr double u = 0x1p-53;
 constexpr std::size_t max_passes = 20; ///< more than that costs as much as new factors
 constexpr std::size_t kept_directions = 4;
+constexpr double residual_left = 1e-12; ///< of the size of the unknowns and the right-hand side
 
 double largest(std::span<const double> x) {
     double value = 0;
@@ -54,7 +55,7 @@ void subtract(Direction& from, const Direction& what, double factor) {
 } // namespace
 
 struct Factorisation::Implementation {
-    const sparse::Matrix<double>* matrix = nullptr;
+    std::shared_ptr<const sparse::Matrix<double>> matrix;
     ApproximateInverse inverse;
     bool fresh = true;
     int passes = 0;
@@ -95,8 +96,8 @@ struct Factorisation::Implementation {
         }
     }
 
-    /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised over
-    /// the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
+    /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
+    /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
     /// refinement and converges where that does not.
     bool refined(Side side, std::span<double> rhs) {
         const std::size_t n = rhs.size();
@@ -116,8 +117,11 @@ struct Factorisation::Implementation {
             }
             now.square = dot(now.image, now.image);
             if (!(now.square > 0)) { // nothing is left to correct, or the numbers are not finite
+                if (largest(r) != 0) {
+                    return false;
+                }
                 std::copy(x.begin(), x.end(), rhs.begin());
-                return largest(r) == 0;
+                return true;
             }
             const double length = dot(now.image, r) / now.square;
             double change = 0;
@@ -134,6 +138,10 @@ struct Factorisation::Implementation {
             }
             // Linear convergence: the next change would be change^2 / previous.
             if (change <= 4 * u * size || (k > 0 && change * change <= 4 * u * size * previous)) {
+                // Small steps are also what a useless operator makes: the residual has to be small too.
+                if (!(largest(r) <= residual_left * (size + largest(rhs)))) {
+                    return false;
+                }
                 std::copy(x.begin(), x.end(), rhs.begin());
                 return true;
             }
@@ -160,7 +168,7 @@ struct Factorisation::Implementation {
 
 template <int Dim>
 Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
-    : implementation_(new Implementation{&structure.matrix(),
+    : implementation_(new Implementation{structure.shared_matrix(),
                                          ApproximateInverse(structure.matrix(), structure.ordering().symbolic()),
                                          true,
                                          0,
@@ -169,7 +177,7 @@ Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
 
 template <int Dim>
 Factorisation::Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse)
-    : implementation_(new Implementation{&structure.matrix(), std::move(inverse), false, 0, {}, {}}) {}
+    : implementation_(new Implementation{structure.shared_matrix(), std::move(inverse), false, 0, {}, {}}) {}
 
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;

@@ -17,7 +17,7 @@ namespace {
 constexpr double tangent_accuracy = 1e-7;
 constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
 
-constexpr double turn_accuracy = 1e-13;       ///< where the power vanishes: the turn is as sharp as its tangent
+constexpr double turn_accuracy = 1e-13; ///< where the power vanishes: the turn is as sharp as its tangent
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -100,6 +100,11 @@ template <int Dim> class Follower {
         for (std::size_t l = 0; l < size_; ++l) {
             rhs_[l] = l == slot_ ? 0.0 : kept(contacts[l]);
         }
+        finish_chord(row, target);
+    }
+
+    /// From the approach velocities rhs_ of the kept contacts.
+    template <class Row> void finish_chord(Row row, double target) {
         solve();
         const double scale = (target - row(y_)) / row(mechanism_);
         for (std::size_t k = 0; k < y_.size(); ++k) {
@@ -184,10 +189,20 @@ template <int Dim> class Follower {
 
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
     std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
+        const DofMap<Dim>& dofs = structure_->dofs();
+        const sparse::Matrix<double> h = contact_matrix(at, dofs, structure_->contacts());
         Vector t = tangent_;
         double previous = infinity;
         for (int k = 0; k < 40; ++k) {
-            chord([&](const Contact& c) { return rate(at, c, t); }, [&](const Vector& v) { return v[fastest_]; }, 0.0);
+            for (std::size_t l = 0; l < size_; ++l) {
+                double approach = 0;
+                for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+                    const auto s = static_cast<std::size_t>(e);
+                    approach += h.value[s] * t[static_cast<std::size_t>(dofs.coordinate_of(h.row[s]))];
+                }
+                rhs_[l] = l == slot_ ? 0.0 : -approach;
+            }
+            finish_chord([&](const Vector& v) { return v[fastest_]; }, 0.0);
             const double size = largest(y_);
             for (std::size_t i = 0; i < t.size(); ++i) {
                 t[i] += y_[i];
@@ -444,6 +459,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         return std::nullopt;
     };
     bool renewed_here = false;
+    bool moved = false;
     if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
         choose_fastest();
         if (auto t = tangent_at(q_, tangent_accuracy)) {
@@ -458,10 +474,21 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
             return Failure{FailureKind::not_converged, "the mechanism is not finite"};
         }
         list_candidates();
-        const bool at_start = steps_ == 0;
+        const bool at_start = !moved;
         chord([&](const Contact& c) { return gap_curvature(q_, c, tangent_.data()); },
               [&](const Vector& v) { return v[fastest_]; }, 0.0);
         curvature_ = y_;
+        // Rattlers turn far between factorisations: one pass of old factors may be off by half.
+        for (int k = 0; k < 4 && power_.infinitesimal && !factorisation_->is_fresh(); ++k) {
+            chord([&](const Contact& c) { return rate(q_, c, curvature_) + gap_curvature(q_, c, tangent_.data()); },
+                  [&](const Vector& v) { return v[fastest_]; }, 0.0);
+            for (std::size_t i = 0; i < y_.size(); ++i) {
+                curvature_[i] += y_[i];
+            }
+            if (largest(y_) < 0.01 * largest(curvature_)) {
+                break;
+            }
+        }
         if (!(p_start < infinity)) {
             p_start = power_of(q_, tangent_);
         }
@@ -589,6 +616,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
             return finish(std::move(point->at), ArcEnd::contact, closing, p_end, std::move(point->tangent));
         }
         q_ = std::move(point->at);
+        moved = true;
         tangent_ = std::move(point->tangent);
         p_start = p_end;
         forced_step = infinity;

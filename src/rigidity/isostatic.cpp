@@ -180,8 +180,7 @@ std::optional<ExchangedContacts<Dim>> IsostaticStructure<Dim>::exchange(const Is
     next.contacts_ = previous.contacts_;
     next.contacts_[slot.index()] = contact;
     next.dofs_ = previous.dofs_;
-    next.matrix_ =
-        std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *next.dofs_, next.contacts_));
+    next.matrix_ = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *next.dofs_, next.contacts_));
     if (same_pattern_elsewhere(*previous.matrix_, *next.matrix_, slot.index())) {
         next.matching_ =
             sparse::repaired_matching(previous.matching_, next.matrix_->start, next.matrix_->row, next.slot_);

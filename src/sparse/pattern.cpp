@@ -74,7 +74,8 @@ std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int
                 queue.push_back(matched[r]);
                 continue;
             }
-            // Backwards along the path: each row takes the column that reached it, which leaves its own row to the next.
+            // Backwards along the path: each row takes the column that reached it, which leaves its own row to the
+            // next.
             for (auto at = r;;) {
                 const int taken = came_from[at];
                 const auto left = taken == column ? matched.end() : std::find(matched.begin(), matched.end(), taken);

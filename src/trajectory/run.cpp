@@ -115,8 +115,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
-        auto made = Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load,
-                                           bound_cache_);
+        auto made =
+            Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load, bound_cache_);
         if (!made.ok()) {
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
@@ -262,8 +262,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                    : opening.infinitesimal                                                       ? "rattler"
                                                                                                  : "tension";
     }
-    // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh factors
-    // and bound. A resumed run starts from the same bits.
+    // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh
+    // factors and bound. A resumed run starts from the same bits.
     bound_cache_ = {};
     auto anew = Vertex<Dim>::make(here->packing, here->structure.contacts(), load, bound_cache_);
     if (!anew.ok()) {

@@ -86,13 +86,12 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     if (!next) {
         return anew(); // it says why
     }
-    const ApproximateInverse approximate = from.factors_are_worn()
-                                               ? ApproximateInverse(next->matrix())
-                                               : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
+    const ApproximateInverse approximate =
+        from.factors_are_worn() ? ApproximateInverse(next->matrix())
+                                : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {
-        mechanism[mu] =
-            tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
+        mechanism[mu] = tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
     }
     auto proved = carry_bound(from.structure, from.inverse, *next, approximate, std::move(mechanism));
     if (!proved) {

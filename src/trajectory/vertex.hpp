@@ -22,8 +22,8 @@ template <int Dim> class Vertex {
     /// proved.
     static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                 const Load<Dim>& load, InverseBoundCache& cache);
-    /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the bound
-    /// of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V5), a Cholesky
+    /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the
+    /// bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V5), a Cholesky
     /// factorisation (V1), everything anew as in `make`. The factors of `from` go on serving. `tangent` is a guess.
     static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
                                                      const Contact& closed, const std::vector<double>& tangent,

@@ -20,27 +20,26 @@ double gamma(double terms) {
 
 /// Blocks that share a contact, as AMD wants them: columns of a symmetric pattern, both halves, with repetitions.
 std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks) {
-    std::vector<std::pair<int, int>> edges;
-    for (std::size_t l = 0; l < static_cast<std::size_t>(h.cols); ++l) {
-        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
-            for (int f = h.start[l]; f < h.start[l + 1]; ++f) {
-                const int a = h.row[static_cast<std::size_t>(e)] / 2;
-                const int b = h.row[static_cast<std::size_t>(f)] / 2;
-                if (a != b) {
-                    edges.emplace_back(a, b);
+    std::vector<int> start(blocks + 1, 0);
+    std::vector<int> row;
+    const auto for_each_pair = [&](auto use) {
+        for (std::size_t l = 0; l < static_cast<std::size_t>(h.cols); ++l) {
+            for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+                for (int f = h.start[l]; f < h.start[l + 1]; ++f) {
+                    const int a = h.row[static_cast<std::size_t>(e)] / 2;
+                    const int b = h.row[static_cast<std::size_t>(f)] / 2;
+                    if (a != b) {
+                        use(static_cast<std::size_t>(a), b);
+                    }
                 }
             }
         }
-    }
-    std::sort(edges.begin(), edges.end());
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    std::vector<int> start(blocks + 1, 0);
-    std::vector<int> row(edges.size() + 1, 0); // AMD refuses a null array
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-        ++start[static_cast<std::size_t>(edges[k].first) + 1];
-        row[k] = edges[k].second;
-    }
+    };
+    for_each_pair([&](std::size_t a, int) { ++start[a + 1]; });
     std::partial_sum(start.begin(), start.end(), start.begin());
+    row.resize(static_cast<std::size_t>(start.back()) + 1); // AMD refuses a null array
+    std::vector<int> next(start.begin(), start.end() - 1);
+    for_each_pair([&](std::size_t a, int b) { row[static_cast<std::size_t>(next[a]++)] = b; });
     std::vector<int> order(blocks);
     const int status = amd_order(static_cast<int>(blocks), start.data(), row.data(), order.data(), nullptr, nullptr);
     if (status == AMD_OUT_OF_MEMORY) {
@@ -95,7 +94,8 @@ void BlockCholesky::form_products(const std::vector<int>& position) {
             }
             for (std::size_t b = 0; b < count; ++b) {
                 if (block[b] > block[a]) {
-                    unsorted.push_back({block[b], block[a],
+                    unsorted.push_back({block[b],
+                                        block[a],
                                         {part[b][0] * part[a][0], part[b][1] * part[a][0], part[b][0] * part[a][1],
                                          part[b][1] * part[a][1]}});
                     ++product_start_[static_cast<std::size_t>(block[a]) + 1];

@@ -113,7 +113,8 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
     const sparse::Matrix<double>& h = after.matrix();
     const auto n = static_cast<std::size_t>(h.cols);
     const auto change = change_of_kept(before.matrix(), h, after.slot());
-    if (!change || !(*change < (1 - worth) * bound.sigma_min)) {
+    const double started_with = bound.carried_from > 0 ? bound.carried_from : bound.sigma_min;
+    if (!change || !(bound.sigma_min - *change > worth * started_with)) {
         return std::nullopt;
     }
     const double kept = (bound.sigma_min - *change) * (1 - 4 * u); // of G_-, N - 1 rows
@@ -166,7 +167,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
     if (!(sigma > 0)) {
         return std::nullopt;
     }
-    const InverseBound carried{Verdict::proved, sigma, InverseBound::Route::carried};
+    const InverseBound carried{Verdict::proved, sigma, InverseBound::Route::carried, started_with};
     return ProvedExchange{carried, RegularityProver::proof(h, sigma)};
 }
 

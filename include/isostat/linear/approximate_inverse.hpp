@@ -16,8 +16,8 @@ namespace isostat {
 /// residuals are then bounded with the true matrix. A value; copies share the factors.
 class ApproximateInverse {
   public:
-    /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern (`Ordering::symbolic`), when there is one.
-    /// Cost: 1.6 ms at N = 3900, 8 ms at N = 9800, and 2 to 6 ms for the analysis.
+    /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern (`Ordering::symbolic`), when there is
+    /// one. Cost: 1.6 ms at N = 3900, 8 ms at N = 9800, and 2 to 6 ms for the analysis.
     explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
 
     /// The operator after column `slot` of H, equal to that of `before` up to motion, was replaced by that of `after`.

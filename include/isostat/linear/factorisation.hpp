@@ -10,9 +10,9 @@
 
 namespace isostat {
 
-/// Solutions with H and G = H^T, as good as sparse LU in double makes them. They are approximate: their error is bounded
-/// by whoever uses them, from residuals (room verified). A solver's own success flag is never a statement about rank;
-/// the structure is.
+/// Solutions with H and G = H^T, as good as sparse LU in double makes them. They are approximate: their error is
+/// bounded by whoever uses them, from residuals (room verified). A solver's own success flag is never a statement about
+/// rank; the structure is.
 ///
 /// Fresh factors solve in one pass. Factors taken over from an earlier structure (`ApproximateInverse`) are applied
 /// again and again to the residual with the matrix of *this* structure until the change is below rounding; when that
@@ -20,7 +20,7 @@ namespace isostat {
 class Factorisation {
   public:
     template <int Dim> explicit Factorisation(const IsostaticStructure<Dim>& structure);
-    /// With an operator close to the inverse of the structure's matrix. \pre the structure outlives the object.
+    /// With an operator close to the inverse of the structure's matrix.
     template <int Dim> Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse);
     ~Factorisation();
     Factorisation(Factorisation&&) noexcept;

@@ -53,8 +53,7 @@ class RegularityProof {
   private:
     friend struct RegularityProver; // of the room verified
     template <int> friend class IsostaticStructure;
-    RegularityProof(const sparse::Matrix<double>& matrix, double sigma_min)
-        : matrix_(&matrix), sigma_min_(sigma_min) {}
+    RegularityProof(const sparse::Matrix<double>& matrix, double sigma_min) : matrix_(&matrix), sigma_min_(sigma_min) {}
     const sparse::Matrix<double>* matrix_;
     double sigma_min_;
 };
@@ -79,9 +78,8 @@ template <int Dim> class IsostaticStructure {
 
     /// The list of `previous` with the contact at `slot` replaced, at a new configuration of the same grains. Nothing
     /// when the new pattern is structurally singular. Cost: the matrix, and one augmenting path.
-    static std::optional<ExchangedContacts<Dim>> exchange(const IsostaticStructure& previous,
-                                                          const Packing<Dim>& packing, ContactId slot,
-                                                          const Contact& contact);
+    static std::optional<ExchangedContacts<Dim>>
+    exchange(const IsostaticStructure& previous, const Packing<Dim>& packing, ContactId slot, const Contact& contact);
     /// By a positive lower bound of its smallest singular value (statement T3 with V5, or V1). \pre the proof is of
     /// this matrix.
     static IsostaticStructure exchanged(ExchangedContacts<Dim> contacts, const RegularityProof& proof);
@@ -89,6 +87,8 @@ template <int Dim> class IsostaticStructure {
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
     [[nodiscard]] const DofMap<Dim>& dofs() const { return *dofs_; }
     [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
+    /// The same, for those who may outlive the structure.
+    [[nodiscard]] const std::shared_ptr<const sparse::Matrix<double>>& shared_matrix() const { return matrix_; }
     [[nodiscard]] int size() const { return matrix_->rows; }
     [[nodiscard]] RegularityEvidence evidence() const { return evidence_; }
     /// Column matched to each row.

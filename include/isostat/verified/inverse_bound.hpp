@@ -18,6 +18,8 @@ struct InverseBound {
     double sigma_min = 0;
     /// Which argument proved it.
     enum class Route : unsigned char { cholesky, double_double, rows, multiprecision, carried } route = Route::cholesky;
+    /// Of a carried bound: sigma_min of the one that it started from; else 0.
+    double carried_from = 0;
 };
 
 /// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity.
@@ -53,8 +55,8 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& cont
 /// keep at least `bound.sigma_min` minus the norm of their change; what the new row adds is measured by the forces z
 /// that balance the mechanism. Loses a factor below sqrt 2 per exchange when the grains hardly move; no factorisation.
 /// `mechanism` (on degrees of freedom) is a guess of the null vector of the kept rows at the end, `inverse` makes the
-/// other guesses; neither is trusted. Nothing when the grains moved too far, or when less than `worth` of the bound is
-/// left. Cost: 2 to 4 passes.
+/// other guesses; neither is trusted. Nothing when the grains moved too far, or when less than `worth` of the last
+/// bound that was not carried is left. Cost: 2 to 4 passes.
 template <int Dim>
 std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before, const InverseBound& bound,
                                           const ExchangedContacts<Dim>& after, const ApproximateInverse& inverse,

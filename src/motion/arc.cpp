@@ -478,17 +478,6 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         chord([&](const Contact& c) { return gap_curvature(q_, c, tangent_.data()); },
               [&](const Vector& v) { return v[fastest_]; }, 0.0);
         curvature_ = y_;
-        // Rattlers turn far between factorisations: one pass of old factors may be off by half.
-        for (int k = 0; k < 4 && power_.infinitesimal && !factorisation_->is_fresh(); ++k) {
-            chord([&](const Contact& c) { return rate(q_, c, curvature_) + gap_curvature(q_, c, tangent_.data()); },
-                  [&](const Vector& v) { return v[fastest_]; }, 0.0);
-            for (std::size_t i = 0; i < y_.size(); ++i) {
-                curvature_[i] += y_[i];
-            }
-            if (largest(y_) < 0.01 * largest(curvature_)) {
-                break;
-            }
-        }
         if (!(p_start < infinity)) {
             p_start = power_of(q_, tangent_);
         }

@@ -102,10 +102,23 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
     ArcOptions arc_options;
     arc_options.step_fraction = options_.step_fraction;
     const PowerLoad<Dim> power{&load, opening.infinitesimal, at_limit};
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    std::optional<Factorisation> fresh;
+    if (opening.infinitesimal && !from.factorisation.is_fresh()) {
+        fresh.emplace(from.structure);
+    }
     // A second pass only when the proved gaps say that another candidate closed before.
     for (int pass = 0; pass < 8; ++pass) {
-        auto arc = follow_arc(from.packing, from.structure, from.factorisation, opening.contact, opening.direction,
-                              power, candidates_, arc_options);
+        const auto attempt = [&] {
+            return follow_arc(from.packing, from.structure, fresh ? *fresh : from.factorisation, opening.contact,
+                              opening.direction, power, candidates_, arc_options);
+        };
+        auto arc = attempt();
+        // An arc that fails, or ends where it began, may only have been predicted badly by old factors.
+        if ((!arc.ok() || arc.value().closed == record.opened) && !fresh && !from.factorisation.is_fresh()) {
+            fresh.emplace(from.structure);
+            arc = attempt();
+        }
         if (!arc.ok()) {
             return arc.failure();
         }

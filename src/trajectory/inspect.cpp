@@ -153,10 +153,10 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
                 record.margin = std::min(record.margin, decision.value().margin);
                 inspection.equilibrium = inspection.remark.empty();
                 record.verdict = inspection.equilibrium ? Verdict::proved : before;
-                inspection.stable = inspection.equilibrium
-                                        ? Verdict::proved
-                                        : Verdict::undecided; // isostatic, all forces positive: every motion opens a
-                                                              // contact against a force
+                // Isostatic, all forces positive: every motion opens a contact against a force. True stresses have no
+                // potential that could be minimal.
+                inspection.stable = inspection.equilibrium && state.load.kind == LoadKind::nominal ? Verdict::proved
+                                                                                                   : Verdict::undecided;
             } else if (inspection.remark.empty()) {
                 inspection.remark = described.failure().message;
             }
@@ -201,14 +201,16 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
             }
         }
         if (positive && at_rest && counting.mechanisms == 1 && inspection.remark.empty()) {
-            inspection.second_order =
-                curvature_of_potential(vertex, inspection.forces, inspection.contacts.size() - 1, sigma);
-            if (inspection.second_order.negative()) {
+            if (state.load.kind == LoadKind::nominal) {
+                inspection.second_order =
+                    curvature_of_potential(vertex, inspection.forces, inspection.contacts.size() - 1, sigma);
+            }
+            const bool maximum = inspection.second_order.negative();
+            if (maximum) {
                 inspection.stable = Verdict::refuted;
             }
-            inspection.remark =
-                fmt::format("equilibrium with one mechanism (k = 1){}",
-                            inspection.second_order.negative() ? ", not stable: W has a maximum along it" : "");
+            inspection.remark = fmt::format("equilibrium with one mechanism (k = 1){}",
+                                            maximum ? ", not stable: W has a maximum along it" : "");
         }
     }
     record.number = state.equilibrium;

@@ -341,6 +341,15 @@ BOOST_AUTO_TEST_CASE(true_stress_loads_follow_the_current_lengths) {
                boost::test_tools::tolerance(1e-12));
 }
 
+BOOST_AUTO_TEST_CASE(true_stresses_have_no_potential_and_no_proof_of_its_minimum) {
+    State<2> state = prepared(40, 9);
+    BOOST_TEST((inspect_vertex(state).value().stable == Verdict::proved));
+    state.load.kind = LoadKind::true_stress;
+    const auto inspection = inspect_vertex(state);
+    BOOST_TEST(inspection.value().equilibrium);
+    BOOST_TEST((inspection.value().stable == Verdict::undecided));
+}
+
 BOOST_AUTO_TEST_CASE(a_cap_on_arcs_ends_the_run_with_the_last_equilibrium) {
     RunOptions options;
     options.max_arcs = 1;

@@ -77,7 +77,7 @@ template <int Dim> struct Inspection {
     std::vector<int> rattlers;                  ///< disks without a force-carrying contact
     bool equilibrium = false;                   ///< isostatic and all forces positive lexicographically, proved
     /// proved: strict local minimum of W (isostatic equilibrium); refuted: W has a maximum along the mechanism, the
-    /// equilibrium is not stable; undecided: neither was shown.
+    /// equilibrium is not stable; undecided: neither was shown (always under true stresses, which have no potential).
     Verdict stable = Verdict::undecided;
     Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1), s = the fastest coordinate
     std::string remark;     ///< when not an equilibrium: which contact and by how much

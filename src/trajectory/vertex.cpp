@@ -49,7 +49,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
     return vertex;
 }
 
-template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates) {
+template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates,
+                                                                                 bool ties_are_values) {
     double correction = 0; // of the centre of the enclosure
     for (const double c : enclosure.correction) {
         correction += std::abs(c);
@@ -105,11 +106,15 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(Ca
             }
             continue;
         }
+        if (ties_are_values && is_tie(order, packing.min_radius())) {
+            gaps.zero.emplace_back(contact, order);
+            continue;
+        }
         names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),
                              order.decided ? std::string("exactly 0") : fmt::format("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
-        return Failure{FailureKind::tie, "gaps that are zero beside those of the contacts kept: " + names};
+        return Failure{ties_are_values ? FailureKind::undecided : FailureKind::tie, "gaps that are zero beside those of the contacts kept: " + names};
     }
     return gaps;
 }

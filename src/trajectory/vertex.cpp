@@ -108,6 +108,10 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(Ca
         }
         if (ties_are_values && is_tie(order, packing.min_radius())) {
             gaps.zero.emplace_back(contact, order);
+            if (gaps.smallest > 0) {
+                gaps.smallest = 0;
+                gaps.where = contact;
+            }
             continue;
         }
         names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),

@@ -53,7 +53,7 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
     all.insert(all.end(), wall.begin(), wall.end());
     loaded_wall_row_ = wall.empty() ? -1 : wall.front();
     const sparse::Matrix<double>& h = structure.matrix();
-    backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.ordering(), all);
+    backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), all);
 }
 
 template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
@@ -81,7 +81,7 @@ template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
         const sparse::Matrix<double>& h = structure_->matrix();
         sloped_ = loaded_wall_row_ < 0
                       ? std::vector<unsigned char>(static_cast<std::size_t>(h.cols), 0)
-                      : sparse::structural_nonzeros(h.start, h.row, structure_->ordering(), {&loaded_wall_row_, 1});
+                      : sparse::structural_nonzeros(h.start, h.row, structure_->matching(), {&loaded_wall_row_, 1});
     }
     return sloped_[contact.index()] == 0;
 }

@@ -107,10 +107,23 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
     ArcOptions arc_options;
     arc_options.step_fraction = options_.step_fraction;
     const PowerLoad<Dim> power{&load, opening.infinitesimal, at_limit};
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    std::optional<Factorisation> fresh;
+    if (opening.infinitesimal && !from.factorisation.is_fresh()) {
+        fresh.emplace(from.structure);
+    }
     // A second pass only when the proved gaps say that another candidate closed before.
     for (int pass = 0; pass < 8; ++pass) {
-        auto arc = follow_arc(from.packing, from.structure, from.factorisation, opening.contact, opening.direction,
-                              power, candidates_, arc_options);
+        const auto attempt = [&] {
+            return follow_arc(from.packing, from.structure, fresh ? *fresh : from.factorisation, opening.contact,
+                              opening.direction, power, candidates_, arc_options);
+        };
+        auto arc = attempt();
+        // An arc that fails, or ends where it began, may only have been predicted badly by old factors.
+        if ((!arc.ok() || arc.value().closed == record.opened) && !fresh && !from.factorisation.is_fresh()) {
+            fresh.emplace(from.structure);
+            arc = attempt();
+        }
         if (!arc.ok()) {
             return arc.failure();
         }
@@ -120,9 +133,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
-        std::vector<Contact> contacts = from.structure.contacts();
-        contacts[opening.contact.index()] = path.closed;
-        auto made = Vertex<Dim>::make(path.end, std::move(contacts), load, bound_cache_);
+        auto made =
+            Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load, bound_cache_);
         if (!made.ok()) {
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
@@ -198,10 +210,13 @@ template <int Dim>
 void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
                        const Load<Dim>& load, ArcRecord<Dim>& record) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto vertex = [](const Vertex<Dim>& v) {
-        return ArcVertex<Dim>{v.packing, v.structure, v.factorisation, v.inverse, v.enclosure};
+    // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
+    const Factorisation first(from.structure);
+    const Factorisation last(to.structure);
+    const auto vertex = [](const Vertex<Dim>& v, const Factorisation& factorisation) {
+        return ArcVertex<Dim>{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };
-    record.certificate = certify_arc(vertex(from), opening.contact, opening.direction, vertex(to),
+    record.certificate = certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
                                      PowerLoad<Dim>{&load, opening.infinitesimal, at_limit}, candidates_);
     const ArcCertificate& certificate = *record.certificate;
     ArcTally& tally = counters_.arcs;

@@ -1,3 +1,5 @@
+#include "statics/straight_strut.hpp"
+
 #include <isostat/statics/decisions.hpp>
 
 #include <fmt/format.h>
@@ -83,10 +85,12 @@ Order order_of(Statics<Dim>& statics, const Enclosure& difference, const ForceEx
     return statics.compare(a, b);
 }
 
-/// Picks by the rule among contenders that all carry a proved negative force.
+/// Picks by the rule among contenders that all carry a proved negative force. At a fresh hold the contacts of a
+/// straight strut carry one force (S4): the infinitesimal loads order them, not the digits to which the turn was
+/// located.
 template <int Dim, class Expression>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Expression expression, OpeningRule rule,
-                     std::uint64_t random_bits) {
+                     std::uint64_t random_bits, ContactId fresh_hold = {}) {
     if (rule == OpeningRule::random) {
         // Ordered by identity, so that the choice does not depend on the order of the contact list.
         std::sort(negative.begin(), negative.end(), [&](const Contender& a, const Contender& b) {
@@ -111,6 +115,7 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         }
         return e;
     };
+    const bool by_force = rule == OpeningRule::most_negative || rule == OpeningRule::least_negative;
     std::size_t best = 0;
     for (std::size_t k = 1; k < negative.size(); ++k) {
         if (negative[k].key.value < negative[best].key.value) {
@@ -123,9 +128,29 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         double margin = infinity;
         Rung rung = statics.rung();
         std::string tied;
+        bool strut = false;
         std::optional<std::size_t> better;
+        const auto mates = fresh_hold.valid() && by_force ? strut_mates(statics, negative[best].contact, fresh_hold)
+                                                          : std::vector<StrutMate>();
         for (std::size_t k = 0; k < negative.size() && !better; ++k) {
             if (k == best) {
+                continue;
+            }
+            const auto mate = std::find_if(mates.begin(), mates.end(),
+                                           [&](const StrutMate& m) { return m.contact == negative[k].contact; });
+            if (mate != mates.end()) {
+                strut = true;
+                const Enclosure& excess = mate->excess;
+                if (!excess.decided()) {
+                    tied +=
+                        fmt::format("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
+                                    "loads do not order: {:.3g}, known to {:.3g}",
+                                    name(statics, mate->contact), negative[k].force.value, excess.value, excess.radius);
+                } else if (excess.positive() == (rule == OpeningRule::least_negative)) {
+                    better = k;
+                } else {
+                    margin = std::min(margin, excess.margin());
+                }
                 continue;
             }
             Order order =
@@ -152,8 +177,10 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
                            fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}){}",
                                        name(statics, negative[best].contact), negative[best].force.value, tied)};
         }
-        return Opening{
+        Opening opening{
             negative[best].contact, false, negative[best].force, +1, std::min(margin, negative[best].margin), rung};
+        opening.straight_strut = strut;
+        return opening;
     }
     return Failure{FailureKind::undecided, "the comparisons of the opening rule contradict each other"};
 }
@@ -223,7 +250,7 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         }
         return OpeningDecision{std::nullopt, margin, statics.rung()};
     }
-    Result<Opening> picked = pick(statics, negative, expression, rule, random_bits);
+    Result<Opening> picked = pick(statics, negative, expression, rule, random_bits, finite ? fresh_hold : ContactId());
     if (!picked.ok()) {
         return picked.failure();
     }

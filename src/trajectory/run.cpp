@@ -160,16 +160,9 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     }
     record.work = work;
     force_norm = std::sqrt(force_norm);
-    // The stored ends are within `radius` of the true ones (plus their correction): that much of the work is not known.
-    const auto off = [](const VertexEnclosure& enclosure) {
-        double square = 0;
-        for (const double c : enclosure.correction) {
-            square += c * c;
-        }
-        return enclosure.radius + std::sqrt(square);
-    };
+    // The stored ends are that far from the true ones: so much of the work is not known.
     const double unknown =
-        (force_norm * (off(from.enclosure) + off(to.enclosure)) + terms * 0x1p-52 * size) * (1 + 1e-10);
+        (force_norm * (from.enclosure.distance() + to.enclosure.distance()) + terms * 0x1p-52 * size) * (1 + 1e-10);
     if (load.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided,
                        fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
@@ -327,7 +320,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     }
     EquilibriumRecord<Dim> record = described.value();
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
-    const double allowance = 4 * vertex_->enclosure.radius;
+    const double allowance = 4 * vertex_->enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex_->packing, allowance);
     if (admissible.verdict != Verdict::proved) {
         return Failure{FailureKind::overlap,

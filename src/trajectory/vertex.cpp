@@ -50,11 +50,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
 }
 
 template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates) {
-    double correction = 0; // of the centre of the enclosure
-    for (const double c : enclosure.correction) {
-        correction += std::abs(c);
-    }
-    if (!candidates.covers(packing, 1.001 * (enclosure.radius + correction))) {
+    if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction);
     }
     const ContactSet kept(structure.contacts(), packing.disk_count());

@@ -88,7 +88,7 @@ template <int Dim> struct Disks {
     std::vector<unsigned char> free; ///< every coordinate moves, carries no finite load and is not held
     std::size_t count = 0;
 
-    Disks(const Statics<Dim>& statics, ContactId fresh_hold) {
+    Disks(const Statics<Dim>& statics, std::span<const ContactId> zero_holds) {
         const auto& contacts = statics.structure().contacts();
         const DofMap<Dim>& dofs = statics.structure().dofs();
         for (const Contact& c : contacts) {
@@ -113,7 +113,8 @@ template <int Dim> struct Disks {
             tie(dofs.coordinate_of(row));
         }
         for (std::size_t l = 0; l < contacts.size(); ++l) {
-            if (contacts[l].kind == ContactKind::held && ContactId(l) != fresh_hold) {
+            if (contacts[l].kind == ContactKind::held &&
+                std::find(zero_holds.begin(), zero_holds.end(), ContactId(l)) == zero_holds.end()) {
                 tie(contacts[l].i);
             }
         }
@@ -191,8 +192,9 @@ Enclosure excess_over(const Statics<Dim>& statics, std::size_t a, std::size_t b,
 
 } // namespace
 
-template <int Dim> std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, ContactId fresh_hold) {
-    const Disks<Dim> disks(statics, fresh_hold);
+template <int Dim>
+std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, std::span<const ContactId> zero_holds) {
+    const Disks<Dim> disks(statics, zero_holds);
     const ContactGraph graph = graph_of(statics, disks);
     std::vector<StrutMate> mates;
     if (graph.leads[of.index()] == 0) {
@@ -222,6 +224,6 @@ template <int Dim> std::vector<StrutMate> strut_mates(const Statics<Dim>& static
     return mates;
 }
 
-template std::vector<StrutMate> strut_mates<2>(const Statics<2>&, ContactId, ContactId);
+template std::vector<StrutMate> strut_mates<2>(const Statics<2>&, ContactId, std::span<const ContactId>);
 
 } // namespace isostat

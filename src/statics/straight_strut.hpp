@@ -4,6 +4,7 @@
 
 #include <isostat/statics/statics.hpp>
 
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -15,12 +16,13 @@ struct StrutMate {
 };
 
 /// The contacts of the strut to which `of` belongs: those that, together with it, cut a group of free disks without
-/// finite load off everything else. `fresh_hold` is the coordinate held at the turn, whose multiplier is 0 there; other
-/// held coordinates hold their disks. Empty when there is no such contact.
-/// Uses the graph of the contacts only, but for `excess` (S4 (b)), whose radius counts how far the stored strut is from
-/// straight. Cost: two depth-first searches, O(N).
-template <int Dim> std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, ContactId fresh_hold);
+/// finite load off everything else. `zero_holds`: the coordinate held at the turn, whose multiplier is 0 there (or
+/// several); other held coordinates hold their disks. Empty when there is no such contact. Uses the graph of the
+/// contacts only, but for `excess` (S4 (b)), whose radius counts how far the stored strut is from straight. Cost: two
+/// depth-first searches, O(N).
+template <int Dim>
+std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, std::span<const ContactId> zero_holds);
 
-extern template std::vector<StrutMate> strut_mates<2>(const Statics<2>&, ContactId, ContactId);
+extern template std::vector<StrutMate> strut_mates<2>(const Statics<2>&, ContactId, std::span<const ContactId>);
 
 } // namespace isostat

@@ -31,43 +31,28 @@ std::size_t strut_opening(const std::vector<ArcRecord<2>>& arcs) {
 
 BOOST_AUTO_TEST_SUITE(trajectory)
 
-BOOST_AUTO_TEST_CASE(the_straight_strut_lets_go_where_its_own_load_does_not_press) {
-    int compared = 0;
-    for (const auto& [disks, seed] : samples) {
-        const State<2> start = prepared(disks, seed);
-        const Played run = play(start, +1, equilibria);
-        const std::size_t k = strut_opening(run.records.arcs);
-        BOOST_TEST_REQUIRE(k > 0U, disks << " disks, seed " << seed);
-        BOOST_TEST((run.records.arcs[k].decided_by <= Rung::double_bound),
-                   "no climbing after digits that mean nothing");
-        State<2> reversed = start;
-        const auto disk = static_cast<std::size_t>(run.records.arcs[k - 1].closed.i / 2);
-        reversed.load.infinitesimal[2 * disk] *= -1;
-        reversed.load.infinitesimal[2 * disk + 1] *= -1;
-        const Played other = play(reversed, +1, equilibria);
-        bool same_so_far = other.records.arcs.size() > k;
-        for (std::size_t j = 0; j < k && same_so_far; ++j) {
-            same_so_far = other.records.arcs[j].opened == run.records.arcs[j].opened &&
-                          other.records.arcs[j].closed == run.records.arcs[j].closed;
-        }
-        if (same_so_far) { // otherwise the load of this disk mattered before
-            BOOST_TEST((other.records.arcs[k].opened != run.records.arcs[k].opened), disks << " disks, seed " << seed);
-            ++compared;
-        }
-    }
-    BOOST_TEST(compared >= 3);
-}
-
-BOOST_AUTO_TEST_CASE(runs_with_straight_struts_do_not_depend_on_labels_sides_and_axes) {
+BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sides_and_axes) {
     for (const auto& [disks, seed] : samples) {
         const State<2> start = prepared(disks, seed);
         const Played run = play(start, +1, equilibria);
         BOOST_TEST_CONTEXT(disks << " disks, seed " << seed) {
             check_same_sequence(run, relabelled(start, 5), equilibria);
             check_same_sequence(run, relabelled(start, 6), equilibria);
-            check_same_sequence(run, mirrored(start), equilibria);
             check_same_sequence(run, exchanged(start), equilibria);
-            check_same_sequence(run, quarter_turned(start), equilibria);
+            // A held coordinate is counted from the walls that do not move: seen from the other side it is another
+            // one once the movable walls move. What is the same is what came before, the choice at the turn included.
+            const std::size_t k = strut_opening(run.records.arcs);
+            BOOST_TEST_REQUIRE(k > 0U);
+            BOOST_TEST((run.records.arcs[k].decided_by <= Rung::double_bound), "no climb after digits without meaning");
+            BOOST_TEST(run.counters.tally.structural_ties > 0);
+            for (const Disguised& other : {mirrored(start), quarter_turned(start)}) {
+                const auto seen = events(play(other.state, +1, equilibria).records, other.back);
+                BOOST_TEST_REQUIRE(seen.size() > k);
+                for (std::size_t j = 0; j <= k; ++j) {
+                    BOOST_TEST((seen[j].first == run.records.arcs[j].opened), "arc " << j + 1);
+                    BOOST_TEST((j == k || seen[j].second == run.records.arcs[j].closed), "arc " << j + 1);
+                }
+            }
         }
     }
 }

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -62,7 +63,14 @@ struct LoadLimit {
 /// together.
 template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction);
 
+/// The same with several held coordinates whose multipliers are 0.
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits);
+
 extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t);
+extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+                                                          std::uint64_t);
 extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int);
 
 } // namespace isostat

@@ -15,9 +15,8 @@ namespace {
 /// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
-constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
-
-constexpr double turn_accuracy = 1e-13; ///< where the power vanishes: the turn is as sharp as its tangent
+constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
+constexpr double end_tangent_accuracy = 1e-4;   ///< at an event, where only dips and the sign of the power are read off
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -359,7 +358,8 @@ template <int Dim> class Follower {
         for (std::size_t k = 0; k < at.q.size(); ++k) {
             off = std::max(off, std::abs(at.q[k] - guess.q[k]));
         }
-        if (off > 0.2 * s) {
+        // A start known to its last bits only is put back on the curve first: that is no bend, however short the step.
+        if (off > 0.2 * s + 1e-10 * at.min_radius()) {
             return std::nullopt; // another branch, or a curve too bent for this step
         }
         auto t = tangent_at(at, accuracy);
@@ -452,7 +452,7 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
         if (!(s > s_low && s < s_high)) {
             s = 0.5 * (s_low + s_high);
         }
-        auto point = step_to(s, turn_accuracy);
+        auto point = step_to(s, turn_tangent_accuracy);
         if (!point) {
             return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
         }

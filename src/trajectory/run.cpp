@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace isostat {
 
@@ -94,6 +95,7 @@ template <int Dim> class Run {
     EquilibriumRecord<Dim> record_;
     double margin_ = infinity; ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
+    bool descends_ = false; ///< the work of the last arc was proved positive
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
@@ -175,6 +177,7 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     // The stored ends are that far from the true ones: so much of the work is not known.
     const double unknown =
         (force_norm * (from.enclosure.distance() + to.enclosure.distance()) + terms * 0x1p-52 * size) * (1 + 1e-10);
+    descends_ = work > unknown;
     if (load.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided,
                        fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
@@ -235,6 +238,12 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+template <int Dim> std::string kind_of(const Vertex<Dim>& at, const Opening& opening) {
+    return at.structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
+           : opening.infinitesimal                                                    ? "rattler"
+                                                                                      : "tension";
+}
+
 template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress) {
     Load<Dim> load = state_.load;
     set_sigma(load, stress);
@@ -243,6 +252,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
     const Vertex<Dim>* from = vertex_.get();
     std::string arc_kind = kind;
     int arcs = 0;
+    std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located
     while (true) {
         if (options_.stop != nullptr && options_.stop->load()) {
             return Failure{FailureKind::interrupted,
@@ -276,6 +286,27 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         if (auto failure = check_arc(*from, *next, opening, load, record)) {
             return located(*failure, where);
         }
+        if (arc_kind == "release" && record.power_turn && record.closed == record.opened && !descends_) {
+            // It turned back where it stood: no motion, no descent, and released once more it would do so for ever.
+            resting.push_back(opening.contact);
+            --counters_.steps;
+            --arcs;
+            auto again = decide_opening(here->statics, stress, options_.rule, std::span<const ContactId>(resting),
+                                        bits_for(options_.rule_seed, counters_.steps));
+            if (!again.ok()) {
+                return located(again.failure(), where);
+            }
+            if (!again.value().opening) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("{}: every force is positive, and the multiplier of {} is 0 as far as the "
+                                           "power turn is located: whether and where it moves is not decided",
+                                           where, to_string<Dim>(record.opened))};
+            }
+            opening = *again.value().opening;
+            arc_kind = kind_of(*here, opening);
+            continue;
+        }
+        resting.clear();
         if (options_.certify == CertifyLevel::arcs) {
             certify(*from, *next, opening, at_limit, load, record);
         }
@@ -289,6 +320,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         if (!decision.ok()) {
             return located(decision.failure(), where);
         }
+        counters_.tally.structural_ties += decision.value().opening && decision.value().opening->straight_strut ? 1 : 0;
         here = std::move(next);
         from = here.get();
         if (std::abs(record.strain) > options_.max_strain) {
@@ -302,9 +334,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
             break;
         }
         opening = *decision.value().opening;
-        arc_kind = here->structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
-                   : opening.infinitesimal                                                       ? "rattler"
-                                                                                                 : "tension";
+        arc_kind = kind_of(*here, opening);
     }
     // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh
     // factors and bound. A resumed run starts from the same bits.

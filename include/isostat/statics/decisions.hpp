@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -26,6 +27,7 @@ struct Opening {
     int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
     double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
+    bool straight_strut = false; ///< another end of the same straight strut had the same force (statement S4)
 };
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.
@@ -36,9 +38,10 @@ struct OpeningDecision {
 };
 
 /// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its
-/// multiplier is 0 by construction and does not compete. `random_bits` is used by the rule `random` only. May climb
-/// `statics` to double-double. Failure: `undecided` (a sign), `tie` (two candidates that cannot be ordered), naming the
-/// contacts and the numbers.
+/// multiplier is 0 by construction and does not compete. The two ends of a strut that such a turn leaves straight carry
+/// exactly the same force there (S4): by the rules that compare forces they are ordered by the infinitesimal loads.
+/// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
+/// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 template <int Dim>
 Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
                                        std::uint64_t random_bits);
@@ -60,7 +63,14 @@ struct LoadLimit {
 /// together.
 template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction);
 
+/// The same with several held coordinates whose multipliers are 0.
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits);
+
 extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t);
+extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+                                                          std::uint64_t);
 extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int);
 
 } // namespace isostat

@@ -1,3 +1,5 @@
+#include "statics/straight_strut.hpp"
+
 #include <isostat/statics/decisions.hpp>
 
 #include <fmt/format.h>
@@ -84,7 +86,6 @@ Order order_of(Statics<Dim>& statics, const Enclosure& difference, const ForceEx
     return statics.compare(a, b);
 }
 
-/// Picks by the rule among contenders that all carry a proved negative force.
 /// First-order term of what the rule compares, for a contender of the finite stage.
 template <int Dim>
 Enclosure first_order_key(PerturbedStatics<Dim>& perturbed, const Statics<Dim>& statics, const Contender& contender,
@@ -103,9 +104,13 @@ std::string shown(const Enclosure& e) {
     return fmt::format("{:.6g} +- {:.3g}", e.value, e.radius);
 }
 
+/// Picks by the rule among contenders that all carry a proved negative force. At a fresh hold the contacts of a
+/// straight strut carry one force (S4): the infinitesimal loads order them, not the digits to which the turn was
+/// located.
 template <int Dim, class Expression>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Expression expression, OpeningRule rule,
-                     std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr) {
+                     std::uint64_t random_bits, std::span<const ContactId> zero_holds = {},
+                     PerturbedStatics<Dim>* perturbed = nullptr) {
     if (rule == OpeningRule::random) {
         // Ordered by identity, so that the choice does not depend on the order of the contact list.
         std::sort(negative.begin(), negative.end(), [&](const Contender& a, const Contender& b) {
@@ -130,6 +135,7 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         }
         return e;
     };
+    const bool by_force = rule == OpeningRule::most_negative || rule == OpeningRule::least_negative;
     std::size_t best = 0;
     for (std::size_t k = 1; k < negative.size(); ++k) {
         if (negative[k].key.value < negative[best].key.value) {
@@ -143,9 +149,29 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         Rung rung = statics.rung();
         std::string tied;
         std::vector<TieDecision> settled;
+        bool strut = false;
         std::optional<std::size_t> better;
+        const auto mates = !zero_holds.empty() && by_force ? strut_mates(statics, negative[best].contact, zero_holds)
+                                                           : std::vector<StrutMate>();
         for (std::size_t k = 0; k < negative.size() && !better; ++k) {
             if (k == best) {
+                continue;
+            }
+            const auto mate = std::find_if(mates.begin(), mates.end(),
+                                           [&](const StrutMate& m) { return m.contact == negative[k].contact; });
+            if (mate != mates.end()) {
+                strut = true;
+                const Enclosure& excess = mate->excess;
+                if (!excess.decided()) {
+                    tied +=
+                        fmt::format("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
+                                    "loads do not order: {:.3g}, known to {:.3g}",
+                                    name(statics, mate->contact), negative[k].force.value, excess.value, excess.radius);
+                } else if (excess.positive() == (rule == OpeningRule::least_negative)) {
+                    better = k;
+                } else {
+                    margin = std::min(margin, excess.margin());
+                }
                 continue;
             }
             Order order =
@@ -194,16 +220,14 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
                            fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}){}",
                                        name(statics, negative[best].contact), negative[best].force.value, tied)};
         }
+        Opening opening{
+            negative[best].contact, false, negative[best].force, +1, std::min(margin, negative[best].margin), rung};
+        opening.straight_strut = strut;
+        opening.perturbed = !settled.empty();
         if (perturbed != nullptr) {
             perturbed->log.insert(perturbed->log.end(), settled.begin(), settled.end());
         }
-        return Opening{negative[best].contact,
-                       false,
-                       negative[best].force,
-                       +1,
-                       std::min(margin, negative[best].margin),
-                       rung,
-                       !settled.empty()};
+        return opening;
     }
     return Failure{FailureKind::undecided, "the comparisons of the opening rule contradict each other"};
 }
@@ -211,18 +235,26 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
 /// One stage of the lexicographic decision: all contacts with `finite` (or without) a finite force.
 template <int Dim, class Value, class Expression>
 Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, Expression force_of, OpeningRule rule,
-                              ContactId fresh_hold, std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
+                              std::span<const ContactId> zero_holds, std::uint64_t random_bits,
+                              PerturbedStatics<Dim>* perturbed) {
     const auto expression = [&](ContactId l) {
         ForceExpression e = force_of(l);
         e.minus_magnitude = is_held(statics, l);
         return e;
     };
+    std::vector<ContactId> at_zero(zero_holds.begin(), zero_holds.end()); // holds without a force: they tie no strut
     std::vector<Contender> negative;
     double margin = infinity;
     std::vector<Contender> doubtful; // forces whose signs the enclosures do not prove
     for (std::size_t index = 0; index < statics.structure().contacts().size(); ++index) {
         const ContactId l(index);
-        if (l == fresh_hold || statics.is_structural_zero(l) == finite) {
+        if (statics.is_structural_zero(l) == finite) {
+            if (finite && is_held(statics, l)) {
+                at_zero.push_back(l);
+            }
+            continue;
+        }
+        if (std::find(zero_holds.begin(), zero_holds.end(), l) != zero_holds.end()) {
             continue;
         }
         Enclosure f = value(l);
@@ -276,6 +308,7 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
             continue;
         }
         if (!order.decided) {
+
             return Failure{FailureKind::undecided,
                            fmt::format("the sign of the {}force in contact {} is not decided with {} bits: {:.3g}, "
                                        "proved to {:.3g}",
@@ -286,6 +319,9 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
             negative.push_back({d.contact, value(d.contact), {}, order.margin, d.multiplier});
         } else if (order.sign > 0) {
             margin = std::min(margin, order.margin);
+        } else if (is_held(statics, d.contact)) {
+            at_zero.push_back(d.contact);
+            zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
         } else {
             zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
         }
@@ -300,7 +336,9 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         decision.rung = statics.rung();
         return decision;
     }
-    Result<Opening> picked = pick(statics, negative, expression, rule, random_bits, perturbed);
+    Result<Opening> picked =
+        pick(statics, negative, expression, rule, random_bits, finite ? at_zero : std::vector<ContactId>(),
+             perturbed);
     if (!picked.ok()) {
         return picked.failure();
     }
@@ -506,17 +544,18 @@ Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction
 } // namespace
 
 template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits,
+                                       PerturbedStatics<Dim>* perturbed) {
     auto finite = stage(
         statics, true, [&](ContactId l) { return statics.force(l, sigma); },
-        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, fresh_hold, random_bits, perturbed);
+        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, zero_holds, random_bits, perturbed);
     if (!finite.ok() || finite.value().opening) {
         return finite;
     }
     auto infinitesimal = stage(
         statics, false, [&](ContactId l) { return statics.infinitesimal(l); },
-        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, fresh_hold, random_bits,
+        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, zero_holds, random_bits,
         static_cast<PerturbedStatics<Dim>*>(nullptr)); // the loads are smaller than every power of eps
     if (infinitesimal.ok()) {
         infinitesimal.value().perturbed = finite.value().perturbed;
@@ -524,6 +563,14 @@ Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, Open
         infinitesimal.value().margin = std::min(infinitesimal.value().margin, finite.value().margin);
     }
     return infinitesimal;
+}
+
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
+                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
+    return decide_opening(statics, sigma, rule,
+                          std::span<const ContactId>(&fresh_hold, fresh_hold.valid() ? std::size_t{1} : std::size_t{0}),
+                          random_bits, perturbed);
 }
 
 template <int Dim>
@@ -632,6 +679,8 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
 
 template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t,
                                                    PerturbedStatics<2>*);
+template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+                                                   std::uint64_t, PerturbedStatics<2>*);
 template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

@@ -60,7 +60,7 @@ template <int Dim> std::vector<unsigned char> Statics<Dim>::nonzeros(std::span<c
         return sparse::structural_nonzeros(pattern_->start, pattern_->row, pattern_->matched, rows);
     }
     const sparse::Matrix<double>& h = structure_->matrix();
-    return sparse::structural_nonzeros(h.start, h.row, structure_->ordering(), rows);
+    return sparse::structural_nonzeros(h.start, h.row, structure_->matching(), rows);
 }
 
 template <int Dim> void Statics<Dim>::use_index_pattern() {
@@ -91,6 +91,7 @@ template <int Dim> std::shared_ptr<const LoadShift> Statics<Dim>::zero_of(Contac
     e.shift = nullptr;
     return ladder_.zero_of(e);
 }
+
 
 template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
     const std::size_t l = contact.index();

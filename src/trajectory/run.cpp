@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace isostat {
 
@@ -29,15 +30,6 @@ std::uint64_t bits_for(std::uint64_t seed, long step) {
 
 template <int Dim> double sigma_of(const Load<Dim>& load) {
     return load.stress[static_cast<std::size_t>(load.loaded_axis)];
-}
-
-/// How far a stored configuration is from the true vertex.
-double off(const VertexEnclosure& enclosure) {
-    double square = 0;
-    for (const double c : enclosure.correction) {
-        square += c * c;
-    }
-    return enclosure.radius + std::sqrt(square);
 }
 
 template <int Dim> class Run {
@@ -84,6 +76,7 @@ template <int Dim> class Run {
     };
     Result<std::unique_ptr<Vertex<Dim>>> make_vertex(Packing<Dim> packing, std::vector<Contact> contacts,
                                                      const Load<Dim>& load, const LimitLoad& limit);
+    void perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit);
     static void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into);
     std::optional<Failure> settle(const LimitLoad& limit, const std::vector<ContactId>& zeros, double stress);
     void store_first_order();
@@ -127,6 +120,7 @@ template <int Dim> class Run {
     double margin_ = infinity; ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
     std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
+    bool descends_ = false; ///< the work of the last arc was proved positive
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
@@ -135,11 +129,18 @@ Failure located(const Failure& failure, const std::string& where) {
 }
 
 template <int Dim>
+void Run<Dim>::perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit) {
+    if (perturbs()) {
+        perturb(vertex, load, state_.perturbation->rho, limit.stress_rate, limit.shift, limit.error);
+    }
+}
+
+template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::make_vertex(Packing<Dim> packing, std::vector<Contact> contacts,
                                                            const Load<Dim>& load, const LimitLoad& limit) {
     auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), load, bound_cache_);
-    if (made.ok() && perturbs()) {
-        perturb(*made.value(), load, state_.perturbation->rho, limit.stress_rate, limit.shift, limit.error);
+    if (made.ok()) {
+        perturb_at(*made.value(), load, limit);
     }
     return made;
 }
@@ -171,11 +172,29 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         arc_options.leaving = departure.value().leaving;
         arc_options.resting = departure.value().resting;
     }
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    std::optional<Factorisation> fresh;
+    if (opening.infinitesimal && !from.factorisation.is_fresh()) {
+        fresh.emplace(from.structure);
+    }
     // A second pass only when the proved gaps say that another candidate closed before.
     for (int pass = 0; pass < 8; ++pass) {
-        auto arc = next_to ? Result<Arc<Dim>>(Arc<Dim>{from.packing, ArcEnd::contact, *next_to, 0, 0, 0, 0})
-                           : follow_arc(from.packing, from.structure, from.factorisation, opening.contact,
-                                        opening.direction, power, candidates_, arc_options);
+        const auto attempt = [&]() -> Result<Arc<Dim>> {
+            if (next_to) {
+                Arc<Dim> none;
+                none.end = from.packing;
+                none.closed = *next_to;
+                return none;
+            }
+            return follow_arc(from.packing, from.structure, fresh ? *fresh : from.factorisation, opening.contact,
+                              opening.direction, power, candidates_, arc_options);
+        };
+        auto arc = attempt();
+        // An arc that fails, or ends where it began, may only have been predicted badly by old factors.
+        if ((!arc.ok() || arc.value().closed == record.opened) && !fresh && !from.factorisation.is_fresh()) {
+            fresh.emplace(from.structure);
+            arc = attempt();
+        }
         if (!arc.ok()) {
             return arc.failure();
         }
@@ -185,9 +204,11 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
-        std::vector<Contact> contacts = from.structure.contacts();
-        contacts[opening.contact.index()] = path.closed;
-        auto made = make_vertex(path.end, std::move(contacts), load, limit);
+        auto made =
+            Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load, bound_cache_);
+        if (made.ok()) {
+            perturb_at(*made.value(), load, limit);
+        }
         if (!made.ok()) {
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
@@ -212,6 +233,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         if (!gaps.value().negative) {
             record.perturbed.insert(record.perturbed.end(), departed.begin(), departed.end());
             count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung, &record, !departed.empty());
+
             record_.min_gap = gaps.value().smallest;
             record_.min_gap_contact = gaps.value().where;
             return std::move(made.value());
@@ -238,9 +260,10 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     }
     record.work = work;
     force_norm = std::sqrt(force_norm);
-    // The stored ends are not the true ones: that much of the work is not known.
+    // The stored ends are that far from the true ones: so much of the work is not known.
     const double unknown =
-        (force_norm * (off(from.enclosure) + off(to.enclosure)) + terms * 0x1p-52 * size) * (1 + 1e-10);
+        (force_norm * (from.enclosure.distance() + to.enclosure.distance()) + terms * 0x1p-52 * size) * (1 + 1e-10);
+    descends_ = work > unknown;
     if (load.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided,
                        fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
@@ -297,10 +320,13 @@ template <int Dim>
 void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
                        const Load<Dim>& load, ArcRecord<Dim>& record) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto vertex = [](const Vertex<Dim>& v) {
-        return ArcVertex<Dim>{v.packing, v.structure, v.factorisation, v.inverse, v.enclosure};
+    // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
+    const Factorisation first(from.structure);
+    const Factorisation last(to.structure);
+    const auto vertex = [](const Vertex<Dim>& v, const Factorisation& factorisation) {
+        return ArcVertex<Dim>{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
     };
-    record.certificate = certify_arc(vertex(from), opening.contact, opening.direction, vertex(to),
+    record.certificate = certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
                                      PowerLoad<Dim>{&load, opening.infinitesimal, at_limit}, candidates_);
     const ArcCertificate& certificate = *record.certificate;
     ArcTally& tally = counters_.arcs;
@@ -317,6 +343,12 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     lower(tally.tube_margin, certificate.tube_margin);
     lower(tally.gap_margin, certificate.gap_margin);
     tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <int Dim> std::string kind_of(const Vertex<Dim>& at, const Opening& opening) {
+    return at.structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
+           : opening.infinitesimal                                                    ? "rattler"
+                                                                                      : "tension";
 }
 
 /// The load of an equilibrium that was reached at a limit: the stored stress, when every force is positive there as at
@@ -481,6 +513,7 @@ template <int Dim> Result<bool> Run<Dim>::choose_start() {
 template <int Dim>
 std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress,
                                            const LimitLoad& limit) {
+
     Load<Dim> load = state_.load;
     set_sigma(load, stress);
     fresh_caches(vertex_->packing);
@@ -488,6 +521,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     const Vertex<Dim>* from = vertex_.get();
     std::string arc_kind = kind;
     int arcs = 0;
+    std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located
     while (true) {
         if (options_.stop != nullptr && options_.stop->load()) {
             return Failure{FailureKind::interrupted,
@@ -524,6 +558,27 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         if (auto failure = check_arc(*from, *next, opening, load, record)) {
             return located(*failure, where);
         }
+        if (arc_kind == "release" && record.power_turn && record.closed == record.opened && !descends_) {
+            // It turned back where it stood: no motion, no descent, and released once more it would do so for ever.
+            resting.push_back(opening.contact);
+            --counters_.steps;
+            --arcs;
+            auto again = decide_opening(here->statics, stress, options_.rule, std::span<const ContactId>(resting),
+                                        bits_for(options_.rule_seed, counters_.steps), first_order(*here));
+            if (!again.ok()) {
+                return located(again.failure(), where);
+            }
+            if (!again.value().opening) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("{}: every force is positive, and the multiplier of {} is 0 as far as the "
+                                           "power turn is located: whether and where it moves is not decided",
+                                           where, to_string<Dim>(record.opened))};
+            }
+            opening = *again.value().opening;
+            arc_kind = kind_of(*here, opening);
+            continue;
+        }
+        resting.clear();
         if (options_.certify == CertifyLevel::arcs) {
             certify(*from, *next, opening, at_limit, load, record);
         }
@@ -538,6 +593,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         if (!decision.ok()) {
             return located(decision.failure(), where);
         }
+        counters_.tally.structural_ties += decision.value().opening && decision.value().opening->straight_strut ? 1 : 0;
         here = std::move(next);
         from = here.get();
         if (std::abs(record.strain) > options_.max_strain) {
@@ -553,15 +609,13 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             break;
         }
         opening = *decision.value().opening;
-        arc_kind = here->structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
-                   : opening.infinitesimal                                                       ? "rattler"
-                                                                                                 : "tension";
+        arc_kind = kind_of(*here, opening);
     }
     // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh
     // factors and bound. A resumed run starts from the same bits.
     fresh_caches(here->packing);
-    LimitLoad at_limit; // the load is again the stored one, if the forces allow it
-    auto anew = make_vertex(here->packing, here->structure.contacts(), load, at_limit);
+    // The load is again the stored one, if the forces allow it.
+    auto anew = make_vertex(here->packing, here->structure.contacts(), load, LimitLoad{});
     if (!anew.ok()) {
         return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
     }
@@ -598,7 +652,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     }
     EquilibriumRecord<Dim> record = described.value();
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
-    const double allowance = 4 * off(vertex_->enclosure);
+    const double allowance = 4 * vertex_->enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex_->packing, allowance);
     if (admissible.verdict != Verdict::proved) {
         return Failure{FailureKind::overlap,

@@ -37,6 +37,12 @@ template <int Dim> class Vertex {
     /// proved.
     static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                 const Load<Dim>& load, InverseBoundCache& cache);
+    /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the
+    /// bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a Cholesky
+    /// factorisation (V1), everything anew as in `make`. The factors of `from` go on serving. `tangent` is a guess.
+    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
+                                                     const Contact& closed, const std::vector<double>& tangent,
+                                                     const Load<Dim>& load, InverseBoundCache& cache);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -67,6 +73,17 @@ template <int Dim> class Vertex {
 
   private:
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);
+    Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
+           const Load<Dim>& load);
+    /// What every vertex needs, or why not.
+    std::optional<Failure> lacking();
+    /// Cost of the solves of this vertex, in passes of fresh factors; those of the arc from it are in proportion.
+    [[nodiscard]] double cost_of_solves() const;
+    /// New factors are due when this vertex cost more than the average since the last ones, their making included: the
+    /// rule that keeps that average smallest. It counts operations, never seconds.
+    [[nodiscard]] bool factors_are_worn() const;
+
+    double cost_before_ = 0; ///< of the vertices since the factorisation, without this one
 };
 
 extern template class Vertex<2>;

@@ -62,6 +62,15 @@ dd_real quadratic_dd(const Packing<Dim>& packing, const std::vector<double>& cor
 
 } // namespace
 
+double VertexEnclosure::distance() const {
+    std::vector<double> size;
+    size.reserve(correction.size());
+    for (const double c : correction) {
+        size.push_back(std::abs(c));
+    }
+    return (radius + norm_above(size)) * (1 + 0x1p-50);
+}
+
 template <int Dim>
 VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                const InverseBound& inverse) {

@@ -31,7 +31,7 @@ FirstOrder<Dim>::FirstOrder(const Packing<Dim>& packing, const IsostaticStructur
     : packing_(&packing), structure_(&structure), factorisation_(&factorisation), rho_(&rho) {
     assert(inverse.verdict == Verdict::proved && enclosure.verdict == Verdict::proved);
     assert(rho.size() == packing.radius.size());
-    away_ = (enclosure.radius + length_of(enclosure.correction)) * raise;
+    away_ = enclosure.distance() * raise;
     uncertainty_ = normal_rate(packing, structure.contacts()) * away_ * raise;
     sigma_ = (inverse.sigma_min - uncertainty_) * (1 - 4 * u);
     std::vector<double> approach;

@@ -12,11 +12,11 @@ namespace crafted {
 /// parts them at sigma2 = 1.5, and they reach the bottom together: a tie of two gaps. Unloaded, both lose the top wall
 /// together at sigma2 = 0.
 inline State<2> mirror_gaps() {
-    State<2> state = in_box({{2, 10, 2}, {3, 7, 6}, {3, 13, 6}}, 20, 9, 1, 1,
+    State<2> state = in_box({{2, 10, 2.5}, {3, 7, 6.5}, {3, 13, 6.5}}, 20, 9.5, 1, 1,
                             {pair(0, 1), pair(0, 2), pair(1, 2), top(1), top(2)});
     state.packing.fixed = {1, 0, 0};
     state.packing.walls.upper[0] = isostat::WallKind::fixed;
-    state.load.reference_length = {20, 9};
+    state.load.reference_length = {20, 9.5};
     state.load.disk_force = {0, 0, 12, -1, -12, -1};
     state.load.infinitesimal[0] = state.load.infinitesimal[1] = 0;
     return state;

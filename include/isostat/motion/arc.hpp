@@ -38,11 +38,12 @@ enum class ArcEnd : unsigned char { contact, power_turn };
 template <int Dim> struct Arc {
     Packing<Dim> end;
     ArcEnd kind = ArcEnd::contact;
-    Contact closed;          ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
-    double power = 0;        ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
-    double displacement = 0; ///< largest displacement of a coordinate
-    int steps = 0;           ///< predictor steps
-    int factorisations = 0;  ///< structures proved and factorised along the way (long arcs only)
+    Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
+    double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
+    std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
+    double displacement = 0;     ///< largest displacement of a coordinate
+    int steps = 0;               ///< predictor steps
+    int factorisations = 0;      ///< structures proved and factorised along the way (long arcs only)
 };
 
 /// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows

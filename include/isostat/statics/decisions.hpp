@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -27,7 +28,8 @@ struct Opening {
     int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
     double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
-    bool perturbed = false; ///< a first-order comparison was needed
+    bool perturbed = false;      ///< a first-order comparison was needed
+    bool straight_strut = false; ///< another end of the same straight strut had the same force (statement S4)
 };
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.
@@ -40,9 +42,10 @@ struct OpeningDecision {
 };
 
 /// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its
-/// multiplier is 0 by construction and does not compete. `random_bits` is used by the rule `random` only. May climb
-/// `statics` to double-double. Failure: `undecided` (a sign), `tie` (two candidates that cannot be ordered), naming the
-/// contacts and the numbers.
+/// multiplier is 0 by construction and does not compete. The two ends of a strut that such a turn leaves straight carry
+/// exactly the same force there (S4): by the rules that compare forces they are ordered by the infinitesimal loads.
+/// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
+/// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 /// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that
 /// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
 /// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`.
@@ -70,8 +73,16 @@ template <int Dim>
 Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
                              PerturbedStatics<Dim>* perturbed = nullptr);
 
+/// The same with several held coordinates whose multipliers are 0.
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits,
+                                       PerturbedStatics<Dim>* perturbed = nullptr);
+
 extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t,
                                                           PerturbedStatics<2>*);
+extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+                                                          std::uint64_t, PerturbedStatics<2>*);
 extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

@@ -292,8 +292,9 @@ template <int Dim> class Follower {
         if (active_.empty()) {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
-            std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
-                         [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
+            std::copy_if(
+                candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
             if (opened_.kind != ContactKind::held) {
                 active_.push_back(opened_); // it may close again
             }

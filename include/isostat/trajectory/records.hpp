@@ -23,6 +23,7 @@ template <int Dim> struct ArcRecord {
     std::string kind;    ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
     Contact opened;      ///< contact opened (or held coordinate released)
     Contact closed;      ///< contact met, or the coordinate held at a power turn
+    double held_at = 0;  ///< power turns: the value of the coordinate held
     bool power_turn = false;      ///< true: the arc ended where the power of the load vanished
     double stress = 0;            ///< sigma_2
     double strain = 0;            ///< eps_2 at the end of the arc

@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
     const State<2> state = two_disks(r0, r1, 1, 3); // at F2 = F1 the first order nearly cancels
     const double exact = (r0 + r1) / (2 * std::sqrt(r0 * r1));
     std::vector<double> error;
-    for (const double kappa : {1e2, 1e3, 1e4}) {
+    for (const double kappa : {1e3, 1e4, 1e5}) {
         SoftGrains<2> soft(state.packing, state.load, at_ratio(kappa));
         BOOST_REQUIRE(soft.relax());
         BOOST_TEST(soft.contacts().size() == 6U);
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
         }
     }
     BOOST_REQUIRE(error.size() == 3U);
-    BOOST_TEST(error[0] > 1e-4); // a wrong answer of its own kind
+    BOOST_TEST(error[0] > 1e-5); // a wrong answer of its own kind
     BOOST_TEST(std::log10(error[0] / error[1]) == 1.0, boost::test_tools::tolerance(0.1));
     BOOST_TEST(std::log10(error[1] / error[2]) == 1.0, boost::test_tools::tolerance(0.1));
 }
@@ -91,6 +91,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_touches_nothing_falls_as_drag_lets_it) {
     state.load.disk_force = {0.01, 0};
     SoftGrainOptions options = at_ratio(1e2);
     options.drag = 0.05;
+    options.step_fraction = 0.3;
     SoftGrains<2> soft(state.packing, state.load, options);
     const double dt = soft.time_step();
     soft.advance(200);
@@ -143,8 +144,8 @@ BOOST_AUTO_TEST_CASE(the_time_step_is_below_the_true_highest_frequency) {
         springs.col(w) /= std::sqrt(std::sqrt(30.0));
     }
     const double highest = std::sqrt(springs.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
-    BOOST_TEST(soft.time_step() * highest <= 0.3);
-    BOOST_TEST(soft.time_step() * highest >= 0.1); // and not wastefully so
+    BOOST_TEST(soft.time_step() * highest <= 0.8);
+    BOOST_TEST(soft.time_step() * highest >= 0.25); // and not wastefully so
 }
 
 BOOST_AUTO_TEST_CASE(forces_of_a_packing_converge_as_the_inverse_of_the_stiffness) {

@@ -69,8 +69,10 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
     const State<2> state = two_disks(r0, r1, 1, 3); // at F2 = F1 the first order nearly cancels
     const double exact = (r0 + r1) / (2 * std::sqrt(r0 * r1));
     std::vector<double> error;
-    for (const double kappa : {1e3, 1e4, 1e5}) {
-        SoftGrains<2> soft(state.packing, state.load, at_ratio(kappa));
+    for (const double kappa : {1e2, 1e3, 1e4}) {
+        SoftGrainOptions options = at_ratio(kappa);
+        options.tolerance = 1e-9;
+        SoftGrains<2> soft(state.packing, state.load, options);
         BOOST_REQUIRE(soft.relax());
         BOOST_TEST(soft.contacts().size() == 6U);
         for (const SoftContact& c : soft.contacts()) {
@@ -80,7 +82,7 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
         }
     }
     BOOST_REQUIRE(error.size() == 3U);
-    BOOST_TEST(error[0] > 1e-5); // a wrong answer of its own kind
+    BOOST_TEST(error[0] > 1e-4); // a wrong answer of its own kind
     BOOST_TEST(std::log10(error[0] / error[1]) == 1.0, boost::test_tools::tolerance(0.1));
     BOOST_TEST(std::log10(error[1] / error[2]) == 1.0, boost::test_tools::tolerance(0.1));
 }

@@ -1,5 +1,7 @@
 #include "io/record_text.hpp"
 
+#include "io/perturbation_json.hpp"
+
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -23,6 +25,24 @@ std::string two_columns(const Contact& contact) {
     case ContactKind::held: break;
     }
     return fmt::format("{},{}", contact.i, none);
+}
+
+/// "log2_zero": bound of what vanishes in the base, null: exactly; without "bits" no difference was to be found.
+Json tie_json(const TieDecision& tie) {
+    const auto term = [](const Enclosure& e) { return Json::array({json::or_null(e.value), json::or_null(e.radius)}); };
+    Json object;
+    object["decision"] = tie.what;
+    object["contact"] = to_string<2>(tie.chosen);
+    object["first_order"] = term(tie.first);
+    if (tie.against.i >= 0) {
+        object["against"] = to_string<2>(tie.against);
+        object["against_first_order"] = term(tie.other);
+    }
+    if (tie.what != "step") {
+        object["log2_zero"] = json::exponent_json(tie.exponent);
+        object["bits"] = tie.bits;
+    }
+    return object;
 }
 
 Json certificate_json(const ArcCertificate& certificate) {
@@ -66,6 +86,12 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["steps"] = arc.steps;
     line["margin"] = json::or_null(arc.margin);
     line["decided_by"] = to_string(arc.decided_by);
+    if (!arc.perturbed.empty()) {
+        line["perturbed"] = Json::array();
+        for (const TieDecision& tie : arc.perturbed) {
+            line["perturbed"].push_back(tie_json(tie));
+        }
+    }
     if (arc.certificate) {
         line["certificate"] = certificate_json(*arc.certificate);
     }
@@ -161,6 +187,9 @@ Json tally_json(const Tally& tally) {
     }
     object["ties"]["structural"] = tally.structural_ties;
     object["ties"]["other"] = tally.ties;
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
+        object["ties"]["perturbed"][std::string(to_string(static_cast<DecisionKind>(k)))] = tally.perturbed[k];
+    }
     return object;
 }
 
@@ -219,6 +248,12 @@ RunCounters counters_from(const json::Field& field) {
     }
     counters.tally.structural_ties = tally.at("ties").at("structural").integer();
     counters.tally.ties = tally.at("ties").at("other").integer();
+    for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
+        counters.tally.perturbed[k] = tally.at("ties")
+                                          .at("perturbed")
+                                          .at(std::string(to_string(static_cast<DecisionKind>(k))).c_str())
+                                          .integer();
+    }
     counters.tally.smallest_margin = tally.at("smallest_margin").number();
     const json::Field states = field.at("certified_states");
     counters.states.proved = states.at("proved").integer();

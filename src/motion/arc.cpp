@@ -293,12 +293,18 @@ template <int Dim> class Follower {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
             std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
-                         [&](const Contact& c) { return c != opened_ && !kept.contains(c); });
+                         [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
             if (opened_.kind != ContactKind::held) {
                 active_.push_back(opened_); // it may close again
             }
         }
     }
+
+    static bool listed(const std::vector<Contact>& list, const Contact& c) {
+        return std::find(list.begin(), list.end(), c) != list.end();
+    }
+    /// Its gap is 0 at the start, and grows.
+    [[nodiscard]] bool leaves(const Contact& c) const { return c == opened_ || listed(options_.leaving, c); }
 
     /// Displacement that the candidate list still allows.
     double reach_left() const {
@@ -527,7 +533,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         double s_event = infinity;
         std::size_t event = 0;
         for (std::size_t c = 0; c < active_.size(); ++c) {
-            const bool opening = at_start && active_[c] == opened_;
+            const bool opening = at_start && leaves(active_[c]);
             start_gap_[c] = opening ? 0.0 : gap(q_, active_[c]);
             start_rate_[c] = rate(q_, active_[c], tangent_);
             const double bend = rate(q_, active_[c], curvature_) + gap_curvature(q_, active_[c], tangent_.data());
@@ -582,7 +588,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 if (!(reached >= -noise) || reached > 1.5 * std::max(s_max, s_event) + noise) {
                     break; // another root
                 }
-                if (at_start && closing == opened_ && reached < 0.25 * s_event) {
+                if (at_start && leaves(closing) && reached < 0.25 * s_event) {
                     break; // the start itself: the gap that opens is zero there too
                 }
                 s = std::max(reached, 0.0);

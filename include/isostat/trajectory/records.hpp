@@ -5,6 +5,7 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/motion/arc_certificate.hpp>
+#include <isostat/statics/perturbed.hpp>
 
 #include <array>
 #include <optional>
@@ -33,6 +34,7 @@ template <int Dim> struct ArcRecord {
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided)
     Rung decided_by = Rung::none; ///< highest rung that was needed
     std::optional<ArcCertificate> certificate; ///< level `arcs` only
+    std::vector<TieDecision> perturbed;        ///< what first-order terms settled, from the opening to the end
 };
 
 /// One equilibrium, checked.
@@ -134,6 +136,8 @@ struct Tally {
     long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
     long structural_ties =
         0; ///< forces that vanish together for a structural reason, ordered by the infinitesimal loads
+    /// Decisions that a first-order comparison settled, by kind (they are among the counted ones).
+    std::array<long, decision_kinds> perturbed{};
     double smallest_margin = 0; ///< smallest |quantity| / bound among the decided ones (0: none yet)
     /// The same by kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
     std::array<std::array<long, 5>, decision_kinds> by_kind{};

@@ -170,7 +170,7 @@ void read_run(Section& section, Scene& scene) {
         static_cast<std::uint64_t>(section.integer("rule_seed", static_cast<long>(run.rule_seed), 0, largest_seed));
     run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);
     run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
-    run.certify = static_cast<CertifyLevel>(section.word("certify", 0, {"decisions", "states", "arcs"}));
+    run.certify = static_cast<CertifyLevel>(section.word("certify", 1, {"plain", "decisions", "states", "arcs"}));
     run.step_fraction = section.number("step_fraction", run.step_fraction, 1e-6, 10, "a number from 1e-6 to 10");
 }
 

@@ -101,8 +101,20 @@ struct Factorisation::Implementation {
     /// refinement and converges where that does not.
     bool refined(Side side, std::span<double> rhs) {
         const std::size_t n = rhs.size();
+        // By a power of two near 1, which changes no bit: squares neither under- nor overflow, whatever the units are.
+        int exponent = 0;
+        std::frexp(largest(rhs), &exponent);
+        exponent = std::clamp(exponent, -1000, 1000);
+        const double up = std::ldexp(1.0, -exponent);
+        const double down = std::ldexp(1.0, exponent);
         x.assign(n, 0.0);
-        r.assign(rhs.begin(), rhs.end());
+        r.resize(n);
+        std::transform(rhs.begin(), rhs.end(), r.begin(), [up](double c) { return c * up; });
+        const double size_of_rhs = largest(r);
+        const auto deliver = [&] {
+            std::transform(x.begin(), x.end(), rhs.begin(), [down](double c) { return c * down; });
+            return true;
+        };
         std::array<Direction, kept_directions> directions;
         double previous = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < max_passes; ++k) {
@@ -120,8 +132,7 @@ struct Factorisation::Implementation {
                 if (largest(r) != 0) {
                     return false;
                 }
-                std::copy(x.begin(), x.end(), rhs.begin());
-                return true;
+                return deliver();
             }
             const double length = dot(now.image, r) / now.square;
             double change = 0;
@@ -139,11 +150,10 @@ struct Factorisation::Implementation {
             // Linear convergence: the next change would be change^2 / previous.
             if (change <= 4 * u * size || (k > 0 && change * change <= 4 * u * size * previous)) {
                 // Small steps are also what a useless operator makes: the residual has to be small too.
-                if (!(largest(r) <= residual_left * (size + largest(rhs)))) {
+                if (!(largest(r) <= residual_left * (size + size_of_rhs))) {
                     return false;
                 }
-                std::copy(x.begin(), x.end(), rhs.begin());
-                return true;
+                return deliver();
             }
             previous = change;
         }

@@ -89,6 +89,7 @@ template <int Dim> class Follower {
 
     /// y_ = (velocity on coordinates with about the approach velocities of rhs_): one pass.
     void solve() {
+        ++passes_;
         factorisation_->approximate().velocities(rhs_);
         to_coordinates(rhs_, y_);
     }
@@ -339,6 +340,7 @@ template <int Dim> class Follower {
         arc.tangent = std::move(tangent);
         arc.steps = steps_;
         arc.factorisations = factorisations_;
+        arc.passes = passes_;
         return arc;
     }
 
@@ -446,6 +448,7 @@ template <int Dim> class Follower {
     int last_iterations_ = 0;
     int steps_ = 0;
     int factorisations_ = 0;
+    int passes_ = 0;
 };
 
 template <int Dim>

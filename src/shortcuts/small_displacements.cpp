@@ -13,6 +13,8 @@ namespace isostat {
 
 namespace {
 
+constexpr double frozen_excess = 1e-10;
+
 class ProcessorTime {
   public:
     explicit ProcessorTime(double& sum) : sum_(sum), begin_(std::clock()) {}
@@ -155,6 +157,12 @@ LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeome
                     return run;
                 }
                 load.stress[axis] = limit.value().stress;
+                if (frozen) {
+                    // To first order the new contact carries nothing at the limit itself: rounding would decide
+                    // whether the arc is taken back.
+                    load.stress[axis] +=
+                        std::max(4 * limit.value().stress_error, frozen_excess * std::abs(limit.value().stress));
+                }
                 opening = Opening{};
                 opening->contact = limit.value().opens;
                 arcs = 0;

@@ -11,7 +11,7 @@ namespace isostat {
 namespace {
 
 constexpr double contact_damping = 0.2; // of critical, for two disks
-constexpr double default_drag = 0.2;    // x sqrt(P / m): the frequency of motions that only the load drives
+constexpr double default_drag = 1;      // x sqrt(P / m): the frequency of motions that only the load drives
 constexpr double reach_fraction = 0.4;  // of the smallest radius: candidates
 
 void require_positive(const char* field, double value) {
@@ -98,7 +98,7 @@ template <int Dim> void SoftGrains<Dim>::find_pairs() {
         const double wall = w.wall < 0 ? 0.0 : stiff(static_cast<std::size_t>(w.wall));
         square = std::max(square, stiff(first(w.coordinate / Dim)) + wall);
     }
-    time_step_ = options_.step_fraction / std::sqrt(square);
+    time_step_ = std::min(options_.step_fraction / std::sqrt(square), 1.4 / (dashpot_ * square));
     moved_ = 0;
 }
 

@@ -70,7 +70,9 @@ BOOST_AUTO_TEST_CASE(two_disks_approach_their_closed_form_as_the_inverse_of_the_
     const double exact = (r0 + r1) / (2 * std::sqrt(r0 * r1));
     std::vector<double> error;
     for (const double kappa : {1e2, 1e3, 1e4}) {
-        SoftGrains<2> soft(state.packing, state.load, at_ratio(kappa));
+        SoftGrainOptions options = at_ratio(kappa);
+        options.tolerance = 1e-9;
+        SoftGrains<2> soft(state.packing, state.load, options);
         BOOST_REQUIRE(soft.relax());
         BOOST_TEST(soft.contacts().size() == 6U);
         for (const SoftContact& c : soft.contacts()) {
@@ -91,6 +93,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_touches_nothing_falls_as_drag_lets_it) {
     state.load.disk_force = {0.01, 0};
     SoftGrainOptions options = at_ratio(1e2);
     options.drag = 0.05;
+    options.step_fraction = 0.3;
     SoftGrains<2> soft(state.packing, state.load, options);
     const double dt = soft.time_step();
     soft.advance(200);
@@ -143,8 +146,8 @@ BOOST_AUTO_TEST_CASE(the_time_step_is_below_the_true_highest_frequency) {
         springs.col(w) /= std::sqrt(std::sqrt(30.0));
     }
     const double highest = std::sqrt(springs.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
-    BOOST_TEST(soft.time_step() * highest <= 0.3);
-    BOOST_TEST(soft.time_step() * highest >= 0.1); // and not wastefully so
+    BOOST_TEST(soft.time_step() * highest <= 0.8);
+    BOOST_TEST(soft.time_step() * highest >= 0.25); // and not wastefully so
 }
 
 BOOST_AUTO_TEST_CASE(forces_of_a_packing_converge_as_the_inverse_of_the_stiffness) {

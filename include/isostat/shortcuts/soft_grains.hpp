@@ -14,8 +14,8 @@ namespace isostat {
 struct SoftGrainOptions {
     double stiffness_ratio = 1e4; ///< kappa = K / P, P = mean of the |stresses| on the walls (Dim = 2)
     double tolerance = 0;         ///< stop at this residual; 0: 1e-2 / kappa, at least 1e-9
-    double step_fraction = 0.3;   ///< time step x (proved bound of the highest frequency), stable below about 1
-    double drag = 0;              ///< per unit of mass and time sqrt(m / K); 0: 0.2 / sqrt(kappa)
+    double step_fraction = 0.8;   ///< time step x (proved bound of the highest frequency), stable below about 1
+    double drag = 0;              ///< per unit of mass and time sqrt(m / K); 0: 1 / sqrt(kappa)
     long max_steps = 20'000'000;  ///< of one `relax`
 };
 
@@ -30,9 +30,10 @@ struct SoftContact {
 /// movable wall that of the disks along it. The load is dead (`LoadKind::nominal`): F_ext is that of the packing given
 /// to the constructor, and infinitesimal loads are left out, so rattlers float.
 ///
-/// Equilibria converge to those of rigid grains as K grows: overlap / diameter and the relative change of the forces
-/// are of order 1 / kappa. Which pairs touch is a matter of overlap > 0; a pair whose rigid force is below K x (the
-/// error of positions, of order 1 / kappa) can be missed, and pairs with gaps of that order can be found in excess.
+/// Which of several equilibria is reached depends on the damping. Equilibria converge to those of rigid grains as K
+/// grows: overlap / diameter and the relative change of the forces are of order 1 / kappa. Which pairs touch is a
+/// matter of overlap > 0; a pair whose rigid force is below K x (the error of positions, of order 1 / kappa) can be
+/// missed, and pairs with gaps of that order can be found in excess.
 template <int Dim> class SoftGrains {
   public:
     /// \pre no held coordinates matter: only grains. Throws `Error(bad_input)` when no wall is under stress or an
@@ -55,9 +56,10 @@ template <int Dim> class SoftGrains {
     /// Overlapping pairs, sorted.
     [[nodiscard]] std::vector<SoftContact> contacts() const;
     [[nodiscard]] double stiffness() const { return stiffness_; }
-    /// Chosen by the code: `step_fraction` / omega, omega^2 = max over candidates of (z_i + z_j) K / m, z the number of
-    /// candidates of a grain, a bound of the largest eigenvalue of the spring matrix (Gershgorin on A M^-1 A^T). In
-    /// units of sqrt(m / K); changes with the candidates.
+    /// Chosen by the code: min(step_fraction / omega, 1.4 / (c omega^2)), c the damping of a contact; omega^2 = max
+    /// over candidates of (z_i + z_j) K / m, z the number of candidates of a grain, is a bound of the largest
+    /// eigenvalue of the spring matrix (Gershgorin on A M^-1 A^T). In units of sqrt(m / K); changes with the
+    /// candidates.
     [[nodiscard]] double time_step() const { return time_step_; }
     [[nodiscard]] long steps() const { return steps_; }
 

@@ -17,7 +17,7 @@ namespace work_precision {
 
 namespace {
 
-constexpr int load_steps = 10; ///< from the middle of one interval of loads to the middle of the next
+constexpr int load_steps = 8; ///< from the middle of one interval of loads to the middle of the next
 
 struct Recorder : RunObserver<2> {
     std::vector<ArcRecord<2>> arcs;
@@ -106,7 +106,7 @@ bool soft_grains(const Settings& settings) {
         double exact_time = 0;
         int exact_states = 0;
         for (const std::uint64_t seed : settings.seeds) {
-            if (n >= 400 && seed != settings.seeds.front()) {
+            if (n >= 200 && seed != settings.seeds.front()) {
                 continue;
             }
             Recorder exact;

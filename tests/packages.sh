@@ -14,8 +14,10 @@ isostat_packages=(
 isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify)
 # For `mpirun isostat ensemble` (ISOSTAT_WITH_MPI): optional, built and tested by continuous integration.
 isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
+# For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
+isostat_count_packages=(valgrind)
 if [ "${CI:-}" = true ]; then
-  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}")
+  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_count_packages[@]}")
 fi
 
 # Installs what is missing; a message with the list when it cannot.

@@ -1,71 +1,219 @@
-#include <isostat/core/work.hpp>
 #include <isostat/linear/factorisation.hpp>
 
-#include <klu.h>
-
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace isostat {
 
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr std::size_t max_passes = 20; ///< more than that costs as much as new factors
+constexpr std::size_t kept_directions = 4;
+constexpr double residual_left = 1e-12; ///< of the size of the unknowns and the right-hand side
+
+double largest(std::span<const double> x) {
+    double value = 0;
+    for (const double c : x) {
+        value = std::max(value, std::abs(c));
+    }
+    return value;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    // Four sums: a single one would wait for each addition. The order is fixed.
+    std::array<double, 4> sum{};
+    std::size_t i = 0;
+    for (; i + 4 <= a.size(); i += 4) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            sum[k] += a[i + k] * b[i + k];
+        }
+    }
+    for (; i < a.size(); ++i) {
+        sum[0] += a[i] * b[i];
+    }
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/// A direction and its image under the matrix.
+struct Direction {
+    std::vector<double> step, image;
+    double square = 0; ///< of the image
+};
+
+void subtract(Direction& from, const Direction& what, double factor) {
+    for (std::size_t i = 0; i < from.step.size(); ++i) {
+        from.step[i] -= factor * what.step[i];
+        from.image[i] -= factor * what.image[i];
+    }
+}
+
+} // namespace
+
 struct Factorisation::Implementation {
-    klu_common common{};
-    std::shared_ptr<void> analysis; ///< keeps `symbolic` alive
-    klu_symbolic* symbolic = nullptr;
-    klu_numeric* numeric = nullptr;
-    int n = 0;
-    Implementation() = default;
-    Implementation(const Implementation&) = delete;
-    Implementation& operator=(const Implementation&) = delete;
-    ~Implementation() { klu_free_numeric(&numeric, &common); }
+    std::shared_ptr<const sparse::Matrix<double>> matrix;
+    ApproximateInverse inverse;
+    bool fresh = true;
+    int passes = 0;
+    std::vector<double> x, r;
+
+    enum class Side { forces, velocities };
+
+    void pass(Side side, std::span<double> rhs) {
+        ++passes;
+        if (side == Side::forces) {
+            inverse.forces(rhs);
+        } else {
+            inverse.velocities(rhs);
+        }
+    }
+
+    /// y = H x, or G x.
+    void multiply(Side side, std::span<const double> in, std::vector<double>& y) const {
+        const sparse::Matrix<double>& h = *matrix;
+        const auto columns = static_cast<std::size_t>(h.cols);
+        if (side == Side::forces) {
+            std::fill(y.begin(), y.end(), 0.0);
+        }
+        for (std::size_t j = 0; j < columns; ++j) {
+            const auto end = static_cast<std::size_t>(h.start[j + 1]);
+            double sum = 0;
+            for (auto e = static_cast<std::size_t>(h.start[j]); e < end; ++e) {
+                const auto i = static_cast<std::size_t>(h.row[e]);
+                if (side == Side::forces) {
+                    y[i] += h.value[e] * in[j];
+                } else {
+                    sum += h.value[e] * in[i];
+                }
+            }
+            if (side == Side::velocities) {
+                y[j] = sum;
+            }
+        }
+    }
+
+    /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
+    /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
+    /// refinement and converges where that does not.
+    bool refined(Side side, std::span<double> rhs) {
+        const std::size_t n = rhs.size();
+        // By a power of two near 1, which changes no bit: squares neither under- nor overflow, whatever the units are.
+        int exponent = 0;
+        std::frexp(largest(rhs), &exponent);
+        exponent = std::clamp(exponent, -1000, 1000);
+        const double up = std::ldexp(1.0, -exponent);
+        const double down = std::ldexp(1.0, exponent);
+        x.assign(n, 0.0);
+        r.resize(n);
+        std::transform(rhs.begin(), rhs.end(), r.begin(), [up](double c) { return c * up; });
+        const double size_of_rhs = largest(r);
+        const auto deliver = [&] {
+            std::transform(x.begin(), x.end(), rhs.begin(), [down](double c) { return c * down; });
+            return true;
+        };
+        std::array<Direction, kept_directions> directions;
+        double previous = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < max_passes; ++k) {
+            Direction& now = directions[k % kept_directions];
+            now.step = r;
+            pass(side, now.step);
+            now.image.resize(n);
+            multiply(side, now.step, now.image);
+            for (std::size_t back = 1; back < kept_directions && back <= k; ++back) {
+                const Direction& earlier = directions[(k - back) % kept_directions];
+                subtract(now, earlier, dot(now.image, earlier.image) / earlier.square);
+            }
+            now.square = dot(now.image, now.image);
+            if (!(now.square > 0)) { // nothing is left to correct, or the numbers are not finite
+                if (largest(r) != 0) {
+                    return false;
+                }
+                return deliver();
+            }
+            const double length = dot(now.image, r) / now.square;
+            double change = 0;
+            double size = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                const double step = length * now.step[i];
+                x[i] += step;
+                r[i] -= length * now.image[i];
+                change = std::max(change, std::abs(step));
+                size = std::max(size, std::abs(x[i]));
+            }
+            if (!(change < std::numeric_limits<double>::infinity())) {
+                return false;
+            }
+            // Linear convergence: the next change would be change^2 / previous.
+            if (change <= 4 * u * size || (k > 0 && change * change <= 4 * u * size * previous)) {
+                // Small steps are also what a useless operator makes: the residual has to be small too.
+                if (!(largest(r) <= residual_left * (size + size_of_rhs))) {
+                    return false;
+                }
+                return deliver();
+            }
+            previous = change;
+        }
+        return false;
+    }
+
+    void solve(Side side, std::span<double> rhs, int count) {
+        const auto n = static_cast<std::size_t>(matrix->rows);
+        assert(rhs.size() == n * static_cast<std::size_t>(count));
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            const auto one = rhs.subspan(k * n, n);
+            if (!fresh && !refined(side, one)) {
+                inverse = ApproximateInverse(*matrix);
+                fresh = true;
+            }
+            if (fresh) {
+                pass(side, one);
+            }
+        }
+    }
 };
 
 template <int Dim>
 Factorisation::Factorisation(const IsostaticStructure<Dim>& structure)
-    : implementation_(std::make_unique<Implementation>()) {
-    Implementation& self = *implementation_;
-    const sparse::Matrix<double>& matrix = structure.matrix();
-    count_work(Work::factorisations);
-    klu_defaults(&self.common);
-    // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
-    self.common.scale = 0;
-    // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.
-    self.common.halt_if_singular = 0;
-    self.n = matrix.rows;
-    // KLU's interface is not const-correct; it does not write to the pattern or the values.
-    auto* start = const_cast<int*>(matrix.start.data());    // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    auto* row = const_cast<int*>(matrix.row.data());        // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    auto* value = const_cast<double*>(matrix.value.data()); // NOLINT(cppcoreguidelines-pro-type-const-cast)
-    self.analysis = structure.ordering().symbolic();
-    self.symbolic = static_cast<klu_symbolic*>(self.analysis.get());
-    self.numeric = klu_factor(start, row, value, self.symbolic, &self.common);
-}
+    : implementation_(new Implementation{structure.shared_matrix(),
+                                         ApproximateInverse(structure.matrix(), structure.ordering().symbolic()),
+                                         true,
+                                         0,
+                                         {},
+                                         {}}) {}
+
+template <int Dim>
+Factorisation::Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse)
+    : implementation_(new Implementation{structure.shared_matrix(), std::move(inverse), false, 0, {}, {}}) {}
 
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;
 Factorisation& Factorisation::operator=(Factorisation&&) noexcept = default;
 
 void Factorisation::solve_forces(std::span<double> rhs, int count) const {
-    assert(rhs.size() == static_cast<std::size_t>(implementation_->n) * static_cast<std::size_t>(count));
-    if (implementation_->numeric == nullptr) {
-        std::fill(rhs.begin(), rhs.end(), std::nan("")); // out of memory: every bound fails, nothing is decided
-        return;
-    }
-    klu_solve(implementation_->symbolic, implementation_->numeric, implementation_->n, count, rhs.data(),
-              &implementation_->common);
+    implementation_->solve(Implementation::Side::forces, rhs, count);
 }
 
 void Factorisation::solve_velocities(std::span<double> rhs, int count) const {
-    assert(rhs.size() == static_cast<std::size_t>(implementation_->n) * static_cast<std::size_t>(count));
-    if (implementation_->numeric == nullptr) {
-        std::fill(rhs.begin(), rhs.end(), std::nan(""));
-        return;
-    }
-    klu_tsolve(implementation_->symbolic, implementation_->numeric, implementation_->n, count, rhs.data(),
-               &implementation_->common);
+    implementation_->solve(Implementation::Side::velocities, rhs, count);
+}
+
+const ApproximateInverse& Factorisation::approximate() const {
+    return implementation_->inverse;
+}
+
+bool Factorisation::is_fresh() const {
+    return implementation_->fresh;
+}
+
+int Factorisation::passes() const {
+    return implementation_->passes;
 }
 
 template Factorisation::Factorisation(const IsostaticStructure<2>&);
+template Factorisation::Factorisation(const IsostaticStructure<2>&, ApproximateInverse);
 
 } // namespace isostat

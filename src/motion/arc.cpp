@@ -15,7 +15,8 @@ namespace {
 /// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
-constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
+constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
+constexpr double end_tangent_accuracy = 1e-4;   ///< at an event, where only dips and the sign of the power are read off
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -75,19 +76,22 @@ template <int Dim> class Follower {
 
     /// Velocity (on coordinates) with unit approach velocity in the slot and none in the kept contacts.
     void fresh_slot_mechanism() {
-        std::fill(rhs_.begin(), rhs_.end(), 0.0);
-        rhs_[slot_] = 1;
-        solve();
-        mechanism_ = y_;
+        mechanism_.assign(y_.size(), 0.0);
+        to_coordinates(factorisation_->approximate().mechanism(static_cast<int>(slot_)), mechanism_);
     }
 
-    /// y_ = (velocity on coordinates with the approach velocities of rhs_).
-    void solve() {
-        factorisation_->solve_velocities(rhs_);
+    void to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const {
         const DofMap<Dim>& dofs = structure_->dofs();
         for (std::size_t mu = 0; mu < size_; ++mu) {
-            y_[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = rhs_[mu];
+            on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
         }
+    }
+
+    /// y_ = (velocity on coordinates with about the approach velocities of rhs_): one pass.
+    void solve() {
+        ++passes_;
+        factorisation_->approximate().velocities(rhs_);
+        to_coordinates(rhs_, y_);
     }
 
     /// One chord step: y_ such that kept gaps change by minus `kept` (given as approach) and row . y_ = target.
@@ -96,6 +100,11 @@ template <int Dim> class Follower {
         for (std::size_t l = 0; l < size_; ++l) {
             rhs_[l] = l == slot_ ? 0.0 : kept(contacts[l]);
         }
+        finish_chord(row, target);
+    }
+
+    /// From the approach velocities rhs_ of the kept contacts.
+    template <class Row> void finish_chord(Row row, double target) {
         solve();
         const double scale = (target - row(y_)) / row(mechanism_);
         for (std::size_t k = 0; k < y_.size(); ++k) {
@@ -154,8 +163,9 @@ template <int Dim> class Follower {
             if (size <= rounding || (k > 1 && size * size <= 0.1 * rounding * previous)) {
                 return true;
             }
-            if (k > 3 && size > 0.5 * previous) {
-                return size < 1e-9 * at.min_radius(); // the last iterates are rounding noise, or the factors are stale
+            // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
+            if (k > 3 && size > (factorisation_->is_fresh() ? 0.5 : 0.9) * previous) {
+                return size < 1e-9 * at.min_radius();
             }
             previous = size;
         }
@@ -180,10 +190,20 @@ template <int Dim> class Follower {
 
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
     std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
+        const DofMap<Dim>& dofs = structure_->dofs();
+        const sparse::Matrix<double> h = contact_matrix(at, dofs, structure_->contacts());
         Vector t = tangent_;
         double previous = infinity;
-        for (int k = 0; k < 30; ++k) {
-            chord([&](const Contact& c) { return rate(at, c, t); }, [&](const Vector& v) { return v[fastest_]; }, 0.0);
+        for (int k = 0; k < 40; ++k) {
+            for (std::size_t l = 0; l < size_; ++l) {
+                double approach = 0;
+                for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+                    const auto s = static_cast<std::size_t>(e);
+                    approach += h.value[s] * t[static_cast<std::size_t>(dofs.coordinate_of(h.row[s]))];
+                }
+                rhs_[l] = l == slot_ ? 0.0 : -approach;
+            }
+            finish_chord([&](const Vector& v) { return v[fastest_]; }, 0.0);
             const double size = largest(y_);
             for (std::size_t i = 0; i < t.size(); ++i) {
                 t[i] += y_[i];
@@ -191,7 +211,8 @@ template <int Dim> class Follower {
             if (!(size < previous)) {
                 break;
             }
-            if (size < accuracy * largest(t)) {
+            // Linear convergence: what is left is about size^2 / previous.
+            if (size < accuracy * largest(t) || (k > 0 && size * size < 0.1 * accuracy * largest(t) * previous)) {
                 return t;
             }
             previous = size;
@@ -272,13 +293,20 @@ template <int Dim> class Follower {
         if (active_.empty()) {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
-            std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
-                         [&](const Contact& c) { return c != opened_ && !kept.contains(c); });
+            std::copy_if(
+                candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
             if (opened_.kind != ContactKind::held) {
                 active_.push_back(opened_); // it may close again
             }
         }
     }
+
+    static bool listed(const std::vector<Contact>& list, const Contact& c) {
+        return std::find(list.begin(), list.end(), c) != list.end();
+    }
+    /// Its gap is 0 at the start, and grows.
+    [[nodiscard]] bool leaves(const Contact& c) const { return c == opened_ || listed(options_.leaving, c); }
 
     /// Displacement that the candidate list still allows.
     double reach_left() const {
@@ -294,7 +322,7 @@ template <int Dim> class Follower {
         return 0.5 * candidates_.reach - std::sqrt(moved);
     }
 
-    Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power) {
+    Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power, Vector tangent) {
         Arc<Dim> arc;
         for (const Contact& contact : structure_->contacts()) {
             if (contact.kind == ContactKind::held && contact != opened_ && &contact != &structure_->contacts()[slot_]) {
@@ -309,8 +337,10 @@ template <int Dim> class Follower {
         arc.kind = kind;
         arc.closed = closed;
         arc.power = power;
+        arc.tangent = std::move(tangent);
         arc.steps = steps_;
         arc.factorisations = factorisations_;
+        arc.passes = passes_;
         return arc;
     }
 
@@ -327,7 +357,7 @@ template <int Dim> class Follower {
         Packing<Dim> at;
         Vector tangent;
     };
-    std::optional<Point> step_to(double s) {
+    std::optional<Point> step_to(double s, double accuracy = tangent_accuracy) {
         Packing<Dim> at = predicted(s);
         const Packing<Dim> guess = at;
         if (!converge_to_coordinate(at)) {
@@ -337,10 +367,11 @@ template <int Dim> class Follower {
         for (std::size_t k = 0; k < at.q.size(); ++k) {
             off = std::max(off, std::abs(at.q[k] - guess.q[k]));
         }
-        if (off > 0.2 * s) {
+        // A start known to its last bits only is put back on the curve first: that is no bend, however short the step.
+        if (off > 0.2 * s + 1e-10 * at.min_radius()) {
             return std::nullopt; // another branch, or a curve too bent for this step
         }
-        auto t = tangent_at(at, tangent_accuracy);
+        auto t = tangent_at(at, accuracy);
         if (!t || largest(*t) > 4) {
             return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
         }
@@ -417,6 +448,7 @@ template <int Dim> class Follower {
     int last_iterations_ = 0;
     int steps_ = 0;
     int factorisations_ = 0;
+    int passes_ = 0;
 };
 
 template <int Dim>
@@ -430,7 +462,7 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
         if (!(s > s_low && s < s_high)) {
             s = 0.5 * (s_low + s_high);
         }
-        auto point = step_to(s);
+        auto point = step_to(s, turn_tangent_accuracy);
         if (!point) {
             return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
         }
@@ -458,7 +490,7 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
     choose_fastest();
     snap_to_grid(best->at);
     return finish(std::move(best->at), ArcEnd::power_turn, Contact{ContactKind::held, static_cast<int>(fastest_), 0},
-                  p_best);
+                  p_best, std::move(best->tangent));
 }
 
 template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
@@ -478,7 +510,15 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         return std::nullopt;
     };
     bool renewed_here = false;
-    bool moved = false; // q_ is no longer the start
+    bool moved = false;                // q_ is no longer the start
+    if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
+        choose_fastest();
+        if (auto t = tangent_at(q_, tangent_accuracy)) {
+            tangent_ = std::move(*t);
+        } else if (auto failure = renew()) {
+            return *failure;
+        }
+    }
     while (steps_ < options_.max_steps) {
         choose_fastest();
         if (!std::isfinite(tangent_[fastest_])) {
@@ -497,7 +537,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         double s_event = infinity;
         std::size_t event = 0;
         for (std::size_t c = 0; c < active_.size(); ++c) {
-            const bool opening = at_start && active_[c] == opened_;
+            const bool opening = at_start && leaves(active_[c]);
             start_gap_[c] = opening ? 0.0 : gap(q_, active_[c]);
             start_rate_[c] = rate(q_, active_[c], tangent_);
             const double bend = rate(q_, active_[c], curvature_) + gap_curvature(q_, active_[c], tangent_.data());
@@ -552,7 +592,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 if (!(reached >= -noise) || reached > 1.5 * std::max(s_max, s_event) + noise) {
                     break; // another root
                 }
-                if (at_start && closing == opened_ && reached < 0.25 * s_event) {
+                if (at_start && leaves(closing) && reached < 0.25 * s_event) {
                     break; // the start itself: the gap that opens is zero there too
                 }
                 s = std::max(reached, 0.0);
@@ -620,10 +660,10 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 return Failure{FailureKind::not_converged, fmt::format("the event at contact {} was not reached",
                                                                        to_string<Dim>(*options_.closes))};
             }
-            return finish(std::move(point->at), ArcEnd::contact, *options_.closes, p_end);
+            return finish(std::move(point->at), ArcEnd::contact, *options_.closes, p_end, std::move(point->tangent));
         }
         if (try_event) {
-            return finish(std::move(point->at), ArcEnd::contact, closing, p_end);
+            return finish(std::move(point->at), ArcEnd::contact, closing, p_end, std::move(point->tangent));
         }
         moved = true;
         q_ = std::move(point->at);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 namespace isostat {
 
@@ -88,6 +89,17 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
     return matrix;
 }
 
+/// Whether two matrices have the same pattern in all columns but one.
+bool same_pattern_elsewhere(const sparse::Matrix<double>& a, const sparse::Matrix<double>& b, std::size_t column) {
+    const auto next = static_cast<std::ptrdiff_t>(column) + 1;
+    const int shift = b.start[column + 1] - a.start[column + 1];
+    return std::equal(a.start.begin(), a.start.begin() + next, b.start.begin()) &&
+           std::equal(a.start.begin() + next, a.start.end(), b.start.begin() + next,
+                      [shift](int x, int y) { return x + shift == y; }) &&
+           std::equal(a.row.begin(), a.row.begin() + a.start[column], b.row.begin()) &&
+           std::equal(a.row.begin() + a.start[column + 1], a.row.end(), b.row.begin() + b.start[column + 1]);
+}
+
 } // namespace
 
 template <int Dim>
@@ -132,8 +144,8 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
             fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
                         dof_count, contact_count)};
     }
-    structure.matrix_ = contact_matrix(packing, *structure.dofs_, contacts);
-    auto ordering = std::make_shared<const sparse::Ordering>(structure.matrix_);
+    auto matrix = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *structure.dofs_, contacts));
+    auto ordering = std::make_shared<const sparse::Ordering>(*matrix);
     if (!ordering->structurally_regular()) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
@@ -152,8 +164,58 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
                                    rank, dof_count)};
     }
     structure.contacts_ = std::move(contacts);
+    structure.matrix_ = std::move(matrix);
+    structure.matching_.resize(static_cast<std::size_t>(dof_count));
+    for (std::size_t k = 0; k < structure.matching_.size(); ++k) {
+        structure.matching_[static_cast<std::size_t>(ordering->row_order()[k])] = ordering->column_order()[k];
+    }
     structure.ordering_ = std::move(ordering);
     return structure;
+}
+
+template <int Dim>
+std::optional<ExchangedContacts<Dim>> IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous,
+                                                                        const Packing<Dim>& packing, ContactId slot,
+                                                                        const Contact& contact) {
+    ExchangedContacts<Dim> next;
+    next.slot_ = static_cast<int>(slot.index());
+    next.contacts_ = previous.contacts_;
+    next.contacts_[slot.index()] = contact;
+    next.dofs_ = previous.dofs_;
+    next.matrix_ = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *next.dofs_, next.contacts_));
+    if (same_pattern_elsewhere(*previous.matrix_, *next.matrix_, slot.index())) {
+        next.matching_ =
+            sparse::repaired_matching(previous.matching_, next.matrix_->start, next.matrix_->row, next.slot_);
+    } else { // a normal turned into or out of an axis: other columns changed their pattern too
+        next.matching_ = sparse::perfect_matching(next.matrix_->rows, next.matrix_->start, next.matrix_->row);
+    }
+    return next.matching_.empty() ? std::nullopt : std::optional(std::move(next));
+}
+
+template <int Dim>
+IsostaticStructure<Dim> IsostaticStructure<Dim>::exchanged(ExchangedContacts<Dim> contacts,
+                                                           const RegularityProof& proof) {
+    assert(proof.matrix_ == contacts.matrix_.get() && proof.sigma_min() > 0);
+    IsostaticStructure structure = without_proof(std::move(contacts));
+    structure.evidence_ = RegularityEvidence::singular_value;
+    return structure;
+}
+
+template <int Dim> IsostaticStructure<Dim> IsostaticStructure<Dim>::without_proof(ExchangedContacts<Dim> contacts) {
+    IsostaticStructure structure;
+    structure.contacts_ = std::move(contacts.contacts_);
+    structure.dofs_ = std::move(contacts.dofs_);
+    structure.matrix_ = std::move(contacts.matrix_);
+    structure.matching_ = std::move(contacts.matching_);
+    structure.evidence_ = RegularityEvidence::none;
+    return structure;
+}
+
+template <int Dim> const sparse::Ordering& IsostaticStructure<Dim>::ordering() const {
+    if (ordering_ == nullptr) {
+        ordering_ = std::make_shared<const sparse::Ordering>(*matrix_);
+    }
+    return *ordering_;
 }
 
 template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMap<2>&, const std::vector<Contact>&);

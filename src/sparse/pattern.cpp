@@ -3,6 +3,7 @@
 #include <btf.h>
 #include <klu.h>
 
+#include <algorithm>
 #include <cassert>
 #include <new>
 
@@ -53,6 +54,40 @@ std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<c
         matched.clear();
     }
     return matched;
+}
+
+std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int> start, std::span<const int> row,
+                                   int column) {
+    const auto free_row = std::find(matched.begin(), matched.end(), column) - matched.begin();
+    // Breadth first from the column through alternating edges: came_from[r] is the column that reached row r.
+    std::vector<int> came_from(matched.size(), -1);
+    std::vector<int> queue{column};
+    for (std::size_t k = 0; k < queue.size(); ++k) {
+        const int c = queue[k];
+        for (int e = start[static_cast<std::size_t>(c)]; e < start[static_cast<std::size_t>(c) + 1]; ++e) {
+            const auto r = static_cast<std::size_t>(row[static_cast<std::size_t>(e)]);
+            if (came_from[r] >= 0) {
+                continue;
+            }
+            came_from[r] = c;
+            if (static_cast<std::ptrdiff_t>(r) != free_row) {
+                queue.push_back(matched[r]);
+                continue;
+            }
+            // Backwards along the path: each row takes the column that reached it, which leaves its own row to the
+            // next.
+            for (auto at = r;;) {
+                const int taken = came_from[at];
+                const auto left = taken == column ? matched.end() : std::find(matched.begin(), matched.end(), taken);
+                matched[at] = taken;
+                if (taken == column) {
+                    return matched;
+                }
+                at = static_cast<std::size_t>(left - matched.begin());
+            }
+        }
+    }
+    return {};
 }
 
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,

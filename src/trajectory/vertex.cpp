@@ -19,6 +19,44 @@ Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& 
       statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
 
 template <int Dim>
+Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
+                    const InverseBound& bound, const Load<Dim>& load)
+    : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
+      enclosure(enclose_vertex(packing, structure, inverse)),
+      statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
+
+template <int Dim> double Vertex<Dim>::cost_of_solves() const {
+    constexpr double arc_per_statics = 3; // passes of an arc and its proofs for one pass of the statics, about
+    return arc_per_statics * factorisation.passes() * factorisation.approximate().relative_cost();
+}
+
+template <int Dim> bool Vertex<Dim>::factors_are_worn() const {
+    constexpr double factorisation_in_passes = 60; // KLU: analysis and factorisation, measured for n = 400 ... 4900
+    const int exchanges = factorisation.approximate().exchanges();
+    const double here = cost_of_solves();
+    return exchanges > 0 && here * (exchanges + 1) > factorisation_in_passes + cost_before_ + here;
+}
+
+template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
+    if (inverse.verdict != Verdict::proved) {
+        return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved: no sign "
+                                               "of a force can be decided"};
+    }
+    if (enclosure.verdict != Verdict::proved) {
+        enclosure = enclose_vertex_double_double(packing, structure, factorisation, inverse);
+    }
+    if (enclosure.verdict != Verdict::proved) {
+        return Failure{
+            FailureKind::undecided,
+            fmt::format(
+                "no true configuration with exactly these contacts was proved to exist near the stored one: largest "
+                "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
+                enclosure.max_gap, inverse.sigma_min)};
+    }
+    return std::nullopt;
+}
+
+template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                        const Load<Dim>& load, InverseBoundCache& cache) {
     auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
@@ -30,26 +68,53 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
         vertex->inverse = bound_inverse_multiprecision(vertex->packing, vertex->structure);
         vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->inverse);
     }
-    if (vertex->inverse.verdict != Verdict::proved) {
-        return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved: no sign "
-                                               "of a force can be decided"};
-    }
-    if (vertex->enclosure.verdict != Verdict::proved) {
-        vertex->enclosure =
-            enclose_vertex_double_double(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
-    }
-    if (vertex->enclosure.verdict != Verdict::proved) {
-        return Failure{
-            FailureKind::undecided,
-            fmt::format(
-                "no true configuration with exactly these contacts was proved to exist near the stored one: largest "
-                "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
-                vertex->enclosure.max_gap, vertex->inverse.sigma_min)};
+    if (auto failure = vertex->lacking()) {
+        return *failure;
     }
     return vertex;
 }
 
-template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates) {
+template <int Dim>
+Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
+                                                            const Contact& closed, const std::vector<double>& tangent,
+                                                            const Load<Dim>& load, InverseBoundCache& cache) {
+    const auto anew = [&] {
+        std::vector<Contact> contacts = from.structure.contacts();
+        contacts[slot.index()] = closed;
+        return make(std::move(packing), std::move(contacts), load, cache);
+    };
+    auto next = IsostaticStructure<Dim>::exchange(from.structure, packing, slot, closed);
+    if (!next) {
+        return anew(); // it says why
+    }
+    const ApproximateInverse approximate =
+        from.factors_are_worn() ? ApproximateInverse(next->matrix())
+                                : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
+    std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
+    for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {
+        mechanism[mu] = tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
+    }
+    auto proved = carry_bound(from.structure, from.inverse, *next, approximate, std::move(mechanism));
+    if (!proved) {
+        proved = bound_exchanged(*next, approximate, cache);
+    }
+    if (!proved) {
+        return anew();
+    }
+    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing),
+                                              IsostaticStructure<Dim>::exchanged(std::move(*next), proved->proof),
+                                              approximate, proved->bound, load));
+    if (approximate.exchanges() > 0) {
+        vertex->cost_before_ = from.cost_before_ + from.cost_of_solves();
+    }
+    if (auto failure = vertex->lacking()) {
+        return *failure;
+    }
+    return vertex;
+}
+
+template <int Dim>
+Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, bool ties_are_values) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction);
     }
@@ -101,11 +166,20 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(Ca
             }
             continue;
         }
+        if (ties_are_values && is_tie(order, packing.min_radius())) {
+            gaps.zero.emplace_back(contact, order);
+            if (gaps.smallest > 0) {
+                gaps.smallest = 0;
+                gaps.where = contact;
+            }
+            continue;
+        }
         names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),
                              order.decided ? std::string("exactly 0") : fmt::format("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
-        return Failure{FailureKind::tie, "gaps that are zero beside those of the contacts kept: " + names};
+        return Failure{ties_are_values ? FailureKind::undecided : FailureKind::tie,
+                       "gaps that are zero beside those of the contacts kept: " + names};
     }
     return gaps;
 }

@@ -6,12 +6,27 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/statics/decisions.hpp>
+#include <isostat/statics/perturbed.hpp>
 #include <isostat/verified/configuration.hpp>
 
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace isostat {
+
+/// The first-order side of a vertex whose radii are R_i + eps rho_i.
+template <int Dim> struct FirstOrderVertex {
+    /// `rate`: first-order term of the stress.
+    FirstOrderVertex(FirstOrder<Dim> terms, Statics<Dim>& forces, const Load<Dim>& load, const Enclosure& rate)
+        : first(std::move(terms)), statics(first, forces, load, rate), stress_rate(rate) {}
+    FirstOrder<Dim> first;
+    PerturbedStatics<Dim> statics; ///< refers to `first`
+    Enclosure stress_rate;
+    /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive.
+    std::vector<std::pair<Contact, Enclosure>> touching;
+};
 
 /// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
 /// other.
@@ -22,6 +37,12 @@ template <int Dim> class Vertex {
     /// proved.
     static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                 const Load<Dim>& load, InverseBoundCache& cache);
+    /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the
+    /// bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a Cholesky
+    /// factorisation (V1), everything anew as in `make`. The factors of `from` go on serving. `tangent` is a guess.
+    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
+                                                     const Contact& closed, const std::vector<double>& tangent,
+                                                     const Load<Dim>& load, InverseBoundCache& cache);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -38,15 +59,31 @@ template <int Dim> class Vertex {
         Contact where;
         double margin = 0;
         Rung rung = Rung::double_bound;
-        std::optional<Contact> negative; ///< proved to overlap: it closed before
+        std::optional<Contact> negative;             ///< proved to overlap: it closed before
+        std::vector<std::pair<Contact, Order>> zero; ///< only when asked for: ties
     };
     /// Gaps of all pairs that are not contacts, at the true vertex: `candidates` is made anew when it is not complete
     /// there (T6). Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the
     /// precision reached.
-    Result<Gaps> check_gaps(CandidateList<Dim>& candidates);
+    /// With `ties_are_values` they are returned instead; `undecided` when too few bits say that a gap is 0.
+    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, bool ties_are_values = false);
+
+    /// Under `ties = "perturb"` only.
+    std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
 
   private:
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);
+    Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
+           const Load<Dim>& load);
+    /// What every vertex needs, or why not.
+    std::optional<Failure> lacking();
+    /// Cost of the solves of this vertex, in passes of fresh factors; those of the arc from it are in proportion.
+    [[nodiscard]] double cost_of_solves() const;
+    /// New factors are due when this vertex cost more than the average since the last ones, their making included: the
+    /// rule that keeps that average smallest. It counts operations, never seconds.
+    [[nodiscard]] bool factors_are_worn() const;
+
+    double cost_before_ = 0; ///< of the vertices since the factorisation, without this one
 };
 
 extern template class Vertex<2>;

@@ -1,9 +1,9 @@
+#include "verified/block_cholesky.hpp"
 #include "verified/extended_cholesky.hpp"
+#include "verified/regularity_prover.hpp"
 
 #include <isostat/core/work.hpp>
 #include <isostat/verified/inverse_bound.hpp>
-
-#include <cholmod.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,90 +27,6 @@ double norm(const std::vector<double>& x) {
     return std::sqrt(sum);
 }
 
-/// CHOLMOD objects with their lifetime; errors (not positive definite) are expected and silent.
-class Cholesky {
-  public:
-    Cholesky(const sparse::Matrix<double>& h, std::vector<int>& permutation) : h_(h) {
-        cholmod_start(&common_);
-        common_.print = 0;
-        common_.error_handler = nullptr;
-        common_.supernodal = CHOLMOD_SIMPLICIAL;
-        common_.final_ll = 1;
-        common_.quick_return_if_not_posdef = 1;
-        common_.nmethods = 1;
-        const bool given = permutation.size() == static_cast<std::size_t>(h.rows);
-        common_.method[0].ordering = given ? CHOLMOD_GIVEN : CHOLMOD_AMD;
-        common_.postorder = given ? 0 : 1;
-        matrix_.nrow = static_cast<std::size_t>(h.rows);
-        matrix_.ncol = static_cast<std::size_t>(h.cols);
-        matrix_.nzmax = static_cast<std::size_t>(h.entries());
-        // CHOLMOD does not write to an input matrix.
-        matrix_.p = const_cast<int*>(h.start.data());    // NOLINT(cppcoreguidelines-pro-type-const-cast)
-        matrix_.i = const_cast<int*>(h.row.data());      // NOLINT(cppcoreguidelines-pro-type-const-cast)
-        matrix_.x = const_cast<double*>(h.value.data()); // NOLINT(cppcoreguidelines-pro-type-const-cast)
-        matrix_.stype = 0;
-        matrix_.itype = CHOLMOD_INT;
-        matrix_.xtype = CHOLMOD_REAL;
-        matrix_.dtype = CHOLMOD_DOUBLE;
-        matrix_.sorted = 1;
-        matrix_.packed = 1;
-        factor_ = cholmod_analyze_p(&matrix_, given ? permutation.data() : nullptr, nullptr, 0, &common_);
-        if (factor_ != nullptr && !given) {
-            const auto* order = static_cast<const int*>(factor_->Perm);
-            permutation.assign(order, order + factor_->n);
-        }
-    }
-    Cholesky(const Cholesky&) = delete;
-    Cholesky& operator=(const Cholesky&) = delete;
-    ~Cholesky() {
-        cholmod_free_factor(&factor_, &common_);
-        cholmod_finish(&common_);
-    }
-
-    /// Factorises H H^T - shift I; true when every pivot was positive.
-    bool factorise(double shift) {
-        if (factor_ == nullptr) {
-            return false;
-        }
-        double beta[2] = {-shift, 0};
-        const int ok = cholmod_factorize_p(&matrix_, beta, nullptr, 0, factor_, &common_);
-        return ok != 0 && common_.status == CHOLMOD_OK && factor_->minor == factor_->n && factor_->is_ll != 0;
-    }
-
-    /// Bound of the backward error of a successful `factorise(shift)` in the 2-norm (statement V1): the entry (i, j) is
-    /// computed with at most m_ij terms, m_ij <= sqrt(m_i m_j), m_i = entries of row i of L and of H plus 4.
-    [[nodiscard]] double error_bound(double shift) const {
-        const auto n = static_cast<std::size_t>(h_.rows);
-        std::vector<double> terms(n, 4.0);
-        std::vector<double> diagonal(n, 0.0);
-        for (std::size_t e = 0; e < h_.row.size(); ++e) {
-            const auto row = static_cast<std::size_t>(h_.row[e]);
-            terms[row] += 1;
-            diagonal[row] += h_.value[e] * h_.value[e];
-        }
-        const auto* perm = static_cast<const int*>(factor_->Perm);
-        const auto* start = static_cast<const int*>(factor_->p);
-        const auto* count = static_cast<const int*>(factor_->nz);
-        const auto* row = static_cast<const int*>(factor_->i);
-        for (std::size_t j = 0; j < n; ++j) {
-            for (int e = start[j]; e < start[j] + count[j]; ++e) {
-                terms[static_cast<std::size_t>(perm[row[e]])] += 1;
-            }
-        }
-        double sum = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            sum += gamma(terms[i]) * (2 * diagonal[i] + shift);
-        }
-        return sum * 1.01 + 1e-290; // 1.01: second order in gamma and the rounding of this sum; 1e-290: underflow
-    }
-
-  private:
-    const sparse::Matrix<double>& h_;
-    cholmod_common common_{};
-    cholmod_sparse matrix_{};
-    cholmod_factor* factor_ = nullptr;
-};
-
 /// |H - fl(H)|_2: every entry of fl(H) has a relative error of at most 5u, |.|_2 <= sqrt(|.|_1 |.|_inf).
 double rounding_of_entries(const sparse::Matrix<double>& h) {
     std::vector<double> row_sum(static_cast<std::size_t>(h.rows), 0.0);
@@ -129,15 +45,15 @@ double rounding_of_entries(const sparse::Matrix<double>& h) {
 }
 
 /// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
-double estimate(const Factorisation& factorisation, std::vector<double>& x, int iterations) {
+double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int iterations) {
     double lambda = 0;
     for (int k = 0; k < iterations; ++k) {
         const double before = norm(x);
         for (double& c : x) {
             c /= before;
         }
-        factorisation.solve_forces(x);
-        factorisation.solve_velocities(x);
+        inverse.forces(x);
+        inverse.velocities(x);
         lambda = norm(x);
     }
     return 1 / lambda;
@@ -197,12 +113,15 @@ InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& facto
     return {Verdict::proved, 1 / bound * (1 - 1e-15), InverseBound::Route::rows};
 }
 
-} // namespace
+/// Outcome of the first route, with what the others need.
+struct CholeskyOutcome {
+    InverseBound bound;
+    double estimated = 0;   ///< sigma_min^2, from above, not proved
+    double entry_error = 0; ///< |H - fl(H)|
+};
 
-template <int Dim>
-InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, int row_limit) {
-    const sparse::Matrix<double>& h = structure.matrix();
+CholeskyOutcome by_cholesky(const sparse::Matrix<double>& h, const ApproximateInverse& inverse,
+                            InverseBoundCache& cache) {
     const auto n = static_cast<std::size_t>(h.rows);
     int iterations = 1; // of a good guess: a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(norm(cache.vector)) || norm(cache.vector) == 0) {
@@ -214,24 +133,40 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
         iterations = 8;
     }
     count_work(Work::inverse_bounds);
-    const double entry_error = rounding_of_entries(h);
-    const double estimated = estimate(factorisation, cache.vector, iterations);
-    double shift = 0.5 * estimated;
+    CholeskyOutcome outcome;
+    outcome.entry_error = rounding_of_entries(h);
+    outcome.estimated = estimate(inverse, cache.vector, iterations);
+    double shift = 0.5 * outcome.estimated;
     if (std::isfinite(shift) && shift > 0) {
-        Cholesky cholesky(h, cache.permutation);
+        BlockCholesky cholesky(h, cache.permutation);
         for (int attempt = 0; attempt < 4; ++attempt, shift /= 8) {
             if (!cholesky.factorise(shift)) {
                 continue;
             }
             const double square = shift - cholesky.error_bound(shift);
             // A bound that lost more than half to rounding is better made by rows.
-            const double sigma = square > 0 ? std::sqrt(square) * (1 - 4 * u) - entry_error : 0;
+            const double sigma = square > 0 ? std::sqrt(square) * (1 - 4 * u) - outcome.entry_error : 0;
             if (square > 0.25 * shift && sigma > 0) {
-                return {Verdict::proved, sigma, InverseBound::Route::cholesky};
+                outcome.bound = {Verdict::proved, sigma, InverseBound::Route::cholesky};
             }
             break;
         }
     }
+    return outcome;
+}
+
+} // namespace
+
+template <int Dim>
+InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+                           InverseBoundCache& cache, int row_limit) {
+    const sparse::Matrix<double>& h = structure.matrix();
+    const CholeskyOutcome first = by_cholesky(h, factorisation.approximate(), cache);
+    if (first.bound.verdict == Verdict::proved) {
+        return first.bound;
+    }
+    const double estimated = first.estimated;
+    const double entry_error = first.entry_error;
     for (double square = 0.5 * estimated; square > 1e-24 && std::isfinite(square); square /= 64) {
         const double proved = shifted_cholesky_double_double(h, square);
         const double sigma = proved > 0 ? std::sqrt(proved) * (1 - 4 * u) - entry_error : 0;
@@ -245,6 +180,18 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
     return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};
 }
 
+template <int Dim>
+std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& contacts, const ApproximateInverse& inverse,
+                                              InverseBoundCache& cache) {
+    const InverseBound bound = by_cholesky(contacts.matrix(), inverse, cache).bound;
+    if (bound.verdict != Verdict::proved) {
+        return std::nullopt;
+    }
+    return ProvedExchange{bound, RegularityProver::proof(contacts.matrix(), bound.sigma_min)};
+}
+
+template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
+                                                          InverseBoundCache&);
 template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int);
 
 } // namespace isostat

@@ -1,6 +1,7 @@
 // The gate is a fact of the types; the factors solve what they should.
 #include "support/crafted.hpp"
 
+#include <isostat/io/state_file.hpp>
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/statics/statics.hpp>
 
@@ -67,6 +68,75 @@ BOOST_AUTO_TEST_CASE(factors_can_be_moved_and_outlive_their_structure) {
     force[4] = -1; // inward on the right wall
     kept->solve_forces(force);
     BOOST_TEST(force[0] == 1.0, boost::test_tools::tolerance(1e-14)); // the left wall answers
+}
+
+BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_fresh_ones) {
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const auto first = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(first.ok());
+    const Factorisation base(first.value());
+    ApproximateInverse inverse = base.approximate();
+    std::vector<Contact> contacts = state.contacts;
+    Packing<2> packing = state.packing;
+    const auto n = static_cast<std::size_t>(first.value().size());
+    // Contacts give way to held coordinates, one of the places twice, while the grains move a little.
+    const std::array<std::size_t, 4> places{10, 77, 10, 150};
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const std::vector<double>& v = inverse.mechanism(static_cast<int>(places[k]));
+        const auto fastest =
+            std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+        contacts[places[k]] = Contact{ContactKind::held, static_cast<int>(fastest - v.begin()), 0};
+        for (std::size_t i = 0; i < packing.q.size(); ++i) {
+            packing.q[i] += 1e-5 * std::sin(static_cast<double>(i + k));
+        }
+        const auto now = IsostaticStructure<2>::prove(packing, contacts);
+        BOOST_TEST_REQUIRE(now.ok());
+        inverse = inverse.exchanged(static_cast<int>(places[k]), now.value().matrix());
+        const Factorisation taken_over(now.value(), inverse);
+        const Factorisation fresh(now.value());
+        BOOST_TEST(!taken_over.is_fresh());
+        for (const bool forces : {true, false}) {
+            std::vector<double> a(n);
+            for (std::size_t i = 0; i < n; ++i) {
+                a[i] = std::cos(static_cast<double>(3 * i));
+            }
+            std::vector<double> b = a;
+            forces ? taken_over.solve_forces(a) : taken_over.solve_velocities(a);
+            forces ? fresh.solve_forces(b) : fresh.solve_velocities(b);
+            double size = 0;
+            double difference = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                size = std::max(size, std::abs(b[i]));
+                difference = std::max(difference, std::abs(a[i] - b[i]));
+            }
+            BOOST_TEST(difference < 1e-9 * size);
+        }
+        BOOST_TEST(!taken_over.is_fresh()); // it did converge
+        BOOST_TEST(inverse.exchanges() == static_cast<int>(k) + 1);
+    }
+    std::vector<double> zero(n, 0.0);
+    Factorisation(first.value(), inverse).solve_forces(zero);
+    BOOST_TEST((zero == std::vector<double>(n, 0.0)));
+}
+
+BOOST_AUTO_TEST_CASE(factors_that_do_not_converge_are_replaced_by_fresh_ones) {
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(structure.ok());
+    sparse::Matrix<double> other = structure.value().matrix(); // the same pattern, unrelated values
+    for (std::size_t e = 0; e < other.value.size(); ++e) {
+        other.value[e] = std::sin(static_cast<double>(e * e + 1));
+    }
+    const Factorisation factorisation(structure.value(), ApproximateInverse(other));
+    const Factorisation fresh(structure.value());
+    std::vector<double> a(static_cast<std::size_t>(structure.value().size()), 1.0);
+    std::vector<double> b = a;
+    factorisation.solve_forces(a);
+    fresh.solve_forces(b);
+    BOOST_TEST(factorisation.is_fresh());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        BOOST_TEST(std::abs(a[i] - b[i]) <= 1e-9 * (1 + std::abs(b[i])));
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

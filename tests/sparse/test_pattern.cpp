@@ -148,4 +148,36 @@ BOOST_AUTO_TEST_CASE(no_load_means_no_structural_nonzero) {
     BOOST_TEST(std::count(nonzero.begin(), nonzero.end(), 0) == 10);
 }
 
+BOOST_AUTO_TEST_CASE(a_repaired_matching_is_perfect_exactly_when_there_is_one) {
+    Random random(22);
+    int repaired = 0;
+    int none = 0;
+    for (int repeat = 0; repeat < 800; ++repeat) {
+        const int n = 1 + random.integer(30);
+        Dense<char> pattern = random_pattern(n, n, random.integer(n), true, random);
+        const auto before = random_values(pattern, random);
+        const std::vector<int> matching = sparse::perfect_matching(n, before.start, before.row);
+        BOOST_TEST_REQUIRE(static_cast<int>(matching.size()) == n);
+        const int column = random.integer(n);
+        for (int i = 0; i < n; ++i) {
+            pattern[static_cast<std::size_t>(i)][static_cast<std::size_t>(column)] = random.integer(n) < 2 ? 1 : 0;
+        }
+        const auto after = random_values(pattern, random);
+        const std::vector<int> again = sparse::repaired_matching(matching, after.start, after.row, column);
+        const bool possible = !sparse::perfect_matching(n, after.start, after.row).empty();
+        BOOST_TEST(again.empty() != possible);
+        if (possible) {
+            BOOST_TEST(is_permutation_of_all(again, n));
+            for (std::size_t r = 0; r < again.size(); ++r) {
+                BOOST_TEST(pattern[r][static_cast<std::size_t>(again[r])] != 0);
+            }
+            ++repaired;
+        } else {
+            ++none;
+        }
+    }
+    BOOST_TEST(repaired > 50);
+    BOOST_TEST(none > 50);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

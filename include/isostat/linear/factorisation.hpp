@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// Sparse LU (KLU) of a contact matrix that was proved regular.
+/// Solves with a contact matrix that was proved regular.
 
+#include <isostat/linear/approximate_inverse.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <memory>
@@ -9,20 +10,33 @@
 
 namespace isostat {
 
-/// LU factors of H. Solutions are approximate: their error is bounded by whoever uses them, from residuals (room
-/// verified). A solver's own success flag is never a statement about rank; the structure is.
+/// Solutions with H and G = H^T, as good as sparse LU in double makes them. They are approximate: their error is
+/// bounded by whoever uses them, from residuals (room verified). A solver's own success flag is never a statement about
+/// rank; the structure is.
+///
+/// Fresh factors solve in one pass. Factors taken over from an earlier structure (`ApproximateInverse`) are applied
+/// again and again to the residual with the matrix of *this* structure until the change is below rounding; when that
+/// does not converge, this matrix is factorised after all.
 class Factorisation {
   public:
     template <int Dim> explicit Factorisation(const IsostaticStructure<Dim>& structure);
+    /// With an operator close to the inverse of the structure's matrix.
+    template <int Dim> Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse);
     ~Factorisation();
     Factorisation(Factorisation&&) noexcept;
     Factorisation& operator=(Factorisation&&) noexcept;
 
-    /// Solves H f = F in place for `count` right-hand sides stored one after the other (size N_f each). Up to 4 at a
-    /// time is the fast path.
+    /// Solves H f = F in place for `count` right-hand sides stored one after the other (size N_f each).
     void solve_forces(std::span<double> rhs, int count = 1) const;
-    /// Solves G v = dV (G = H^T) in place: velocities with given approach velocities.
+    /// Solves G v = dV in place: velocities with given approach velocities.
     void solve_velocities(std::span<double> rhs, int count = 1) const;
+
+    /// The operator inside: one pass, for iterations that compute their own residuals.
+    [[nodiscard]] const ApproximateInverse& approximate() const;
+    /// Whether it is the LU of this very matrix, so that one pass is a solve.
+    [[nodiscard]] bool is_fresh() const;
+    /// Passes of `approximate()` made by the solves so far.
+    [[nodiscard]] int passes() const;
 
   private:
     struct Implementation;
@@ -30,5 +44,6 @@ class Factorisation {
 };
 
 extern template Factorisation::Factorisation(const IsostaticStructure<2>&);
+extern template Factorisation::Factorisation(const IsostaticStructure<2>&, ApproximateInverse);
 
 } // namespace isostat

@@ -8,6 +8,7 @@
 #include <isostat/packing/load.hpp>
 
 #include <optional>
+#include <vector>
 
 namespace isostat {
 
@@ -17,6 +18,10 @@ struct ArcOptions {
     int max_steps = 100000;       ///< predictor steps before the motion is called unbounded
     double max_length_change = 1; ///< |L_a / L_a(start) - 1| beyond which the motion is called unbounded
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
+    /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
+    /// does), and those proved to keep their distance all along (both at rest).
+    std::vector<Contact> leaving;
+    std::vector<Contact> resting;
 };
 
 /// The load whose power is watched along the arc: -dW/ds = F_ext . dq/ds must stay positive.
@@ -33,11 +38,13 @@ enum class ArcEnd : unsigned char { contact, power_turn };
 template <int Dim> struct Arc {
     Packing<Dim> end;
     ArcEnd kind = ArcEnd::contact;
-    Contact closed;          ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
-    double power = 0;        ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
-    double displacement = 0; ///< largest displacement of a coordinate
-    int steps = 0;           ///< predictor steps
-    int factorisations = 0;  ///< structures proved and factorised along the way (long arcs only)
+    Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
+    double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
+    std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
+    double displacement = 0;     ///< largest displacement of a coordinate
+    int steps = 0;               ///< predictor steps
+    int factorisations = 0;      ///< structures proved and factorised along the way (long arcs only)
+    int passes = 0;              ///< applications of the factors
 };
 
 /// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows

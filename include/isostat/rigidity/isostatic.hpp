@@ -3,12 +3,14 @@
 /// The gate: a contact list whose matrix was proved regular.
 
 #include <isostat/contact/contact.hpp>
+#include <isostat/core/ids.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/sparse/pattern.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -25,29 +27,89 @@ template <int Dim>
 sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
                                                    const std::vector<Contact>& contacts);
 
-/// A configuration with N = N_f contacts (held coordinates count as contacts) whose contact matrix, built from the
-/// *stored* coordinates (dyadic rationals) without any rounding, has full rank: proved by elimination mod p (statement
-/// T4). So h = k = 0. Only `prove` makes one: every double-precision solve asks for it, hence none can be done without
-/// the proof. It says nothing of the true equilibrium near the stored configuration.
+/// Contact list and matrix after the exchange of one contact. Nothing is proved of it: it is what a proof is asked for.
+template <int Dim> class ExchangedContacts {
+  public:
+    [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
+    [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
+    /// Place of the new contact in the list (and of its column).
+    [[nodiscard]] int slot() const { return slot_; }
+
+  private:
+    template <int> friend class IsostaticStructure;
+    std::vector<Contact> contacts_;
+    std::shared_ptr<const DofMap<Dim>> dofs_;
+    std::shared_ptr<const sparse::Matrix<double>> matrix_;
+    std::vector<int> matching_;
+    int slot_ = 0;
+};
+
+/// Evidence that one matrix is regular: a proved positive lower bound of the smallest singular value of the exact
+/// unit-normal matrix (statements V1, V2, V8). Only the room verified makes one, and it is good for that matrix only.
+class RegularityProof {
+  public:
+    [[nodiscard]] double sigma_min() const { return sigma_min_; }
+
+  private:
+    friend struct RegularityProver; // of the room verified
+    template <int> friend class IsostaticStructure;
+    RegularityProof(const sparse::Matrix<double>& matrix, double sigma_min) : matrix_(&matrix), sigma_min_(sigma_min) {}
+    const sparse::Matrix<double>* matrix_;
+    double sigma_min_;
+};
+
+/// What the regularity of a structure was proved with.
+enum class RegularityEvidence : std::uint8_t {
+    elimination,    ///< full rank mod p of the stored coordinates
+    singular_value, ///< smallest singular value bounded away from 0, also for the stored coordinates
+    none            ///< nothing was proved: between the equilibria of a run at level `plain` only
+};
+
+/// A configuration with N = N_f contacts (held coordinates count as contacts) whose contact matrix, for the *stored*
+/// coordinates (dyadic rationals) without any rounding, is proved regular. So h = k = 0. `prove` and `exchanged` make
+/// one, each from a proof: every double-precision solve asks for it, hence none can be done without the proof. It says
+/// nothing of the true equilibrium near the stored configuration. The one way around the gate is named for what it is,
+/// `without_proof`, and the evidence says so for ever.
 template <int Dim> class IsostaticStructure {
   public:
+    /// By elimination mod p (statement T4): the full exact check.
     /// `not_isostatic` when N != N_f, when the pattern is structurally singular, or when the rank mod 2^61 - 1 is
     /// deficient (the message gives N_f, N and the rank found; a deficiency mod p is evidence, chance n/p ~ 4e-15 of
     /// being false, not proof). Cost: one symbolic analysis + one elimination mod p, about 10 ms at n = 4900.
     static Result<IsostaticStructure> prove(const Packing<Dim>& packing, std::vector<Contact> contacts);
 
+    /// The list of `previous` with the contact at `slot` replaced, at a new configuration of the same grains. Nothing
+    /// when the new pattern is structurally singular. Cost: the matrix, and one augmenting path.
+    static std::optional<ExchangedContacts<Dim>>
+    exchange(const IsostaticStructure& previous, const Packing<Dim>& packing, ContactId slot, const Contact& contact);
+    /// By a positive lower bound of its smallest singular value (statement T3 with V8, or V1). \pre the proof is of
+    /// this matrix.
+    static IsostaticStructure exchanged(ExchangedContacts<Dim> contacts, const RegularityProof& proof);
+    /// Taken for regular, without proof (`evidence() == RegularityEvidence::none`): for steering at level `plain`. A
+    /// bound of its inverse, if asked for, is proved all the same or not at all.
+    static IsostaticStructure without_proof(ExchangedContacts<Dim> contacts);
+
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
     [[nodiscard]] const DofMap<Dim>& dofs() const { return *dofs_; }
-    [[nodiscard]] const sparse::Matrix<double>& matrix() const { return matrix_; }
-    [[nodiscard]] const sparse::Ordering& ordering() const { return *ordering_; }
-    [[nodiscard]] int size() const { return matrix_.rows; }
+    [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
+    /// The same, for those who may outlive the structure.
+    [[nodiscard]] const std::shared_ptr<const sparse::Matrix<double>>& shared_matrix() const { return matrix_; }
+    [[nodiscard]] int size() const { return matrix_->rows; }
+    [[nodiscard]] RegularityEvidence evidence() const { return evidence_; }
+    /// Column matched to each row.
+    [[nodiscard]] const std::vector<int>& matching() const { return matching_; }
+    /// Made when it is first asked for: an exchanged structure mostly needs its matching only. Not for concurrent first
+    /// calls.
+    [[nodiscard]] const sparse::Ordering& ordering() const;
 
   private:
     IsostaticStructure() = default;
     std::vector<Contact> contacts_;
     std::shared_ptr<const DofMap<Dim>> dofs_;
-    std::shared_ptr<const sparse::Ordering> ordering_;
-    sparse::Matrix<double> matrix_;
+    std::shared_ptr<const sparse::Matrix<double>> matrix_;
+    std::vector<int> matching_;
+    RegularityEvidence evidence_ = RegularityEvidence::elimination;
+    mutable std::shared_ptr<const sparse::Ordering> ordering_;
 };
 
 extern template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMap<2>&,

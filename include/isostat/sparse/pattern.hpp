@@ -63,4 +63,9 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
 /// (the matrix is then singular for all values), and when n = 0.
 std::vector<int> perfect_matching(int n, std::span<const int> start, std::span<const int> row);
 
+/// The same after the pattern of one column changed: `matched` is a perfect matching of the pattern before, `start` and
+/// `row` are the pattern now. Empty when there is none any more. Cost: one augmenting path, mostly a few columns long.
+std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int> start, std::span<const int> row,
+                                   int column);
+
 } // namespace isostat::sparse

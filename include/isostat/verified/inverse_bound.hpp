@@ -5,6 +5,7 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/linear/factorisation.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -16,7 +17,9 @@ struct InverseBound {
     Verdict verdict = Verdict::undecided;
     double sigma_min = 0;
     /// Which argument proved it.
-    enum class Route : unsigned char { cholesky, double_double, rows, multiprecision } route = Route::cholesky;
+    enum class Route : unsigned char { cholesky, double_double, rows, multiprecision, carried } route = Route::cholesky;
+    /// Of a carried bound: sigma_min of the one that it started from; else 0.
+    double carried_from = 0;
 };
 
 /// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity.
@@ -35,6 +38,35 @@ template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
                            InverseBoundCache& cache, int row_limit = 20000);
 
+/// A bound of the inverse that is at the same time the proof that the exchanged matrix is regular.
+struct ProvedExchange {
+    InverseBound bound;
+    RegularityProof proof;
+};
+
+/// By Cholesky (statement V1), for a matrix that is not known to be regular yet. `inverse` guesses the shift and proves
+/// nothing. Nothing when the factorisation fails or rounding hides sigma_min: then ask `IsostaticStructure::prove`.
+/// Cost: 2 ms at n = 1936, 9 ms at n = 4900.
+template <int Dim>
+std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& contacts, const ApproximateInverse& inverse,
+                                              InverseBoundCache& cache);
+
+/// The bound of the structure before carried over an exchange (statement V8 in proofs/exchange.md): the kept rows of G
+/// keep at least `bound.sigma_min` minus the norm of their change; what the new row adds is measured by the forces z
+/// that balance the mechanism. Loses a factor below sqrt 2 per exchange when the grains hardly move; no factorisation.
+/// `mechanism` (on degrees of freedom) is a guess of the null vector of the kept rows at the end, `inverse` makes the
+/// other guesses; neither is trusted. Nothing when the grains moved too far, or when less than `worth` of the last
+/// bound that was not carried is left. Cost: 2 to 4 passes.
+template <int Dim>
+std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before, const InverseBound& bound,
+                                          const ExchangedContacts<Dim>& after, const ApproximateInverse& inverse,
+                                          std::vector<double> mechanism, double worth = 0.02);
+
+extern template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
+                                                                 InverseBoundCache&);
+extern template std::optional<ProvedExchange> carry_bound<2>(const IsostaticStructure<2>&, const InverseBound&,
+                                                             const ExchangedContacts<2>&, const ApproximateInverse&,
+                                                             std::vector<double>, double);
 extern template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&,
                                               int);
 

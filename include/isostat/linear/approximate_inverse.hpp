@@ -1,0 +1,50 @@
+#pragma once
+/// \file
+/// LU factors of one matrix that serve its neighbours: contacts exchanged one by one, while the grains move.
+
+#include <isostat/sparse/pattern.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace isostat {
+
+/// An operator M^-1 close to H^-1, made of the LU factors (KLU) of a base matrix and one rank-one correction for each
+/// column exchanged since (product form, as in the simplex method; proofs/exchange.md). Columns that stay keep the
+/// values they had when the base was factorised. *Nothing is proved by what it returns*: it makes guesses whose
+/// residuals are then bounded with the true matrix. A value; copies share the factors.
+class ApproximateInverse {
+  public:
+    /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern (`Ordering::symbolic`), when there is
+    /// one. Cost: 1.6 ms at N = 3900, 8 ms at N = 9800, and 2 to 6 ms for the analysis.
+    explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
+
+    /// The operator after column `slot` of H, equal to that of `before` up to motion, was replaced by that of `after`.
+    /// Cost: one pass, which is free when `mechanism(slot)` was asked for before.
+    [[nodiscard]] ApproximateInverse exchanged(int slot, const sparse::Matrix<double>& after) const;
+
+    /// M^-T rhs (velocities with approach velocities rhs) and M^-1 rhs (forces that carry the load rhs), in place: one
+    /// pass each.
+    void velocities(std::span<double> rhs) const;
+    void forces(std::span<double> rhs) const;
+    /// M^-T e_slot: the velocity with unit approach in one contact. Kept for the next call with the same slot.
+    [[nodiscard]] const std::vector<double>& mechanism(int slot) const;
+
+    /// Exchanges since the factorisation.
+    [[nodiscard]] int exchanges() const { return static_cast<int>(exchanges_.size()); }
+    /// Cost of a pass with the exchanges, in units of one without.
+    [[nodiscard]] double relative_cost() const;
+    /// False when memory was short: every result is NaN.
+    [[nodiscard]] bool valid() const;
+
+  private:
+    struct Base;
+    struct Exchange;
+    std::shared_ptr<const Base> base_;
+    std::vector<std::shared_ptr<const Exchange>> exchanges_;
+    mutable std::shared_ptr<const std::vector<double>> mechanism_;
+    mutable int mechanism_slot_ = -1;
+};
+
+} // namespace isostat

@@ -1,0 +1,221 @@
+#include <isostat/core/work.hpp>
+#include <isostat/linear/approximate_inverse.hpp>
+
+#include <klu.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+// KLU's interface is not const-correct; it writes neither to the pattern nor to the values.
+int* mutable_data(const std::vector<int>& x) {
+    return const_cast<int*>(x.data()); // NOLINT(cppcoreguidelines-pro-type-const-cast)
+}
+double* mutable_data(const std::vector<double>& x) {
+    return const_cast<double*>(x.data()); // NOLINT(cppcoreguidelines-pro-type-const-cast)
+}
+
+/// A few entries of a vector.
+struct SparseVector {
+    std::vector<int> index;
+    std::vector<double> value;
+    [[nodiscard]] double dot(std::span<const double> x) const {
+        double sum = 0;
+        for (std::size_t e = 0; e < index.size(); ++e) {
+            sum += value[e] * x[static_cast<std::size_t>(index[e])];
+        }
+        return sum;
+    }
+    void add_to(std::span<double> x, double factor) const {
+        for (std::size_t e = 0; e < index.size(); ++e) {
+            x[static_cast<std::size_t>(index[e])] += factor * value[e];
+        }
+    }
+};
+
+SparseVector column_of(const sparse::Matrix<double>& matrix, int column) {
+    const auto c = static_cast<std::size_t>(column);
+    return {{matrix.row.begin() + matrix.start[c], matrix.row.begin() + matrix.start[c + 1]},
+            {matrix.value.begin() + matrix.start[c], matrix.value.begin() + matrix.start[c + 1]}};
+}
+
+} // namespace
+
+struct ApproximateInverse::Base {
+    klu_common common{};
+    std::shared_ptr<void> analysis; ///< keeps `symbolic` alive when it is shared
+    klu_symbolic* symbolic = nullptr;
+    klu_numeric* numeric = nullptr;
+    sparse::Matrix<double> matrix;
+    explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
+        klu_defaults(&common);
+        // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
+        common.scale = 0;
+        // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.
+        common.halt_if_singular = 0;
+    }
+    void factorise() {
+        if (symbolic != nullptr) {
+            numeric = klu_factor(mutable_data(matrix.start), mutable_data(matrix.row), mutable_data(matrix.value),
+                                 symbolic, &common);
+        }
+    }
+    Base(const Base&) = delete;
+    Base& operator=(const Base&) = delete;
+    ~Base() {
+        klu_free_numeric(&numeric, &common);
+        if (analysis == nullptr) {
+            klu_free_symbolic(&symbolic, &common);
+        }
+    }
+};
+
+/// M' = M with row `slot` of G replaced by g: M'^-1 = (I - v (g - a)^T / (g.v)) M^-1, v = M^-1 e_slot, a the row
+/// before.
+struct ApproximateInverse::Exchange {
+    int slot = 0;
+    SparseVector row;         ///< g
+    SparseVector change;      ///< g - a
+    SparseVector few;         ///< v when only few grains move (rattlers)
+    std::vector<double> many; ///< v otherwise
+    double speed = 0;         ///< g.v
+};
+
+ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic) {
+    count_work(Work::factorisations);
+    auto base = std::make_shared<Base>(matrix);
+    base->analysis = std::move(symbolic);
+    base->symbolic = base->analysis != nullptr ? static_cast<klu_symbolic*>(base->analysis.get())
+                                               : klu_analyze(matrix.rows, mutable_data(matrix.start),
+                                                             mutable_data(matrix.row), &base->common);
+    base->factorise();
+    base_ = std::move(base);
+}
+
+bool ApproximateInverse::valid() const {
+    return base_->numeric != nullptr;
+}
+
+double ApproximateInverse::relative_cost() const {
+    double work = 0;
+    for (const auto& exchange : exchanges_) {
+        work += static_cast<double>(exchange->many.size());
+    }
+    const double entries =
+        valid() ? static_cast<double>(base_->numeric->lnz) + static_cast<double>(base_->numeric->unz) : 1.0;
+    // An entry of a dense vector costs about a third of one of the factors, which is reached through its index.
+    return 1 + work / (3 * entries);
+}
+
+ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<double>& after) const {
+    const std::vector<double>& v = mechanism(slot);
+    auto exchange = std::make_shared<Exchange>();
+    exchange->slot = slot;
+    exchange->row = column_of(after, slot);
+    exchange->speed = exchange->row.dot(v);
+    // The row that M has there now: of the last exchange of this slot, or of the base.
+    const auto last = std::find_if(exchanges_.rbegin(), exchanges_.rend(),
+                                   [slot](const auto& earlier) { return earlier->slot == slot; });
+    const SparseVector before = last != exchanges_.rend() ? (*last)->row : column_of(base_->matrix, slot);
+    exchange->change = exchange->row;
+    for (std::size_t e = 0; e < before.index.size(); ++e) {
+        exchange->change.index.push_back(before.index[e]);
+        exchange->change.value.push_back(-before.value[e]);
+    }
+    const auto moving = v.size() - static_cast<std::size_t>(std::count(v.begin(), v.end(), 0.0));
+    if (moving < v.size() / 8) {
+        for (std::size_t k = 0; k < v.size(); ++k) {
+            if (v[k] != 0) {
+                exchange->few.index.push_back(static_cast<int>(k));
+                exchange->few.value.push_back(v[k]);
+            }
+        }
+    } else {
+        exchange->many = v;
+    }
+    ApproximateInverse next(*this);
+    next.exchanges_.push_back(std::move(exchange));
+    next.mechanism_.reset();
+    next.mechanism_slot_ = -1;
+    return next;
+}
+
+void ApproximateInverse::velocities(std::span<double> rhs) const {
+    assert(rhs.size() == static_cast<std::size_t>(base_->matrix.rows));
+    if (!valid()) {
+        std::fill(rhs.begin(), rhs.end(), std::nan("")); // every bound fails, nothing is decided
+        return;
+    }
+    // Row r of the newest matrix asks for rhs[r]; the factors solve for the base with the same right-hand side, and
+    // each exchange corrects its own row.
+    klu_common common = base_->common; // the factors may be shared by threads
+    std::vector<double> wanted(exchanges_.size());
+    for (std::size_t k = 0; k < exchanges_.size(); ++k) {
+        wanted[k] = rhs[static_cast<std::size_t>(exchanges_[k]->slot)];
+    }
+    klu_tsolve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
+    for (std::size_t k = 0; k < exchanges_.size(); ++k) {
+        const Exchange& exchange = *exchanges_[k];
+        const double factor = (wanted[k] - exchange.row.dot(rhs)) / exchange.speed;
+        if (exchange.many.empty()) {
+            exchange.few.add_to(rhs, factor);
+        } else {
+            const double* v = exchange.many.data();
+            double* x = rhs.data();
+            for (std::size_t i = 0; i < rhs.size(); ++i) {
+                x[i] += factor * v[i];
+            }
+        }
+    }
+}
+
+void ApproximateInverse::forces(std::span<double> rhs) const {
+    assert(rhs.size() == static_cast<std::size_t>(base_->matrix.rows));
+    if (!valid()) {
+        std::fill(rhs.begin(), rhs.end(), std::nan(""));
+        return;
+    }
+    for (std::size_t k = exchanges_.size(); k-- > 0;) {
+        const Exchange& exchange = *exchanges_[k];
+        double power = 0;
+        if (exchange.many.empty()) {
+            power = exchange.few.dot(rhs);
+        } else {
+            // Four sums at a time: a single one would wait for each addition. The order is fixed.
+            const double* v = exchange.many.data();
+            const double* x = rhs.data();
+            double sum[4] = {0, 0, 0, 0};
+            std::size_t i = 0;
+            for (; i + 4 <= rhs.size(); i += 4) {
+                sum[0] += v[i] * x[i];
+                sum[1] += v[i + 1] * x[i + 1];
+                sum[2] += v[i + 2] * x[i + 2];
+                sum[3] += v[i + 3] * x[i + 3];
+            }
+            for (; i < rhs.size(); ++i) {
+                sum[0] += v[i] * x[i];
+            }
+            power = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+        }
+        exchange.change.add_to(rhs, -power / exchange.speed);
+    }
+    klu_common common = base_->common;
+    klu_solve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
+}
+
+const std::vector<double>& ApproximateInverse::mechanism(int slot) const {
+    if (mechanism_slot_ != slot || mechanism_ == nullptr) {
+        auto v = std::make_shared<std::vector<double>>(static_cast<std::size_t>(base_->matrix.rows), 0.0);
+        (*v)[static_cast<std::size_t>(slot)] = 1;
+        velocities(*v);
+        mechanism_ = std::move(v);
+        mechanism_slot_ = slot;
+    }
+    return *mechanism_;
+}
+
+} // namespace isostat

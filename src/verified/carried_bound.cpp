@@ -1,0 +1,178 @@
+#include "verified/regularity_prover.hpp"
+
+#include <isostat/verified/inverse_bound.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr double slack = 1 + 1e-9; ///< rounding of the norms and of the last operations
+
+double norm(const std::vector<double>& x) {
+    double sum = 0;
+    for (const double c : x) {
+        sum += c * c;
+    }
+    return std::sqrt(sum);
+}
+
+/// Upper bound of |G_-' - G_-|_2 over the kept rows, exact matrices: |B|_2^2 <= max (B^T B 1)_j for B = |difference|
+/// entry by entry, and the entries of both carry 5u. Nothing when the patterns differ.
+std::optional<double> change_of_kept(const sparse::Matrix<double>& before, const sparse::Matrix<double>& after,
+                                     int slot) {
+    std::vector<double> difference(after.row.size(), 0.0);
+    std::vector<double> row_sum(static_cast<std::size_t>(after.rows), 0.0);
+    for (int j = 0; j < after.cols; ++j) {
+        const auto c = static_cast<std::size_t>(j);
+        if (j == slot) {
+            continue;
+        }
+        auto old = static_cast<std::size_t>(before.start[c]);
+        if (before.start[c + 1] - before.start[c] != after.start[c + 1] - after.start[c]) {
+            return std::nullopt;
+        }
+        for (auto e = static_cast<std::size_t>(after.start[c]); e < static_cast<std::size_t>(after.start[c + 1]);
+             ++e, ++old) {
+            if (before.row[old] != after.row[e]) {
+                return std::nullopt;
+            }
+            difference[e] = std::abs(after.value[e] - before.value[old]) +
+                            11 * u * std::max(std::abs(after.value[e]), std::abs(before.value[old]));
+            row_sum[static_cast<std::size_t>(after.row[e])] += difference[e];
+        }
+    }
+    double largest = 0;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(after.cols); ++c) {
+        double sum = 0;
+        for (auto e = static_cast<std::size_t>(after.start[c]); e < static_cast<std::size_t>(after.start[c + 1]); ++e) {
+            sum += difference[e] * row_sum[static_cast<std::size_t>(after.row[e])]; // 0 in the slot's column
+        }
+        largest = std::max(largest, sum);
+    }
+    return std::sqrt(largest) * slack;
+}
+
+/// r = G_- v for the kept rows, 0 in the slot. Returns an upper bound of the exact |G_- v|_2.
+double residual_of_mechanism(const sparse::Matrix<double>& h, int slot, const std::vector<double>& v,
+                             std::vector<double>& r) {
+    double square = 0;
+    for (std::size_t j = 0; j < r.size(); ++j) {
+        double dot = 0;
+        double size = 0;
+        for (auto e = static_cast<std::size_t>(h.start[j]); e < static_cast<std::size_t>(h.start[j + 1]); ++e) {
+            const double term = h.value[e] * v[static_cast<std::size_t>(h.row[e])];
+            dot += term;
+            size += std::abs(term);
+        }
+        r[j] = static_cast<int>(j) == slot ? 0.0 : dot;
+        const double terms = h.start[j + 1] - h.start[j] + 8; // 5u of the entries, products, additions
+        const double bound = static_cast<int>(j) == slot ? 0.0 : std::abs(dot) + terms * u * size;
+        square += bound * bound;
+    }
+    return std::sqrt(square) * slack;
+}
+
+/// r = v - H z. Returns an upper bound of the exact |v - H z|_2.
+double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<double>& v, const std::vector<double>& z,
+                          std::vector<double>& r, std::vector<double>& size, std::vector<int>& terms) {
+    r = v;
+    std::fill(terms.begin(), terms.end(), 8);
+    for (std::size_t i = 0; i < size.size(); ++i) {
+        size[i] = std::abs(v[i]);
+    }
+    for (std::size_t j = 0; j < z.size(); ++j) {
+        for (auto e = static_cast<std::size_t>(h.start[j]); e < static_cast<std::size_t>(h.start[j + 1]); ++e) {
+            const auto i = static_cast<std::size_t>(h.row[e]);
+            const double term = h.value[e] * z[j];
+            r[i] -= term;
+            size[i] += std::abs(term);
+            ++terms[i];
+        }
+    }
+    double square = 0;
+    for (std::size_t i = 0; i < r.size(); ++i) {
+        const double bound = std::abs(r[i]) + terms[i] * 1.001 * u * size[i];
+        square += bound * bound;
+    }
+    return std::sqrt(square) * slack;
+}
+
+} // namespace
+
+template <int Dim>
+std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before, const InverseBound& bound,
+                                          const ExchangedContacts<Dim>& after, const ApproximateInverse& inverse,
+                                          std::vector<double> mechanism, double worth) {
+    if (bound.verdict != Verdict::proved || before.size() != after.matrix().cols) {
+        return std::nullopt;
+    }
+    const sparse::Matrix<double>& h = after.matrix();
+    const auto n = static_cast<std::size_t>(h.cols);
+    const auto change = change_of_kept(before.matrix(), h, after.slot());
+    const double started_with = bound.carried_from > 0 ? bound.carried_from : bound.sigma_min;
+    if (!change || !(bound.sigma_min - *change > worth * started_with)) {
+        return std::nullopt;
+    }
+    const double kept = (bound.sigma_min - *change) * (1 - 4 * u); // of G_-, N - 1 rows
+    const double size_of_guess = norm(mechanism);
+    for (double& c : mechanism) {
+        c /= size_of_guess;
+    }
+    // Distance of the guess from the line of the true null vector: at most |G_- v| / kept.
+    std::vector<double> r(n);
+    double off = 0;
+    constexpr double good_enough = 0.02; // enters the bound as a relative loss
+    constexpr int max_passes = 4;
+    for (int k = 0;; ++k) {
+        off = residual_of_mechanism(h, after.slot(), mechanism, r) / kept;
+        if (off < good_enough || k == max_passes) {
+            break;
+        }
+        inverse.velocities(r);
+        for (std::size_t i = 0; i < n; ++i) {
+            mechanism[i] -= r[i];
+        }
+    }
+    const double length = norm(mechanism);
+    if (!(off < 0.1 * length)) {
+        return std::nullopt;
+    }
+    const double along = std::sqrt(length * length - off * off) * (1 - 1e-9); // component on the null vector
+    // Forces that balance the mechanism, roughly.
+    std::vector<double> z = mechanism;
+    inverse.forces(z);
+    std::vector<double> size(n);
+    std::vector<int> terms(n);
+    double open = 0;
+    for (int k = 0;; ++k) {
+        open = residual_of_forces(h, mechanism, z, r, size, terms);
+        if (open < good_enough || k == max_passes) {
+            break;
+        }
+        inverse.forces(r);
+        for (std::size_t l = 0; l < n; ++l) {
+            z[l] += r[l];
+        }
+    }
+    const double lost = (off + open) / along * slack;
+    if (!(lost < 0.5)) {
+        return std::nullopt;
+    }
+    const double inverse_norm = std::hypot(1 / kept, norm(z) * slack / along) / (1 - lost) * slack;
+    const double sigma = 1 / inverse_norm * (1 - 4 * u);
+    if (!(sigma > 0)) {
+        return std::nullopt;
+    }
+    const InverseBound carried{Verdict::proved, sigma, InverseBound::Route::carried, started_with};
+    return ProvedExchange{carried, RegularityProver::proof(h, sigma)};
+}
+
+template std::optional<ProvedExchange> carry_bound<2>(const IsostaticStructure<2>&, const InverseBound&,
+                                                      const ExchangedContacts<2>&, const ApproximateInverse&,
+                                                      std::vector<double>, double);
+
+} // namespace isostat

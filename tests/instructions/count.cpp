@@ -1,0 +1,34 @@
+// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA. Prints the number of arcs.
+
+#include <isostat/io/state_file.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+// CGAL refuses to start where the rounding mode cannot be changed, as under valgrind. This program is for counting
+// only: in place of that check it does nothing (the filters of the predicates are then wrong in principle, and no
+// result is used).
+extern "C" {
+void no_check_of_intervals() asm("_ZN4CGAL11Interval_ntILb0EE27Test_runtime_rounding_modesC1Ev");
+void no_check_of_intervals() {}
+void no_check_of_protected_intervals() asm("_ZN4CGAL11Interval_ntILb1EE27Test_runtime_rounding_modesC1Ev");
+void no_check_of_protected_intervals() {}
+}
+
+int main(int argc, char** argv) {
+    if (argc != 3) {
+        return 64;
+    }
+    using namespace isostat;
+    struct : RunObserver<2> {
+    } observer;
+    State<2> state = read_state<2>(argv[1]).state;
+    RunCounters counters;
+    Segment segment;
+    segment.equilibria = std::atoi(argv[2]);
+    const auto outcome = run_segment<2>(state, segment, 0, RunOptions{}, counters, observer);
+    fmt::print("{}\n", counters.steps);
+    return outcome.completed ? 0 : 1;
+}

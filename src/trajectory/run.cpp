@@ -120,7 +120,7 @@ template <int Dim> class Run {
     double margin_ = infinity; ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
     std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
-    bool descends_ = false; ///< the work of the last arc was proved positive
+    bool descends_ = false;        ///< the work of the last arc was proved positive
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
@@ -128,8 +128,7 @@ Failure located(const Failure& failure, const std::string& where) {
     return {failure.kind, where + ": " + failure.message};
 }
 
-template <int Dim>
-void Run<Dim>::perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit) {
+template <int Dim> void Run<Dim>::perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit) {
     if (perturbs()) {
         perturb(vertex, load, state_.perturbation->rho, limit.stress_rate, limit.shift, limit.error);
     }
@@ -219,8 +218,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
         if (perturbs() && !gaps.value().negative && !gaps.value().zero.empty()) {
-            auto arrival = arrive(*made.value(), gaps.value().zero, opening.contact, next_to.has_value(),
-                                  arc_options.resting);
+            auto arrival =
+                arrive(*made.value(), gaps.value().zero, opening.contact, next_to.has_value(), arc_options.resting);
             if (!arrival.ok()) {
                 return arrival.failure();
             }
@@ -284,13 +283,14 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
         if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
             f = side.force(opening.contact);
             if (!f.positive()) {
-                return Failure{FailureKind::undecided,
-                               fmt::format("the new force in {} vanishes, and its first-order term is {:.6g} +- {:.3g}: "
-                                           "the power of the load is not proved positive at the end of the arc",
-                                           to_string<Dim>(record.closed), f.value, f.radius)};
+                return Failure{
+                    FailureKind::undecided,
+                    fmt::format("the new force in {} vanishes, and its first-order term is {:.6g} +- {:.3g}: "
+                                "the power of the load is not proved positive at the end of the arc",
+                                to_string<Dim>(record.closed), f.value, f.radius)};
             }
-            record.perturbed.push_back({"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent,
-                                        order.bits});
+            record.perturbed.push_back(
+                {"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
             count(DecisionKind::power, f.margin(), to.statics.rung(), &record, true);
             return std::nullopt;
         }
@@ -401,8 +401,7 @@ std::optional<Failure> Run<Dim>::settle(const LimitLoad& limit, const std::vecto
 /// Asks again what made `vertex_` an equilibrium: after a resume the statics then stand on the same rung. Under
 /// `perturb` the answer must be the same with the load that the state stores.
 template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium(double stress) {
-    auto decision =
-        decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0, first_order(*vertex_));
+    auto decision = decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0, first_order(*vertex_));
     if (!perturbs()) {
         return std::nullopt;
     }
@@ -428,8 +427,9 @@ std::optional<Failure> Run<Dim>::resume_first_order(const std::vector<std::pair<
         const Enclosure f = vertex_->statics.force(l, sigma());
         const double bound = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
         if (!slope.decided()) {
-            return Failure{FailureKind::undecided, fmt::format("the load at which the force in {} vanishes is not known",
-                                                               to_string<Dim>(stored.load_zero))};
+            return Failure{FailureKind::undecided,
+                           fmt::format("the load at which the force in {} vanishes is not known",
+                                       to_string<Dim>(stored.load_zero))};
         }
         perturb(*vertex_, state_.load, stored.rho, stored.stress_rate, vertex_->statics.zero_of(l, sigma()), bound);
     }
@@ -555,11 +555,11 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             return located(made.failure(), where);
         }
         std::unique_ptr<Vertex<Dim>> next = std::move(made.value());
-        if (auto failure = check_arc(*from, *next, opening, load, record)) {
-            return located(*failure, where);
-        }
-        if (arc_kind == "release" && record.power_turn && record.closed == record.opened && !descends_) {
-            // It turned back where it stood: no motion, no descent, and released once more it would do so for ever.
+        const auto unproved = check_arc(*from, *next, opening, load, record);
+        const bool turned_back = record.power_turn && record.closed == record.opened;
+        if (arc_kind == "release" && !descends_ && (turned_back || unproved)) {
+            // It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released
+            // once more it would do so for ever.
             resting.push_back(opening.contact);
             --counters_.steps;
             --arcs;
@@ -577,6 +577,9 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             opening = *again.value().opening;
             arc_kind = kind_of(*here, opening);
             continue;
+        }
+        if (unproved) {
+            return located(*unproved, where);
         }
         resting.clear();
         if (options_.certify == CertifyLevel::arcs) {

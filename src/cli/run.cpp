@@ -118,7 +118,7 @@ class Player {
         RunOptions options = scene_.run;
         options.stop = &stop_flag();
         Both both(directory_, table_);
-        StateCertifier certifier(directory_.path(), options.certify != CertifyLevel::decisions, counters_, both);
+        StateCertifier certifier(directory_.path(), options.certify >= CertifyLevel::states, counters_, both);
         const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, certifier);
         table_.end();
         return outcome.completed ? Ending{} : ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
@@ -210,6 +210,12 @@ int run(const RunArguments& arguments) {
                    point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
     }
     const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
+    const bool plain = scene.run.certify == CertifyLevel::plain;
+    if (plain && !quiet) {
+        fmt::print(
+            "certify = \"plain\": the equilibria are proved; the way between them is NOT certified, it is steered "
+            "by double precision without stated bounds\n");
+    }
     Ending ending;
     if (start.ok()) {
         ending = Player(scene, directory, counters, quiet).play(start.value());
@@ -220,8 +226,9 @@ int run(const RunArguments& arguments) {
     if (arguments.common.json) {
         fmt::print("{}", directory.summary());
     } else if (!quiet) {
-        fmt::print("{}{}{}: {} arcs, {} equilibria, {}\n", to_string(ending.status), ending.reason.empty() ? "" : ": ",
-                   ending.reason, counters.steps, counters.equilibria, clock_text(counters.seconds));
+        fmt::print("{}{}{}: {} arcs{}, {} equilibria, {}\n", to_string(ending.status),
+                   ending.reason.empty() ? "" : ": ", ending.reason, counters.steps, plain ? " (not certified)" : "",
+                   counters.equilibria, clock_text(counters.seconds));
     }
     if (ending.status != RunStatus::completed) {
         fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);

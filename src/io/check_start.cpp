@@ -53,8 +53,7 @@ template <int Dim> std::string self_stresses(const State<Dim>& state) {
 
 } // namespace
 
-template <int Dim>
-void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed) {
+template <int Dim> void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed) {
     const auto bad = [&](const std::string& what) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
     };
@@ -79,11 +78,12 @@ void check_start(const State<Dim>& state, const std::string& source, bool hypers
             return;
         }
         const std::string basis = self_stresses(state);
-        bad(fmt::format("N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = 0: a trajectory starts from "
-                        "an isostatic structure, N = N_f = rank; ties = \"perturb\" in [run] keeps the contacts that "
-                        "carry the load when the radii change a little{}{}",
-                        count.dof_count, count.contact_count, count.rank, count.hyperstaticity,
-                        basis.empty() ? "" : "; a basis of the self-stresses is in the contacts ", basis));
+        bad(fmt::format(
+            "N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = 0: a trajectory starts from "
+            "an isostatic structure, N = N_f = rank; ties = \"perturb\" in [run] keeps the contacts that "
+            "carry the load when the radii change a little{}{}",
+            count.dof_count, count.contact_count, count.rank, count.hyperstaticity,
+            basis.empty() ? "" : "; a basis of the self-stresses is in the contacts ", basis));
     }
     if (count.hyperstaticity != 0 || count.mechanisms != 0) {
         bad(fmt::format("N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = {}: a trajectory starts "

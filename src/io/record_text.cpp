@@ -77,6 +77,9 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["opened"] = to_string<2>(arc.opened);
     line["closed"] = to_string<2>(arc.closed);
     line["power_turn"] = arc.power_turn;
+    if (arc.power_turn) {
+        line["held_at"] = arc.held_at;
+    }
     line["sigma2"] = json::or_null(arc.stress);
     line["eps2"] = json::or_null(arc.strain);
     line["force"] = json::or_null(arc.force);
@@ -176,6 +179,7 @@ Json tally_json(const Tally& tally) {
     object["double-double"] = tally.double_double;
     object["mpfr"] = tally.multiprecision;
     object["exact"] = tally.exact;
+    object["plain"] = tally.plain;
     object["undecided"] = tally.undecided;
     object["smallest_margin"] = json::or_null(tally.smallest_margin);
     for (std::size_t k = 0; k < decision_kinds; ++k) {
@@ -237,6 +241,7 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.double_double = tally.at("double-double").integer();
     counters.tally.multiprecision = tally.at("mpfr").integer();
     counters.tally.exact = tally.at("exact").integer();
+    counters.tally.plain = tally.has("plain") ? tally.at("plain").integer() : 0; // runs before there was that level
     counters.tally.undecided = tally.at("undecided").integer();
     for (std::size_t k = 0; k < decision_kinds; ++k) {
         const json::Field kind = tally.at("kinds").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str());
@@ -249,10 +254,8 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.structural_ties = tally.at("ties").at("structural").integer();
     counters.tally.ties = tally.at("ties").at("other").integer();
     for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
-        counters.tally.perturbed[k] = tally.at("ties")
-                                          .at("perturbed")
-                                          .at(std::string(to_string(static_cast<DecisionKind>(k))).c_str())
-                                          .integer();
+        counters.tally.perturbed[k] =
+            tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()).integer();
     }
     counters.tally.smallest_margin = tally.at("smallest_margin").number();
     const json::Field states = field.at("certified_states");

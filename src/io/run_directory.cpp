@@ -316,6 +316,9 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     object["segments"] = header_.programme.size();
     object["segment"] = segment_;
     object["last_equilibrium"] = last_.equilibrium;
+    object["steering"] = counters_.tally.plain > 0
+                             ? "not certified: double precision without stated bounds (level plain)"
+                             : "every comparison proved";
     object["counters"] = counters_json(counters_);
     if (!last_.packing.radius.empty()) {
         const auto loaded = static_cast<std::size_t>(last_.load.loaded_axis);

@@ -89,6 +89,7 @@ template <int Dim> class Follower {
 
     /// y_ = (velocity on coordinates with about the approach velocities of rhs_): one pass.
     void solve() {
+        ++passes_;
         factorisation_->approximate().velocities(rhs_);
         to_coordinates(rhs_, y_);
     }
@@ -292,8 +293,9 @@ template <int Dim> class Follower {
         if (active_.empty()) {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
-            std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
-                         [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
+            std::copy_if(
+                candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
             if (opened_.kind != ContactKind::held) {
                 active_.push_back(opened_); // it may close again
             }
@@ -338,6 +340,7 @@ template <int Dim> class Follower {
         arc.tangent = std::move(tangent);
         arc.steps = steps_;
         arc.factorisations = factorisations_;
+        arc.passes = passes_;
         return arc;
     }
 
@@ -445,6 +448,7 @@ template <int Dim> class Follower {
     int last_iterations_ = 0;
     int steps_ = 0;
     int factorisations_ = 0;
+    int passes_ = 0;
 };
 
 template <int Dim>

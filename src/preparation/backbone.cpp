@@ -1,6 +1,5 @@
-#include <isostat/preparation/backbone.hpp>
-
 #include <isostat/core/work.hpp>
+#include <isostat/preparation/backbone.hpp>
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
@@ -77,9 +76,9 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
         return Failure{FailureKind::unbounded, "the contacts do not support the load"};
     }
     if (simplex.status() != 0) {
-        return Failure{FailureKind::not_converged,
-                       fmt::format("the linear programme of the perturbed start ended with status {}",
-                                   simplex.status())};
+        return Failure{
+            FailureKind::not_converged,
+            fmt::format("the linear programme of the perturbed start ended with status {}", simplex.status())};
     }
     std::vector<Contact> kept;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -88,10 +87,11 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
         }
     }
     if (kept.size() != columns) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("{} of {} contacts are needed by the perturbed packing, expected N_f = {}: there are "
-                                   "mechanisms",
-                                   kept.size(), contacts.size(), columns)};
+        return Failure{
+            FailureKind::not_isostatic,
+            fmt::format("{} of {} contacts are needed by the perturbed packing, expected N_f = {}: there are "
+                        "mechanisms",
+                        kept.size(), contacts.size(), columns)};
     }
     return kept;
 }

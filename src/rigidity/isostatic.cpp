@@ -196,12 +196,18 @@ template <int Dim>
 IsostaticStructure<Dim> IsostaticStructure<Dim>::exchanged(ExchangedContacts<Dim> contacts,
                                                            const RegularityProof& proof) {
     assert(proof.matrix_ == contacts.matrix_.get() && proof.sigma_min() > 0);
+    IsostaticStructure structure = without_proof(std::move(contacts));
+    structure.evidence_ = RegularityEvidence::singular_value;
+    return structure;
+}
+
+template <int Dim> IsostaticStructure<Dim> IsostaticStructure<Dim>::without_proof(ExchangedContacts<Dim> contacts) {
     IsostaticStructure structure;
     structure.contacts_ = std::move(contacts.contacts_);
     structure.dofs_ = std::move(contacts.dofs_);
     structure.matrix_ = std::move(contacts.matrix_);
     structure.matching_ = std::move(contacts.matching_);
-    structure.evidence_ = RegularityEvidence::singular_value;
+    structure.evidence_ = RegularityEvidence::none;
     return structure;
 }
 

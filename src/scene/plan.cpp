@@ -39,7 +39,9 @@ void add_solvers(Plan& plan, const Scene& scene) {
     plan.add("solver", "regular triangulation (CGAL)", true,
              "complete contact candidates and the proof that nothing overlaps");
     plan.add("solver", "elimination mod 2^61 - 1", true,
-             "every contact matrix is proved regular before it is used in double precision");
+             runs && scene.run.certify == CertifyLevel::plain
+                 ? "the contact matrix of every equilibrium is proved regular; those in between are not"
+                 : "every contact matrix is proved regular before it is used in double precision");
     plan.add("solver", "sparse LU (KLU)", true, "forces and mechanisms");
     plan.add("solver", "double-double", true,
              "only where the bound of the double precision result does not decide a sign");
@@ -61,8 +63,13 @@ void add_solvers(Plan& plan, const Scene& scene) {
                : runs                 ? fmt::format("certify = \"{}\": not asked for", to_string(level))
                                       : std::string("no trajectory");
     };
-    plan.add("proof", "decisions", runs,
-             "every comparison that steers has a bound on both sides; its cost is that of the run");
+    plan.add("proof", "equilibria", runs,
+             "rank (exact), sign of every force, both ends of the supported interval, no overlap");
+    plan.add("proof", "decisions", runs && level >= CertifyLevel::decisions,
+             runs && level < CertifyLevel::decisions
+                 ? asked(CertifyLevel::decisions) + "; the way from equilibrium to equilibrium is not certified: it is "
+                                                    "steered by double precision without stated bounds"
+                 : "every comparison that steers has a bound on both sides; its cost is that of the run");
     plan.add("proof", "states", runs && level >= CertifyLevel::states,
              asked(CertifyLevel::states) +
                  "; the certificate of each equilibrium in certificates/; 10 to 15 factorisations each");
@@ -73,11 +80,12 @@ void add_solvers(Plan& plan, const Scene& scene) {
              "only where double-double does not decide a sign or an order");
     const bool perturbs = runs && scene.run.ties == TiePolicy::perturb;
     plan.add("solver", "first order in the radii", perturbs,
-             !runs      ? std::string("no trajectory")
-             : perturbs ? fmt::format("ties = \"perturb\": ties are settled for radii R_i + eps rho_i, rho from seed {}; "
-                                      "hyperstatic starts are followed",
-                                      scene.run.ties_seed)
-                        : std::string("ties = \"stop\": a tie ends the run"));
+             !runs ? std::string("no trajectory")
+             : perturbs
+                 ? fmt::format("ties = \"perturb\": ties are settled for radii R_i + eps rho_i, rho from seed {}; "
+                               "hyperstatic starts are followed",
+                               scene.run.ties_seed)
+                 : std::string("ties = \"stop\": a tie ends the run"));
     plan.add("solver", "fixed disks, external forces on disks", false,
              "a scene has none; a start file in the state format may");
 }
@@ -100,7 +108,7 @@ void add_outputs(Plan& plan, const Scene& scene) {
              !runs ? none
              : scene.run.certify >= CertifyLevel::states
                  ? fmt::format("certify = \"{}\"; `isostat verify` checks them", to_string(scene.run.certify))
-                 : "certify = \"decisions\"");
+                 : fmt::format("certify = \"{}\"", to_string(scene.run.certify)));
     plan.add("output", "figures/*.svg, *.png (gnuplot), force pictures", runs && scene.pictures,
              !runs            ? none
              : scene.pictures ? "pictures = true"

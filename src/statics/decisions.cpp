@@ -18,9 +18,9 @@ constexpr double u = 0x1p-53;
 /// A contact that may be opened, with the quantity by which the rule orders it (smallest first).
 struct Contender {
     ContactId contact;
-    Enclosure force; ///< what must be negative (for a held coordinate: minus the magnitude)
-    Enclosure key;   ///< what the rule compares
-    double margin;   ///< with which the sign of `force` is proved
+    Enclosure force;       ///< what must be negative (for a held coordinate: minus the magnitude)
+    Enclosure key;         ///< what the rule compares
+    double margin;         ///< with which the sign of `force` is proved
     double multiplier = 0; ///< of a held coordinate, with its sign
 };
 
@@ -296,8 +296,8 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
                                                              shown(f1)))};
             }
             const Contact& contact = statics.structure().contacts()[d.contact.index()];
-            perturbed->log.push_back({"force", contact, f1, {ContactKind::disk_disk, -1, -1}, {}, order.exponent,
-                                      order.bits});
+            perturbed->log.push_back(
+                {"force", contact, f1, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
             decision.perturbed = true;
             if (f1.negative()) {
                 negative.push_back({d.contact, value(d.contact), {}, f1.margin(), 0});
@@ -337,8 +337,7 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         return decision;
     }
     Result<Opening> picked =
-        pick(statics, negative, expression, rule, random_bits, finite ? at_zero : std::vector<ContactId>(),
-             perturbed);
+        pick(statics, negative, expression, rule, random_bits, finite ? at_zero : std::vector<ContactId>(), perturbed);
     if (!picked.ok()) {
         return picked.failure();
     }
@@ -494,8 +493,13 @@ Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction
                                            "sigma = {:.17g} is {}: where on the way it changes sign is not followed",
                                            name(statics, l), limit.stress, shown(f1))};
             }
-            rivals.settled.push_back({"zero all along", contacts[index], f1, {ContactKind::disk_disk, -1, -1}, {},
-                                      zero.exponent, zero.bits});
+            rivals.settled.push_back({"zero all along",
+                                      contacts[index],
+                                      f1,
+                                      {ContactKind::disk_disk, -1, -1},
+                                      {},
+                                      zero.exponent,
+                                      zero.bits});
             rivals.margin = std::min(rivals.margin, f1.margin());
             continue;
         }

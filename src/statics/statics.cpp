@@ -92,7 +92,6 @@ template <int Dim> std::shared_ptr<const LoadShift> Statics<Dim>::zero_of(Contac
     return ladder_.zero_of(e);
 }
 
-
 template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
     const std::size_t l = contact.index();
     if (backbone_[l] == 0) {

@@ -1,3 +1,4 @@
+#include "trajectory/plain.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
@@ -104,6 +105,7 @@ template <int Dim> class Run {
                                      const Load<Dim>& load, ArcRecord<Dim>& record);
     void certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
                  const Load<Dim>& load, ArcRecord<Dim>& record);
+    std::optional<Failure> rearrange_plainly(Opening opening, const std::string& kind, const Load<Dim>& load);
     std::optional<Failure> report(int arcs);
 
     State<Dim>& state_;
@@ -200,6 +202,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         const Arc<Dim>& path = arc.value();
         record.closed = path.closed;
         record.power_turn = path.kind == ArcEnd::power_turn;
+        record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
@@ -516,6 +519,9 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
 
     Load<Dim> load = state_.load;
     set_sigma(load, stress);
+    if (options_.certify == CertifyLevel::plain) {
+        return rearrange_plainly(opening, kind, load);
+    }
     fresh_caches(vertex_->packing);
     std::unique_ptr<Vertex<Dim>> here;
     const Vertex<Dim>* from = vertex_.get();
@@ -642,6 +648,96 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     if (auto failure = still_equilibrium(stress)) {
         return failure;
     }
+    state_.load = load;
+    state_.packing = vertex_->packing;
+    state_.contacts = vertex_->structure.contacts();
+    return report(arcs);
+}
+
+/// Level `plain`: the way is steered without bounds, the end is proved. When the proof finds a negative force there,
+/// steering goes on with it.
+template <int Dim>
+std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::string& kind, const Load<Dim>& load) {
+    const double stress = sigma_of(load);
+    int arcs = 0;
+    const auto where = [&] { return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arcs, stress); };
+    PlainCalls<Dim> calls;
+    calls.begin = [&](ArcRecord<Dim>& record) -> std::optional<Failure> {
+        if (options_.stop != nullptr && options_.stop->load()) {
+            return Failure{FailureKind::interrupted, fmt::format("stopped after {} arcs of a rearrangement", arcs)};
+        }
+        if (arcs >= options_.max_arcs) {
+            return Failure{FailureKind::cap_reached,
+                           fmt::format("no equilibrium after {} arcs: the sample fails here (cap max_arcs)", arcs)};
+        }
+        record.step = ++counters_.steps;
+        record.equilibrium = counters_.equilibria;
+        record.arc = ++arcs;
+        record.stress = stress;
+        record.margin = std::nan("");
+        record.decided_by = Rung::none;
+        ++counters_.tally.plain;
+        return std::nullopt;
+    };
+    calls.end = [&](ArcRecord<Dim>& record, const Packing<Dim>& packing) -> std::optional<Failure> {
+        const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
+        record.strain = reference > 0 ? (reference - packing.length(load.loaded_axis)) / reference : 0;
+        observer_.on_arc(record);
+        if (std::abs(record.strain) > options_.max_strain) {
+            return Failure{FailureKind::cap_reached,
+                           fmt::format("|eps_2| = {:.6g}: the sample fails here (cap max_strain = {:.6g})",
+                                       std::abs(record.strain), options_.max_strain)};
+        }
+        return std::nullopt;
+    };
+    calls.random_bits = [&] { return bits_for(options_.rule_seed, counters_.steps); };
+    std::unique_ptr<Vertex<Dim>> proved;
+    const Vertex<Dim>* from = vertex_.get();
+    std::string arc_kind = kind;
+    while (true) {
+        auto end = steer_plainly(*from, opening, arc_kind, load, options_, candidates_, calls);
+        if (!end.ok()) {
+            return located(end.failure(), where());
+        }
+        bound_cache_ = {};
+        auto anew =
+            Vertex<Dim>::make(std::move(end.value().packing), std::move(end.value().contacts), load, bound_cache_);
+        if (!anew.ok()) {
+            return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+        }
+        proved = std::move(anew.value());
+        fresh_caches(proved->packing);
+        auto gaps = proved->check_gaps(candidates_);
+        if (!gaps.ok()) {
+            return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+        }
+        if (gaps.value().negative) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("equilibrium at sigma = {:.17g}: plain steering went past a contact, {} overlap",
+                                       stress, to_string<Dim>(*gaps.value().negative))};
+        }
+        auto decision =
+            decide_opening(proved->statics, stress, options_.rule, end.value().fresh_hold, calls.random_bits());
+        if (!decision.ok()) {
+            return located(decision.failure(), where());
+        }
+        record_.min_gap = gaps.value().smallest;
+        record_.min_gap_contact = gaps.value().where;
+        if (!decision.value().opening) {
+            count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung);
+            count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung);
+            break;
+        }
+        vertex_ = std::move(proved); // no equilibrium after all
+        from = vertex_.get();
+        opening = *decision.value().opening;
+        arc_kind = vertex_->structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
+                   : opening.infinitesimal                                                          ? "rattler"
+                                                                                                    : "tension";
+    }
+    vertex_ = std::move(proved);
+    // The questions that `start` asks after a resume: the statics then stand on the same rung.
+    (void)decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0);
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();

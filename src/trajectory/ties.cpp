@@ -83,9 +83,8 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
     if (closing.empty()) {
         return departure;
     }
-    const auto first = std::min_element(closing.begin(), closing.end(), [](const Closing& a, const Closing& b) {
-        return a.way.value < b.way.value;
-    });
+    const auto first = std::min_element(closing.begin(), closing.end(),
+                                        [](const Closing& a, const Closing& b) { return a.way.value < b.way.value; });
     for (const Closing& other : closing) {
         if (&other == &*first) {
             continue;
@@ -94,8 +93,8 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
             return Failure{FailureKind::undecided,
                            fmt::format("tied at first order too: {} and {} touch, and close again after ways of eps "
                                        "({}) and eps ({})",
-                                       to_string<Dim>(first->contact), to_string<Dim>(other.contact),
-                                       shown(first->way), shown(other.way))};
+                                       to_string<Dim>(first->contact), to_string<Dim>(other.contact), shown(first->way),
+                                       shown(other.way))};
         }
         departure.settled.push_back({"step", first->contact, first->way, other.contact, other.way, 0, 0});
     }
@@ -123,8 +122,8 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact
         const bool rests = std::find(resting.begin(), resting.end(), contact) != resting.end();
         if (!stayed && !rests) {
             // Simple roots (P3): going back opens both.
-            const Enclosure back = closed.kind == ContactKind::held ? Enclosure{0, 0}
-                                                                    : side.first.rate(slot, +1, contact);
+            const Enclosure back =
+                closed.kind == ContactKind::held ? Enclosure{0, 0} : side.first.rate(slot, +1, contact);
             if (!back.positive()) {
                 return Failure{FailureKind::undecided,
                                fmt::format("{} touch where {} closes, but are not proved to close there: the rate of "

@@ -113,8 +113,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     return vertex;
 }
 
-template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates,
-                                                                                 bool ties_are_values) {
+template <int Dim>
+Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, bool ties_are_values) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction);
     }
@@ -178,7 +178,8 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(Ca
                              order.decided ? std::string("exactly 0") : fmt::format("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
-        return Failure{ties_are_values ? FailureKind::undecided : FailureKind::tie, "gaps that are zero beside those of the contacts kept: " + names};
+        return Failure{ties_are_values ? FailureKind::undecided : FailureKind::tie,
+                       "gaps that are zero beside those of the contacts kept: " + names};
     }
     return gaps;
 }

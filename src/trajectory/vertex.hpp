@@ -59,7 +59,7 @@ template <int Dim> class Vertex {
         Contact where;
         double margin = 0;
         Rung rung = Rung::double_bound;
-        std::optional<Contact> negative; ///< proved to overlap: it closed before
+        std::optional<Contact> negative;             ///< proved to overlap: it closed before
         std::vector<std::pair<Contact, Order>> zero; ///< only when asked for: ties
     };
     /// Gaps of all pairs that are not contacts, at the true vertex: `candidates` is made anew when it is not complete

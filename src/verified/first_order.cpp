@@ -1,7 +1,7 @@
-#include <isostat/verified/first_order.hpp>
-
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
+
+#include <isostat/verified/first_order.hpp>
 
 #include <algorithm>
 #include <cassert>
@@ -134,8 +134,8 @@ template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int directi
 
 template <int Dim>
 std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
-                                               const std::vector<unsigned char>& structural_zero,
-                                               const Load<Dim>& load, double stress_error) const {
+                                               const std::vector<unsigned char>& structural_zero, const Load<Dim>& load,
+                                               double stress_error) const {
     const sparse::Matrix<double>& h = structure_->matrix();
     const DofMap<Dim>& dofs = structure_->dofs();
     const auto& contacts = structure_->contacts();

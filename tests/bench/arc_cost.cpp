@@ -1,7 +1,8 @@
-// Cost of a trajectory in units of its linear algebra: milliseconds per arc (regularity proved, inverse bounded,
-// decisions proved at every vertex) divided by one KLU analysis + factorisation of the same contact matrices, and the
-// parts of that cost. CPU time of one thread, so that other processes disturb little; each run is repeated from the
-// same start, the table shows the median ratio and the extremes. Usage:
+// Cost of a trajectory in units of its linear algebra: milliseconds per arc divided by one KLU analysis + factorisation
+// of the same contact matrices, at level `plain` (everything proved at equilibria only) and at level `decisions`
+// (regularity, bound of the inverse and every decision proved at every vertex), and the parts of that cost. Everything
+// that an equilibrium costs is shared out among its arcs. CPU time of one thread, so that other processes disturb
+// little; each run is repeated from the same start, the levels in turn, the table shows medians and extremes. Usage:
 //   bench_arc_cost [--json FILE] [--equilibria E] [--repeats R] [n | state file ...]     default: 400 1936 4900, 30, 3
 #include <isostat/contact/candidates.hpp>
 #include <isostat/exact/rank.hpp>
@@ -91,15 +92,45 @@ struct Sampler : RunObserver<2> {
     }
 };
 
-/// One line of the table.
-struct Row {
-    int n = 0;
+/// One level of a line of the table.
+struct Measured {
     long arcs = 0;
     int equilibria = 0;
     std::vector<double> per_arc, klu, ratio;
-    double rank_against_umfpack = 0;
     std::string failure;
 };
+
+struct Row {
+    int n = 0;
+    Measured plain, proved;
+    double rank_against_umfpack = 0;
+};
+
+/// Median and extremes.
+std::string spread(const std::vector<double>& x) {
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    return fmt::format("{:.2f} ({:.2f}-{:.2f})", median(x), *low, *high);
+}
+
+State<2> measure(const State<2>& start, CertifyLevel level, int equilibria, Measured& measured) {
+    State<2> state = start;
+    Sampler sampler;
+    RunCounters counters;
+    Segment segment;
+    segment.equilibria = equilibria;
+    RunOptions options;
+    options.certify = level;
+    const double begin = now();
+    const auto outcome = run_segment<2>(state, segment, 0, options, counters, sampler);
+    const double total = now() - begin - sampler.lost;
+    measured.arcs = counters.steps;
+    measured.equilibria = counters.equilibria;
+    measured.per_arc.push_back(total / static_cast<double>(std::max(1L, counters.steps)));
+    measured.klu.push_back(median(sampler.klu));
+    measured.ratio.push_back(measured.per_arc.back() / measured.klu.back());
+    measured.failure = outcome.failure ? outcome.failure->message : "";
+    return sampler.last;
+}
 
 double parts(const State<2>& state) {
     const DofMap<2> dofs(state.packing);
@@ -175,51 +206,51 @@ int main(int argc, char** argv) {
         Row row;
         row.n = begin_state->packing.disk_count();
         for (int repeat = 0; repeat < repeats; ++repeat) {
-            State<2> state = *begin_state;
-            Sampler sampler;
-            RunCounters counters;
-            Segment segment;
-            segment.equilibria = equilibria;
-            const double begin = now();
-            const auto outcome = run_segment<2>(state, segment, 0, RunOptions{}, counters, sampler);
-            const double total = now() - begin - sampler.lost;
-            row.arcs = counters.steps;
-            row.equilibria = counters.equilibria;
-            row.per_arc.push_back(total / static_cast<double>(std::max(1L, counters.steps)));
-            row.klu.push_back(median(sampler.klu));
-            row.ratio.push_back(row.per_arc.back() / row.klu.back());
-            row.failure = outcome.failure ? outcome.failure->message : "";
+            (void)measure(*begin_state, CertifyLevel::plain, equilibria, row.plain);
+            const State<2> last = measure(*begin_state, CertifyLevel::decisions, equilibria, row.proved);
             if (repeat == 0) {
-                row.rank_against_umfpack = parts(sampler.last);
+                row.rank_against_umfpack = parts(last);
             }
         }
         rows.push_back(row);
     }
     fmt::print(
-        "\n| n | arcs | ms / arc | one KLU analysis + factorisation, ms | ratio | extremes | exact rank / UMFPACK |\n"
-        "|---|---|---|---|---|---|---|\n");
+        "\n| n | arcs | one KLU analysis + factorisation, ms | plain / KLU | decisions / KLU | decisions / plain | "
+        "exact rank / UMFPACK |\n|---|---|---|---|---|---|---|\n");
+    const auto quotient = [](const Row& row) {
+        std::vector<double> x;
+        for (std::size_t k = 0; k < row.plain.per_arc.size(); ++k) {
+            x.push_back(row.proved.per_arc[k] / row.plain.per_arc[k]);
+        }
+        return x;
+    };
     for (const Row& row : rows) {
-        const auto [low, high] = std::minmax_element(row.ratio.begin(), row.ratio.end());
-        fmt::print("| {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f}-{:.2f} | {:.2f} |{}\n", row.n, row.arcs,
-                   median(row.per_arc), median(row.klu), median(row.ratio), *low, *high, row.rank_against_umfpack,
-                   row.failure.empty() ? "" : "  " + row.failure);
+        const std::string& failure = row.plain.failure.empty() ? row.proved.failure : row.plain.failure;
+        fmt::print("| {} | {}{} | {:.2f} | {} | {} | {} | {:.2f} |{}\n", row.n, row.proved.arcs,
+                   row.plain.arcs == row.proved.arcs ? "" : fmt::format(" (plain {})", row.plain.arcs),
+                   median(row.proved.klu), spread(row.plain.ratio), spread(row.proved.ratio), spread(quotient(row)),
+                   row.rank_against_umfpack, failure.empty() ? "" : "  " + failure);
     }
     if (rows.size() > 1) {
-        const Row& first = rows.front();
-        const Row& last = rows.back();
-        fmt::print("\ncost per arc grows as n^{:.2f} from n = {} to {}\n",
-                   std::log(median(last.per_arc) / median(first.per_arc)) / std::log(double(last.n) / first.n), first.n,
-                   last.n);
+        const auto growth = [&](const Measured Row::*level) {
+            return std::log(median((rows.back().*level).per_arc) / median((rows.front().*level).per_arc)) /
+                   std::log(double(rows.back().n) / rows.front().n);
+        };
+        fmt::print("\ncost per arc from n = {} to {} grows as n^{:.2f} (plain), n^{:.2f} (decisions)\n", rows.front().n,
+                   rows.back().n, growth(&Row::plain), growth(&Row::proved));
     }
     if (!json.empty()) {
         std::ofstream file(json);
         file << "{\"table\": \"arc_cost\", \"rows\": [";
+        const auto level = [](const Measured& m) {
+            return fmt::format("{{\"arcs\": {}, \"equilibria\": {}, \"ms_per_arc\": {}, \"klu_ms\": {}, \"ratio\": {}, "
+                               "\"completed\": {}}}",
+                               m.arcs, m.equilibria, list(m.per_arc), list(m.klu), list(m.ratio), m.failure.empty());
+        };
         for (std::size_t k = 0; k < rows.size(); ++k) {
-            const Row& row = rows[k];
-            file << fmt::format("{}{{\"n\": {}, \"arcs\": {}, \"equilibria\": {}, \"ms_per_arc\": {}, \"klu_ms\": {}, "
-                                "\"ratio\": {}, \"rank_against_umfpack\": {:.5g}, \"completed\": {}}}",
-                                k == 0 ? "" : ", ", row.n, row.arcs, row.equilibria, list(row.per_arc), list(row.klu),
-                                list(row.ratio), row.rank_against_umfpack, row.failure.empty());
+            file << fmt::format("{}{{\"n\": {}, \"plain\": {}, \"decisions\": {}, \"rank_against_umfpack\": {:.5g}}}",
+                                k == 0 ? "" : ", ", rows[k].n, level(rows[k].plain), level(rows[k].proved),
+                                rows[k].rank_against_umfpack);
         }
         file << "]}\n";
     }

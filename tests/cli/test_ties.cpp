@@ -66,8 +66,8 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_foll
 
 BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records) {
     const scratch::Folder folder;
-    const std::string text = scratch::replaced(scratch::read(example("two-forces.toml")), "file = \"",
-                                               "file = \"" + example(""));
+    const std::string text =
+        scratch::replaced(scratch::read(example("two-forces.toml")), "file = \"", "file = \"" + example(""));
     // One segment of two limits against two segments of one: the second starts from what was stored.
     scratch::write(folder / "one.toml", scratch::replaced(text, "equilibria = 1", "equilibria = 2"));
     scratch::write(folder / "two.toml",

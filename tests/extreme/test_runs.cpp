@@ -32,6 +32,7 @@ void follow(const std::string& family, const std::string& parameter, State<2> st
     BOOST_TEST_CONTEXT(family << ", " << parameter) {
         RunOptions options;
         options.max_arcs = 2000;
+        options.max_strain = 1e3; // towards extreme ratios the box becomes a column
         RunCounters counters;
         crafted::Recorder records;
         extreme::Row row;
@@ -136,7 +137,7 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
         row.rung = "none";
         SoftGrainOptions options;
         options.stiffness_ratio = kappa;
-        options.max_steps = 2'000'000;
+        options.max_steps = 400'000;
         const extreme::Clock clock;
         SoftGrains<2> soft(start->packing, start->load, options);
         const bool relaxed = soft.relax();
@@ -152,9 +153,9 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
             const double force = at == contacts.end() ? 0 : at->force;
             error = std::max(error, std::abs(force - rigid.value().forces[l]) / largest);
         }
-        row.outcome = "refused";
-        row.reason = fmt::format("an approximation: forces differ from the rigid ones by {:.1e} of the largest{}",
-                                 error, relaxed ? "" : "; not relaxed");
+        row.outcome = "approximate";
+        row.reason = fmt::format("forces differ from the rigid ones by {:.1e} of the largest{}", error,
+                                 relaxed ? "" : "; not relaxed");
         row.checked = "forces of the rigid state; error below 1000 / stiffness ratio where it relaxes";
         if (relaxed && kappa >= 1e4) {
             BOOST_TEST(error < 1e3 / kappa + 1e-6);

@@ -20,17 +20,15 @@ struct Course {
     std::vector<ArcRecord<2>> arcs;
     SegmentOutcome outcome;
     RunCounters counters;
-    [[nodiscard]] std::string end() const {
-        return outcome.completed ? "completed" : to_string(outcome.failure->kind);
-    }
+    [[nodiscard]] std::string end() const { return outcome.completed ? "completed" : to_string(outcome.failure->kind); }
 };
 
 class CourseRecorder : public RunObserver<2> {
   public:
     explicit CourseRecorder(Course& course) : course_(course) {}
     void on_arc(const ArcRecord<2>& arc) override {
-        course_.events.push_back(fmt::format("{}:{}>{}", arc.equilibrium, to_string<2>(arc.opened),
-                                             to_string<2>(arc.closed)));
+        course_.events.push_back(
+            fmt::format("{}:{}>{}", arc.equilibrium, to_string<2>(arc.opened), to_string<2>(arc.closed)));
         course_.arcs.push_back(arc);
     }
     void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
@@ -108,8 +106,7 @@ Agreement agree(const State<2>& state, int direction, int equilibria, int seeds)
         const bool open = symbolic.end() == "undecided";
         sum.undecided += open ? 1 : 0;
         for (const double eps : {1e-6, 1e-8}) {
-            const Course real =
-                follow_load(really_perturbed(state, rho, eps), direction, equilibria, TiePolicy::stop);
+            const Course real = follow_load(really_perturbed(state, rho, eps), direction, equilibria, TiePolicy::stop);
             std::vector<std::string> expected = real.events;
             if (open) {
                 BOOST_TEST_REQUIRE(expected.size() >= symbolic.events.size());
@@ -246,8 +243,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_
         const RadiusPerturbation& found = *course.states[0].perturbation;
         BOOST_TEST_REQUIRE(found.open.size() == 1U);
         BOOST_TEST((found.open[0].first == top(1 - bearer)));
-        BOOST_TEST(std::abs(found.open[0].second.value - 2 * std::abs(rho[0] - rho[1])) <=
-                   found.open[0].second.radius);
+        BOOST_TEST(std::abs(found.open[0].second.value - 2 * std::abs(rho[0] - rho[1])) <= found.open[0].second.radius);
         BOOST_TEST_REQUIRE(found.zero.size() == 1U);
         BOOST_TEST((found.zero[0].first == bottom(1 - bearer)));
         // f1 = sigma1 L2 (rho_bearer - rho_other) / 2R
@@ -265,7 +261,7 @@ BOOST_AUTO_TEST_CASE(equal_forces_that_stay_equal_at_first_order_are_undecided_n
     state.packing.q = {1, 1, 3, 1, 1, 3, 3, 3, 4, 4};
     state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 7);
     state.load.reference_length = {4, 4};
-    state.contacts = {left(0),  bottom(0), bottom(1), right(1),   left(2),    top(2),
+    state.contacts = {left(0),  bottom(0), bottom(1),  right(1),   left(2),    top(2),
                       right(3), top(3),    pair(0, 1), pair(2, 3), pair(0, 2), pair(1, 3)};
     const Course course = follow_load(state, +1, 2, TiePolicy::perturb, 1);
     BOOST_TEST(course.end() == "undecided");

@@ -34,7 +34,7 @@ template <int Dim> struct State {
     Packing<Dim> packing;
     Load<Dim> load;
     std::vector<Contact> contacts;
-    int equilibrium = 0;    ///< its number in the run that made it
+    int equilibrium = 0;                            ///< its number in the run that made it
     std::optional<RadiusPerturbation> perturbation; ///< none: the state speaks of its own radii
     std::string provenance; ///< JSON text: program version, command line, seeds; kept with the state, never interpreted
 };

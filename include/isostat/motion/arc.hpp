@@ -44,6 +44,7 @@ template <int Dim> struct Arc {
     double displacement = 0;     ///< largest displacement of a coordinate
     int steps = 0;               ///< predictor steps
     int factorisations = 0;      ///< structures proved and factorised along the way (long arcs only)
+    int passes = 0;              ///< applications of the factors
 };
 
 /// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows

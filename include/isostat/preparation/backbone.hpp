@@ -21,8 +21,7 @@ template <int Dim>
 Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
                                                   const std::vector<Contact>& contacts, const std::vector<double>& rho);
 
-extern template Result<std::vector<Contact>> first_order_backbone<2>(const Packing<2>&, const Load<2>&,
-                                                                     const std::vector<Contact>&,
-                                                                     const std::vector<double>&);
+extern template Result<std::vector<Contact>>
+first_order_backbone<2>(const Packing<2>&, const Load<2>&, const std::vector<Contact>&, const std::vector<double>&);
 
 } // namespace isostat

@@ -60,14 +60,16 @@ class RegularityProof {
 
 /// What the regularity of a structure was proved with.
 enum class RegularityEvidence : std::uint8_t {
-    elimination,   ///< full rank mod p of the stored coordinates
-    singular_value ///< smallest singular value bounded away from 0, also for the stored coordinates
+    elimination,    ///< full rank mod p of the stored coordinates
+    singular_value, ///< smallest singular value bounded away from 0, also for the stored coordinates
+    none            ///< nothing was proved: between the equilibria of a run at level `plain` only
 };
 
 /// A configuration with N = N_f contacts (held coordinates count as contacts) whose contact matrix, for the *stored*
-/// coordinates (dyadic rationals) without any rounding, is proved regular. So h = k = 0. Only `prove` and `exchanged`
-/// make one, each from a proof: every double-precision solve asks for it, hence none can be done without the proof. It
-/// says nothing of the true equilibrium near the stored configuration.
+/// coordinates (dyadic rationals) without any rounding, is proved regular. So h = k = 0. `prove` and `exchanged` make
+/// one, each from a proof: every double-precision solve asks for it, hence none can be done without the proof. It says
+/// nothing of the true equilibrium near the stored configuration. The one way around the gate is named for what it is,
+/// `without_proof`, and the evidence says so for ever.
 template <int Dim> class IsostaticStructure {
   public:
     /// By elimination mod p (statement T4): the full exact check.
@@ -83,6 +85,9 @@ template <int Dim> class IsostaticStructure {
     /// By a positive lower bound of its smallest singular value (statement T3 with V8, or V1). \pre the proof is of
     /// this matrix.
     static IsostaticStructure exchanged(ExchangedContacts<Dim> contacts, const RegularityProof& proof);
+    /// Taken for regular, without proof (`evidence() == RegularityEvidence::none`): for steering at level `plain`. A
+    /// bound of its inverse, if asked for, is proved all the same or not at all.
+    static IsostaticStructure without_proof(ExchangedContacts<Dim> contacts);
 
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
     [[nodiscard]] const DofMap<Dim>& dofs() const { return *dofs_; }

@@ -23,6 +23,7 @@ template <int Dim> struct ArcRecord {
     std::string kind;    ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
     Contact opened;      ///< contact opened (or held coordinate released)
     Contact closed;      ///< contact met, or the coordinate held at a power turn
+    double held_at = 0;  ///< power turns: the value of the coordinate held
     bool power_turn = false;      ///< true: the arc ended where the power of the load vanished
     double stress = 0;            ///< sigma_2
     double strain = 0;            ///< eps_2 at the end of the arc
@@ -31,8 +32,8 @@ template <int Dim> struct ArcRecord {
     double work = 0;              ///< decrease of W along the arc
     double displacement = 0;      ///< largest displacement of a coordinate
     int steps = 0;                ///< predictor steps
-    double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided)
-    Rung decided_by = Rung::none; ///< highest rung that was needed
+    double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided); or NaN
+    Rung decided_by = Rung::none; ///< highest rung that was needed; `none` at level `plain`: nothing was proved
     std::optional<ArcCertificate> certificate; ///< level `arcs` only
     std::vector<TieDecision> perturbed;        ///< what first-order terms settled, from the opening to the end
 };
@@ -94,15 +95,24 @@ constexpr std::string_view to_string(DecisionKind kind) {
 }
 
 /// How much of a run is proved.
+/// - plain: the equilibria only: rank (exact), signs of all forces, both ends of the supported interval, no overlap.
+///   In between the run is steered by refined double precision: no rank, no sign, no order of events there is proved
+///   or bounded;
 /// - decisions: every comparison that steers, with a bound on both sides;
 /// - states: besides, a certificate file for each equilibrium (an observer writes them);
 /// - arcs: besides, each arc enclosed between its events (`certify_arc`). An arc that is not certified does not stop
 ///   the run: it is counted and its record tells why.
-enum class CertifyLevel : unsigned char { decisions, states, arcs };
+enum class CertifyLevel : unsigned char { plain, decisions, states, arcs };
 
-/// "decisions", "states", "arcs".
+/// "plain", "decisions", "states", "arcs".
 constexpr const char* to_string(CertifyLevel level) {
-    return level == CertifyLevel::decisions ? "decisions" : level == CertifyLevel::states ? "states" : "arcs";
+    switch (level) {
+    case CertifyLevel::plain: return "plain";
+    case CertifyLevel::decisions: return "decisions";
+    case CertifyLevel::states: return "states";
+    case CertifyLevel::arcs: break;
+    }
+    return "arcs";
 }
 
 /// Equilibria counted by what their certificates say (from level `states` on).
@@ -132,6 +142,7 @@ struct Tally {
     long double_double = 0;
     long multiprecision = 0;
     long exact = 0;
+    long plain = 0;     ///< arcs steered without a bound (level `plain`): their decisions are counted nowhere else
     long undecided = 0; ///< ended a segment: a sign or an order that no rung settled
     long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
     long structural_ties =

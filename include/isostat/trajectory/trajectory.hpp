@@ -40,8 +40,8 @@ struct RunOptions {
     double step_fraction = 0.1;                     ///< longest predictor step, in units of the smallest radius
     CertifyLevel certify = CertifyLevel::decisions; ///< `states` is the observer's work: here as `decisions`
     TiePolicy ties = TiePolicy::stop;
-    std::uint64_t ties_seed = 1;                    ///< of rho
-    const std::atomic<bool>* stop = nullptr;        ///< set by Ctrl-C: the run ends after the current arc
+    std::uint64_t ties_seed = 1;             ///< of rho
+    const std::atomic<bool>* stop = nullptr; ///< set by Ctrl-C: the run ends after the current arc
 };
 
 /// The direction rho of a run: rho_i = k_i 2^(e-16), k_i an integer in [-2^15, 2^15) from a splitmix64 sequence started

@@ -29,8 +29,8 @@ template <int Dim> class FirstOrder {
     /// coordinates) and all others stay closed. Exactly 0, radius 0, when it vanishes for structural reasons.
     [[nodiscard]] Enclosure rate(ContactId opened, int direction, const Contact& contact) const;
     /// f1 in f = f0 + eps f1 + O(eps^2) at a fixed stress: H f1 = F1 - H1 f0, H1 and F1 the derivatives of the normals
-    /// and (true stresses) of the load along v. `f0`, `structural_zero`: one per contact; f1 is {0, 0} where the second says
-    /// that the force vanishes for all positions of the grains. The loaded stress is known to `stress_error`.
+    /// and (true stresses) of the load along v. `f0`, `structural_zero`: one per contact; f1 is {0, 0} where the second
+    /// says that the force vanishes for all positions of the grains. The loaded stress is known to `stress_error`.
     [[nodiscard]] std::vector<Enclosure> forces(const std::vector<Enclosure>& f0,
                                                 const std::vector<unsigned char>& structural_zero,
                                                 const Load<Dim>& load, double stress_error = 0) const;

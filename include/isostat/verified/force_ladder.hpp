@@ -34,7 +34,7 @@ struct ForceExpression {
     double at = 0;
     double from = 0;
     const LoadShift* shift = nullptr; ///< added to `at`; not on the rung exact
-    bool minus_magnitude = false; ///< -|.| instead of the sum (held coordinates)
+    bool minus_magnitude = false;     ///< -|.| instead of the sum (held coordinates)
     Divisor divisor = Divisor::none;
     int divisor_part = -1;
 };

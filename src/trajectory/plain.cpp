@@ -1,0 +1,252 @@
+#include "trajectory/plain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
+    std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
+    for (std::size_t mu = 0; mu < force.size(); ++mu) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        force[mu] = k < on_coordinates.size() ? on_coordinates[k] : 0.0;
+    }
+    return force;
+}
+
+/// A vertex on the way. Nothing is proved of it.
+template <int Dim> class PlainVertex {
+  public:
+    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const Load<Dim>& load)
+        : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)),
+          load_(load) {
+        const DofMap<Dim>& dofs = structure.dofs();
+        force = on_dofs(load.external_force(packing), dofs);
+        const std::vector<double> unit = on_dofs(load.unit_force(packing), dofs);
+        std::vector<int> loaded;
+        for (std::size_t mu = 0; mu < force.size(); ++mu) {
+            if (force[mu] != 0 || unit[mu] != 0) {
+                loaded.push_back(static_cast<int>(mu));
+            }
+        }
+        const sparse::Matrix<double>& h = structure.matrix();
+        backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
+        factorisation.solve_forces(force);
+    }
+
+    Packing<Dim> packing;
+    IsostaticStructure<Dim> structure;
+    Factorisation factorisation;
+    std::vector<double> force; ///< finite forces
+
+    [[nodiscard]] bool is_structural_zero(std::size_t l) const { return backbone_[l] == 0; }
+    /// Forces of the infinitesimal loads.
+    [[nodiscard]] const std::vector<double>& infinitesimal() {
+        if (infinitesimal_.empty()) {
+            infinitesimal_ = on_dofs(load_.infinitesimal, structure.dofs());
+            factorisation.solve_forces(infinitesimal_);
+        }
+        return infinitesimal_;
+    }
+    [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits) {
+        auto chosen = stage(true, rule, fresh_hold, random_bits);
+        return chosen ? chosen : stage(false, rule, fresh_hold, random_bits);
+    }
+
+  private:
+    /// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
+    std::optional<Opening> stage(bool finite, OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits) {
+        if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
+            return std::nullopt;
+        }
+        const std::vector<double>& f = finite ? force : infinitesimal();
+        const auto& contacts = structure.contacts();
+        const auto size = [&](std::size_t l) { return contacts[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l]; };
+        std::vector<std::size_t> negative;
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            if (ContactId(l) != fresh_hold && is_structural_zero(l) != finite && size(l) < 0) {
+                negative.push_back(l);
+            }
+        }
+        if (negative.empty()) {
+            return std::nullopt;
+        }
+        std::size_t best = negative.front();
+        if (rule == OpeningRule::random) {
+            std::sort(negative.begin(), negative.end(),
+                      [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
+            best = negative[random_bits % negative.size()];
+        } else {
+            double smallest = std::numeric_limits<double>::infinity();
+            for (const std::size_t l : negative) {
+                const double key = rule == OpeningRule::least_negative ? -size(l)
+                                   : rule == OpeningRule::steepest     ? size(l) / mechanism_norm(l)
+                                                                       : size(l);
+                if (key < smallest) {
+                    smallest = key;
+                    best = l;
+                }
+            }
+        }
+        Opening opening;
+        opening.contact = ContactId(best);
+        opening.infinitesimal = !finite;
+        opening.force = {f[best], std::numeric_limits<double>::infinity()};
+        opening.direction = contacts[best].kind == ContactKind::held && f[best] >= 0 ? -1 : +1;
+        opening.margin = 0;
+        opening.rung = Rung::none;
+        return opening;
+    }
+
+    double mechanism_norm(std::size_t l) {
+        std::vector<double> v(force.size(), 0.0);
+        v[l] = 1;
+        factorisation.solve_velocities(v);
+        double square = 0;
+        for (const double c : v) {
+            square += c * c;
+        }
+        return std::sqrt(square);
+    }
+
+    const Load<Dim>& load_;
+    std::vector<unsigned char> backbone_;
+    std::vector<double> infinitesimal_;
+};
+
+/// When new factors are due: as soon as an arc costs more than the average since the last ones, their making included,
+/// which keeps that average smallest. Counts passes, never seconds.
+class Wear {
+  public:
+    void add(double passes, int exchanges) {
+        last_ = passes;
+        sum_ += passes;
+        exchanges_ = exchanges;
+    }
+    [[nodiscard]] bool out() const {
+        return exchanges_ > 0 && last_ * (exchanges_ + 1) > factorisation_in_passes + sum_;
+    }
+    void renew() { *this = {}; }
+
+  private:
+    static constexpr double factorisation_in_passes = 60; ///< KLU: analysis and factorisation, n = 400 ... 4900
+    double last_ = 0;
+    double sum_ = 0;
+    int exchanges_ = 0;
+};
+
+/// Decrease of W along an arc; the second is what rounding may have changed.
+template <int Dim>
+std::pair<double, double> work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to) {
+    const std::vector<double> force = load.external_force(from);
+    double work = 0;
+    double size = 0;
+    for (std::size_t k = 0; k < force.size(); ++k) {
+        work += force[k] * (to.q[k] - from.q[k]);
+        size += std::abs(force[k] * to.q[k]);
+    }
+    return {work, 1e-12 * size};
+}
+
+} // namespace
+
+template <int Dim>
+Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, const std::string& kind,
+                                    const Load<Dim>& load, const RunOptions& options, CandidateList<Dim>& candidates,
+                                    const PlainCalls<Dim>& calls) {
+    ArcOptions arc_options;
+    arc_options.step_fraction = options.step_fraction;
+    const Packing<Dim>* packing = &from.packing;
+    const IsostaticStructure<Dim>* structure = &from.structure;
+    const Factorisation* factorisation = &from.factorisation;
+    std::unique_ptr<PlainVertex<Dim>> here;
+    std::string arc_kind = kind;
+    Wear wear;
+    bool first = true;
+    while (true) {
+        ArcRecord<Dim> record;
+        record.kind = arc_kind;
+        record.opened = structure->contacts()[opening.contact.index()];
+        record.force = opening.force.value;
+        if (auto stop = calls.begin(record)) {
+            return *stop;
+        }
+        const PowerLoad<Dim> power{&load, opening.infinitesimal, first && kind == "limit"};
+        const auto attempt = [&](const Factorisation& factors) {
+            return follow_arc(*packing, *structure, factors, opening.contact, opening.direction, power, candidates,
+                              arc_options);
+        };
+        // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+        const bool renew = opening.infinitesimal && !factorisation->is_fresh();
+        auto arc = renew ? attempt(Factorisation(*structure)) : attempt(*factorisation);
+        if ((!arc.ok() || arc.value().closed == record.opened) && !renew && !factorisation->is_fresh()) {
+            arc = attempt(Factorisation(*structure));
+        }
+        if (!arc.ok()) {
+            return arc.failure();
+        }
+        Arc<Dim>& path = arc.value();
+        record.closed = path.closed;
+        record.power_turn = path.kind == ArcEnd::power_turn;
+        record.power = path.power;
+        record.displacement = path.displacement;
+        record.steps = path.steps;
+        const auto [work, unknown] = work_of(load, *packing, path.end);
+        record.work = work;
+        const auto names = [&] {
+            return fmt::format("the arc that opens {} and closes {}", to_string<Dim>(record.opened),
+                               to_string<Dim>(record.closed));
+        };
+        if (load.kind == LoadKind::nominal && work < -unknown) {
+            return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} along {}", -work, names())};
+        }
+        auto next = IsostaticStructure<Dim>::exchange(*structure, path.end, opening.contact, path.closed);
+        if (!next) {
+            return Failure{FailureKind::not_isostatic,
+                           fmt::format("the contacts are structurally singular at the end of {}", names())};
+        }
+        wear.add((path.passes + factorisation->passes()) * factorisation->approximate().relative_cost(),
+                 factorisation->approximate().exchanges());
+        const bool worn = wear.out();
+        ApproximateInverse approximate = worn ? ApproximateInverse(next->matrix())
+                                              : factorisation->approximate().exchanged(next->slot(), next->matrix());
+        if (worn) {
+            wear.renew();
+        }
+        here = std::make_unique<PlainVertex<Dim>>(std::move(path.end),
+                                                  IsostaticStructure<Dim>::without_proof(std::move(*next)),
+                                                  std::move(approximate), load);
+        packing = &here->packing;
+        structure = &here->structure;
+        factorisation = &here->factorisation;
+        const std::size_t slot = opening.contact.index();
+        if (!record.power_turn && (opening.infinitesimal || !here->is_structural_zero(slot)) &&
+            !((opening.infinitesimal ? here->infinitesimal() : here->force)[slot] > 0)) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("the power of the load is not positive at the end of {}", names())};
+        }
+        if (auto stop = calls.end(record, *packing)) {
+            return *stop;
+        }
+        const ContactId fresh_hold = record.power_turn ? opening.contact : ContactId();
+        const auto chosen = here->choose(options.rule, fresh_hold, calls.random_bits());
+        if (!chosen) {
+            return PlainEnd<Dim>{here->packing, structure->contacts(), fresh_hold};
+        }
+        opening = *chosen;
+        arc_kind = structure->contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
+                   : opening.infinitesimal                                                  ? "rattler"
+                                                                                            : "tension";
+        first = false;
+    }
+}
+
+template Result<PlainEnd<2>> steer_plainly<2>(const Vertex<2>&, Opening, const std::string&, const Load<2>&,
+                                              const RunOptions&, CandidateList<2>&, const PlainCalls<2>&);
+
+} // namespace isostat

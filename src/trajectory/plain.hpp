@@ -1,0 +1,43 @@
+#pragma once
+// Steering at the level `plain`: private to the room.
+
+#include "trajectory/vertex.hpp"
+
+#include <isostat/motion/arc.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <functional>
+
+namespace isostat {
+
+/// A configuration and its contacts, of which nothing is proved.
+template <int Dim> struct PlainEnd {
+    Packing<Dim> packing;
+    std::vector<Contact> contacts;
+    ContactId fresh_hold; ///< valid: the last arc ended at a power turn, and holds this coordinate
+};
+
+/// What steering needs from the run, and tells it.
+template <int Dim> struct PlainCalls {
+    /// Before each arc: counts it, or says why the run stops here.
+    std::function<std::optional<Failure>(ArcRecord<Dim>&)> begin;
+    /// After each arc.
+    std::function<std::optional<Failure>(ArcRecord<Dim>&, const Packing<Dim>&)> end;
+    /// For the rule `random`.
+    std::function<std::uint64_t()> random_bits;
+};
+
+/// Arc after arc from the proved vertex `from`, whose `opening` was decided, until no force is negative. Forces,
+/// events and the choice of what opens are those of refined double precision: *no rank, no sign and no order along the
+/// way is proved or even bounded*, and a run that took a wrong turn does not know. The caller proves the end.
+/// Failures: those of `follow_arc`; `undecided` when the new contact of an arc carries no compression, or W grew.
+/// Cost: 20 to 30 triangular solves per arc.
+template <int Dim>
+Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, const std::string& kind,
+                                    const Load<Dim>& load, const RunOptions& options, CandidateList<Dim>& candidates,
+                                    const PlainCalls<Dim>& calls);
+
+extern template Result<PlainEnd<2>> steer_plainly<2>(const Vertex<2>&, Opening, const std::string&, const Load<2>&,
+                                                     const RunOptions&, CandidateList<2>&, const PlainCalls<2>&);
+
+} // namespace isostat

@@ -561,11 +561,11 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             return located(made.failure(), where);
         }
         std::unique_ptr<Vertex<Dim>> next = std::move(made.value());
-        if (auto failure = check_arc(*from, *next, opening, load, record)) {
-            return located(*failure, where);
-        }
-        if (arc_kind == "release" && record.power_turn && record.closed == record.opened && !descends_) {
-            // It turned back where it stood: no motion, no descent, and released once more it would do so for ever.
+        const auto unproved = check_arc(*from, *next, opening, load, record);
+        const bool turned_back = record.power_turn && record.closed == record.opened;
+        if (arc_kind == "release" && !descends_ && (turned_back || unproved)) {
+            // It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released
+            // once more it would do so for ever.
             resting.push_back(opening.contact);
             --counters_.steps;
             --arcs;
@@ -583,6 +583,9 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             opening = *again.value().opening;
             arc_kind = kind_of(*here, opening);
             continue;
+        }
+        if (unproved) {
+            return located(*unproved, where);
         }
         resting.clear();
         if (options_.certify == CertifyLevel::arcs) {

@@ -190,9 +190,12 @@ template <int Dim> class Follower {
     }
 
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
-    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
+    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy,
+                                     const sparse::Matrix<double>* known = nullptr) {
         const DofMap<Dim>& dofs = structure_->dofs();
-        const sparse::Matrix<double> h = contact_matrix(at, dofs, structure_->contacts());
+        std::optional<sparse::Matrix<double>> made;
+        const sparse::Matrix<double>& h =
+            known != nullptr ? *known : made.emplace(contact_matrix(at, dofs, structure_->contacts()));
         Vector t = tangent_;
         double previous = infinity;
         for (int k = 0; k < 40; ++k) {
@@ -506,7 +509,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     bool moved = false;                // q_ is no longer the start
     if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
         choose_fastest();
-        if (auto t = tangent_at(q_, tangent_accuracy)) {
+        if (auto t = tangent_at(q_, end_tangent_accuracy, &structure_->matrix())) {
             tangent_ = std::move(*t);
         } else if (auto failure = renew()) {
             return *failure;

@@ -101,7 +101,7 @@ struct Factorisation::Implementation {
     /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
     /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
     /// refinement and converges where that does not.
-    bool refined(Side side, std::span<double> rhs, std::span<const double> guess = {}) {
+    bool refined(Side side, std::span<double> rhs, std::span<const double> guess = {}, double accuracy = 4 * u) {
         const std::size_t n = rhs.size();
         // By a power of two near 1, which changes no bit: squares neither under- nor overflow, whatever the units are.
         int exponent = 0;
@@ -156,9 +156,9 @@ struct Factorisation::Implementation {
                 return false;
             }
             // Linear convergence: the next change would be change^2 / previous.
-            if (change <= 4 * u * size || (k > 0 && change * change <= 4 * u * size * previous)) {
+            if (change <= accuracy * size || (k > 0 && change * change <= accuracy * size * previous)) {
                 // Small steps are also what a useless operator makes: the residual has to be small too.
-                if (!(largest(r) <= residual_left * (size + size_of_rhs))) {
+                if (!(largest(r) <= std::max(residual_left, 100 * accuracy) * (size + size_of_rhs))) {
                     return false;
                 }
                 return deliver();
@@ -248,9 +248,9 @@ void Factorisation::solve_forces(std::span<double> rhs, int count) const {
     implementation_->solve(Implementation::Side::forces, rhs, count);
 }
 
-void Factorisation::solve_forces_from(std::span<double> rhs, std::span<const double> guess) const {
+void Factorisation::solve_forces_from(std::span<double> rhs, std::span<const double> guess, double accuracy) const {
     Implementation& self = *implementation_;
-    if (self.fresh || !self.refined(Implementation::Side::forces, rhs, guess)) {
+    if (self.fresh || !self.refined(Implementation::Side::forces, rhs, guess, accuracy)) {
         self.solve(Implementation::Side::forces, rhs, 1);
     }
 }

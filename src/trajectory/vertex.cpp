@@ -32,7 +32,7 @@ template <int Dim> double Vertex<Dim>::cost_of_solves() const {
 }
 
 template <int Dim> bool Vertex<Dim>::factors_are_worn() const {
-    constexpr double factorisation_in_passes = 60; // KLU: analysis and factorisation, measured for n = 400 ... 4900
+    constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
     const int exchanges = factorisation.approximate().exchanges();
     const double here = cost_of_solves();
     return exchanges > 0 && here * (exchanges + 1) > factorisation_in_passes + cost_before_ + here;

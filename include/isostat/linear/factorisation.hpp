@@ -33,8 +33,9 @@ class Factorisation {
 
     /// Solves H f = F in place for `count` right-hand sides stored one after the other (size N_f each).
     void solve_forces(std::span<double> rhs, int count = 1) const;
-    /// The same for one right-hand side, from a guess of the solution: fewer passes with factors taken over.
-    void solve_forces_from(std::span<double> rhs, std::span<const double> guess) const;
+    /// The same for one right-hand side, from a guess of the solution, and to a relative accuracy that is estimated
+    /// from the rate of convergence: fewer passes with factors taken over.
+    void solve_forces_from(std::span<double> rhs, std::span<const double> guess, double accuracy) const;
     /// Solves G v = dV in place: velocities with given approach velocities.
     void solve_velocities(std::span<double> rhs, int count = 1) const;
 

@@ -28,7 +28,8 @@ std::optional<int> eliminated_rank(const Problem& problem) {
 
 } // namespace
 
-Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic) : state(checked), problem(checked) {
+Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed)
+    : state(checked), problem(checked, held_allowed) {
     if (!problem.unsupported.empty()) {
         return;
     }

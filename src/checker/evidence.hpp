@@ -13,7 +13,7 @@
 namespace isostat::checker {
 
 struct Evidence {
-    Evidence(const State<2>& checked, CheckerArithmetic arithmetic);
+    Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed = false);
 
     const State<2>& state;
     Problem problem;

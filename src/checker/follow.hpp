@@ -1,17 +1,34 @@
 #pragma once
 /// \file
-/// Where an arc leads, approximately. Nothing of it is trusted: the end is proved to be a vertex afterwards.
+/// The motion between two vertices, followed in double: nothing that comes out of here is trusted, it only says where
+/// to look.
 
-#include "checker/problem.hpp"
+#include <isostat/contact/state.hpp>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace isostat::checker {
 
-/// Opens contact `opened` of a vertex, keeps the others closed and follows the motion until `closed` touches; then
-/// solves for the vertex where `closed` has taken the place of `opened`. `distance` is about how far the fastest
-/// coordinate moves (the record's). Nothing when the iteration fails.
-std::optional<std::vector<double>> follow(const State<2>& from, std::size_t opened, const Contact& closed,
-                                          double distance);
+/// One arc as a record tells it.
+struct Motion {
+    std::size_t opened = 0; ///< position in the contact list
+    int direction = +1;     ///< -1: a held coordinate that falls
+    Contact closed;         ///< the contact that closes, or the coordinate that is held at a power turn
+    double held_at = 0;     ///< its value there
+    double displacement = 0;
+    std::vector<double> power_load; ///< per coordinate: the load whose power must stay positive
+    std::vector<Contact> touching;  ///< pairs that touch at the start without being contacts
+};
+
+struct Followed {
+    std::optional<std::vector<double>> end; ///< coordinates; none: the motion was not found to end as it is told
+    std::string wrong;                      ///< what happened before that end, if something did
+};
+
+/// Steps of 0.02 of the smallest radius; at each of them every pair of grains that may touch is looked at, and the
+/// power of the load. A pair that closes and opens again within a step is not seen.
+Followed follow(const State<2>& from, const Motion& motion);
 
 } // namespace isostat::checker

@@ -46,6 +46,12 @@ Row row_of(const Contact& contact, int disks) {
         row.coordinate = {i, i + 1, j, j + 1};
         return row;
     }
+    if (contact.kind == ContactKind::held) {
+        row.count = 1;
+        row.coordinate = {contact.i, 0, 0, 0};
+        row.sign = {1, 0, 0, 0};
+        return row;
+    }
     const bool lower = contact.kind == ContactKind::lower_wall;
     row.count = lower ? 1 : 2;
     row.coordinate = {i + contact.j, 2 * disks + contact.j, 0, 0};
@@ -55,10 +61,13 @@ Row row_of(const Contact& contact, int disks) {
 
 } // namespace
 
-Problem::Problem(const State<2>& state) {
+Problem::Problem(const State<2>& state, bool held_allowed) {
     const Packing<2>& packing = state.packing;
     disks = packing.disk_count();
     for (const Contact& contact : state.contacts) {
+        if (contact.kind == ContactKind::held && held_allowed) {
+            continue;
+        }
         if (contact.kind == ContactKind::held) {
             unsupported = "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
             return;
@@ -120,6 +129,10 @@ Problem::Problem(const State<2>& state) {
         }
         rows.push_back(row);
         const auto i = static_cast<std::size_t>(contact.i);
+        if (contact.kind == ContactKind::held) {
+            sum.push_back(stored[i]);
+            continue;
+        }
         sum.push_back(row.quadratic ? Integer(radius[i] + radius[static_cast<std::size_t>(contact.j)]) : radius[i]);
     }
 }

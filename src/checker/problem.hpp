@@ -25,7 +25,9 @@ struct Row {
 /// left for corrections.
 class Problem {
   public:
-    explicit Problem(const State<2>& state);
+    /// `held_allowed`: a held coordinate is a row like that of a wall, its residual the weight times the way from its
+    /// stored value.
+    explicit Problem(const State<2>& state, bool held_allowed = false);
 
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;

@@ -20,8 +20,15 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
         if (contains(place.zeros, l) == finite) {
             continue;
         }
-        const Range& force = finite ? e.forces[l] : e.infinitesimal[l];
-        if (force.negative()) {
+        if (static_cast<int>(l) == place.fresh) {
+            continue;
+        }
+        const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
+                             : finite                          ? e.forces[l]
+                                                               : e.infinitesimal[l];
+        if (place.is_held(l) && (force.negative() || force.positive())) {
+            negative.push_back(static_cast<int>(l)); // it competes with minus its magnitude
+        } else if (force.negative()) {
             negative.push_back(static_cast<int>(l));
         } else if (!force.positive()) {
             return Objection{false, fmt::format("the sign of the {}force of {} is not known: {}",
@@ -43,17 +50,45 @@ Range Place::length(int axis) const {
     return coordinate(2 * static_cast<std::size_t>(evidence->problem.disks) + static_cast<std::size_t>(axis));
 }
 
-Objections make_place(State<2> state, Place& place) {
+Objections make_place(State<2> state, Place& place, const ExactLoad& load, int fresh) {
     place.state = std::make_unique<State<2>>(std::move(state));
-    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic);
-    const Evidence& e = *place.evidence;
+    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true);
+    place.load = load;
+    place.fresh = fresh;
+    Evidence& e = *place.evidence;
     if (!e.problem.unsupported.empty()) {
         return Objection{false, e.problem.unsupported};
     }
     if (!e.vertex.found) {
         return Objection{false, "no true vertex is proved: " + e.why_no_vertex()};
     }
+    if (load.shift.lower != 0 || load.shift.upper != 0) {
+        for (std::size_t l = 0; l < e.forces.size(); ++l) {
+            e.forces[l] = e.forces[l] + load.shift * e.slopes[l];
+        }
+    }
     place.zeros = having_zero(e.forces);
+    std::erase(place.zeros, fresh);
+    if (place.state->perturbation) {
+        place.first =
+            std::make_unique<FirstOrder>(*place.state, e.problem, e.inverse, e.vertex, place.state->perturbation->rho);
+        place.first_force = place.first->forces(e.forces);
+        for (std::size_t l = 0; l < e.forces.size(); ++l) {
+            place.first_force[l] = place.first_force[l] + load.rate * e.slopes[l];
+        }
+        // What changes with the radii is no structural zero.
+        for (const int l : place.zeros) {
+            if (!place.first_force[static_cast<std::size_t>(l)].has_zero()) {
+                place.ties.push_back(l);
+            }
+        }
+        std::erase_if(place.zeros, [&](int l) { return contains(place.ties, static_cast<std::size_t>(l)); });
+        for (const Gap& gap : smallest_gaps(e.problem, *place.state, e.vertex)) {
+            if (gap.value.has_zero()) {
+                place.touching.push_back({gap.pair, place.first->gap(gap.pair)});
+            }
+        }
+    }
     if (!vanish_structurally(e.problem, place.zeros, e.finite_load)) {
         return Objection{false, "some forces cannot be told from 0 and are no structural zeros"};
     }
@@ -75,8 +110,258 @@ Objections decide(const Place& place, Decision& decision) {
     return {};
 }
 
-Objections check_limit(const Place& place, const EventRecord& event, std::size_t opened) {
+namespace {
+
+/// First-order term of the stress at which the force of a contact vanishes, from its first-order term there.
+Range limit_rate(const Range& first, const Range& slope) {
+    return Range(Rational(0)) - first / slope;
+}
+
+} // namespace
+
+Objections check_limit_at(const Place& place, double stress, std::size_t opened, ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
+    const Range& slope = e.slopes[opened];
+    if (slope.has_zero()) {
+        return Objection{false, fmt::format("the slope of the force of {} is not told from 0", e.name(opened))};
+    }
+    const Range step = Range(Rational(0)) - e.forces[opened] / slope;
+    const Range found = Range(Rational(place.stress())) + place.load.shift + step;
+    const Rational around = Rational(record_tolerance) * Rational(std::max(1.0, std::abs(stress)));
+    if (found.lower > Rational(stress) + around || found.upper < Rational(stress) - around) {
+        return Objection{true, fmt::format("the stress is {}, the force of {} vanishes at {}", stress, e.name(opened),
+                                           shown(found))};
+    }
+    const int direction = slope.negative() ? 1 : -1;
+    if (direction > 0 ? step.negative() : step.positive()) {
+        return Objection{true, fmt::format("the force of {} grows in this direction", e.name(opened))};
+    }
+    std::vector<Range> there;
+    for (std::size_t l = 0; l < e.forces.size(); ++l) {
+        there.push_back(e.forces[l] + step * e.slopes[l]);
+    }
+    const std::vector<Range> first = place.first->forces(there);
+    at_limit.shift = found - Range(Rational(stress));
+    at_limit.rate = limit_rate(first[opened], slope);
+    std::vector<int> together{static_cast<int>(opened)};
+    for (std::size_t l = 0; l < there.size(); ++l) {
+        if (l == opened || contains(place.zeros, l) || place.is_held(l) || there[l].positive()) {
+            continue;
+        }
+        if (there[l].negative()) {
+            return Objection{true,
+                             fmt::format("the force of {} vanishes before that of {}", e.name(l), e.name(opened))};
+        }
+        if (e.slopes[l].has_zero()) {
+            if (!first[l].positive()) {
+                return Objection{false, fmt::format("the force of {} may vanish all along, and its first-order term at "
+                                                    "the limit is in {}",
+                                                    e.name(l), shown(first[l]))};
+            }
+            continue;
+        }
+        if ((direction > 0) == e.slopes[l].positive()) {
+            continue; // it grows from a force that is not negative
+        }
+        const Range later = (limit_rate(first[l], e.slopes[l]) - at_limit.rate) * Range(Rational(direction));
+        if (later.negative()) {
+            return Objection{true,
+                             fmt::format("the forces of {} and {} vanish at one load, and that of {} first: by {} "
+                                         "at first order",
+                                         e.name(l), e.name(opened), e.name(l), shown(later))};
+        }
+        if (!later.positive()) {
+            together.push_back(static_cast<int>(l));
+        }
+    }
+    if (together.size() == 1) {
+        return {};
+    }
+    std::sort(together.begin(), together.end());
+    Forces loaded = e.finite_load;
+    for (std::size_t j = 0; j < loaded.size(); ++j) {
+        loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
+    }
+    const auto order = [&e](std::size_t l) {
+        const Range size = e.slopes[l].negative() ? Range(Rational(0)) - e.slopes[l] : e.slopes[l];
+        return e.infinitesimal[l] / size;
+    };
+    for (const int l : together) {
+        const auto other = static_cast<std::size_t>(l);
+        if (other == opened) {
+            continue;
+        }
+        if (!vary_together(e.problem, together, loaded) || !(order(opened).upper < order(other).lower)) {
+            const bool earlier = vary_together(e.problem, together, loaded) && order(other).upper < order(opened).lower;
+            return Objection{earlier,
+                             fmt::format("{} and {} vanish together{}", e.name(opened), e.name(other),
+                                         earlier ? ", and under the infinitesimal loads the second first" : "")};
+        }
+    }
+    return {};
+}
+
+Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction) {
+    const bool said =
+        std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& t) { return t.what == "step"; });
+    if (place.touching.empty()) {
+        return said ? Objections(Objection{true, "a step of length O(eps), but no pair touches"}) : Objections();
+    }
+    const Velocities& velocities = place.first->velocities();
+    const Velocities::Solution motion = velocities.opening(opened, direction);
+    std::optional<Range> shortest;
+    std::optional<Contact> first;
+    for (const Gap& gap : place.touching) {
+        const Range rate = velocities.gap_rate(*place.state, gap.pair, motion);
+        if (!rate.negative()) {
+            continue; // it opens, or stays as far as is seen
+        }
+        const Range way = gap.value / (Range(Rational(0)) - rate);
+        if (!shortest || way.upper < shortest->lower) {
+            shortest = way;
+            first = gap.pair;
+        } else if (!(shortest->upper < way.lower)) {
+            return Objection{false, fmt::format("{} and {} close after ways that are equal at first order",
+                                                to_string<2>(*first), to_string<2>(gap.pair))};
+        }
+    }
+    if (said != first.has_value()) {
+        return Objection{true, first ? fmt::format("{} touch and close at once at first order", to_string<2>(*first))
+                                     : "a step of length O(eps), but no pair that touches closes"};
+    }
+    if (first && event.closed != to_string<2>(*first)) {
+        return Objection{
+            true, fmt::format("{} closes, but at first order {} close before", event.closed, to_string<2>(*first))};
+    }
+    return {};
+}
+
+Objections check_ties(const Place& from, const Place& to, const EventRecord& event, std::size_t opened, int direction) {
+    const auto position = [](const Place& place, const std::string& name) -> std::optional<std::size_t> {
+        for (std::size_t l = 0; l < place.state->contacts.size(); ++l) {
+            if (place.evidence->name(l) == name) {
+                return l;
+            }
+        }
+        return {};
+    };
+    // The first-order term of one name in one kind of decision; nothing: there is no such term.
+    const auto found = [&](const std::string& what, const std::string& name) -> std::optional<Range> {
+        if (what == "gap") {
+            for (const Gap& gap : to.touching) {
+                if (to_string<2>(gap.pair) == name) {
+                    return gap.value;
+                }
+            }
+            return {};
+        }
+        if (what == "step") {
+            for (const Gap& gap : from.touching) {
+                if (to_string<2>(gap.pair) == name) {
+                    const Velocities& velocities = from.first->velocities();
+                    const Range rate =
+                        velocities.gap_rate(*from.state, gap.pair, velocities.opening(opened, direction));
+                    return rate.negative() ? std::optional<Range>(gap.value / (Range(Rational(0)) - rate))
+                                           : std::nullopt;
+                }
+            }
+            return {};
+        }
+        const bool limit = what == "limit" || what == "zero all along";
+        const Place& place = limit ? from : to;
+        const auto l = position(place, name);
+        if (!l || !place.first) {
+            return {};
+        }
+        if (!limit) {
+            return place.first_force[*l];
+        }
+        const Evidence& e = *place.evidence;
+        if (e.slopes[opened].has_zero()) {
+            return {};
+        }
+        const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes[opened];
+        std::vector<Range> there;
+        for (std::size_t k = 0; k < e.forces.size(); ++k) {
+            there.push_back(e.forces[k] + step * e.slopes[k]);
+        }
+        const Range first = place.first->forces(there)[*l];
+        if (what == "zero all along") {
+            return first;
+        }
+        return e.slopes[*l].has_zero() ? std::nullopt : std::optional<Range>(limit_rate(first, e.slopes[*l]));
+    };
+    for (const TieRecord& tie : event.ties) {
+        const auto check = [&](const std::string& name, double value, double bound) -> Objections {
+            const std::optional<Range> range = found(tie.what, name);
+            if (!range) {
+                return Objection{
+                    true, fmt::format("a first-order decision '{}' about {}, of which there is none", tie.what, name)};
+            }
+            // Keys of held coordinates and of the rule least_negative are kept with the other sign.
+            const bool either = tie.what == "opening";
+            const auto meets = [&](const Rational& middle) {
+                return range->lower <= middle + Rational(bound) && range->upper >= middle - Rational(bound);
+            };
+            if (!(bound >= 0) || !std::isfinite(value) || !std::isfinite(bound) ||
+                !(meets(Rational(value)) || (either && meets(Rational(-value))))) {
+                return Objection{true, fmt::format("the first-order term of {} ('{}') is {} +- {}, found in {}", name,
+                                                   tie.what, value, bound, shown(*range))};
+            }
+            return {};
+        };
+        if (tie.what != "gap") {
+            if (Objections wrong = check(tie.contact, tie.first, tie.first_bound)) {
+                return wrong;
+            }
+        }
+        if (!tie.against.empty()) {
+            if (Objections wrong = check(tie.against, tie.other, tie.other_bound)) {
+                return wrong;
+            }
+        }
+    }
+    return {};
+}
+
+Objections check_turn(const Place& place, const EventRecord& event) {
+    const Evidence& e = *place.evidence;
+    const auto held = static_cast<std::size_t>(place.fresh);
+    const bool rattles = event.kind == "rattler";
+    const std::vector<Range>& forces = rattles ? e.infinitesimal : e.forces;
+    Rational largest = 0;
+    for (const Range& force : forces) {
+        largest = std::max<Rational>(largest, std::max<Rational>(abs(force.lower), abs(force.upper)));
+    }
+    const Rational room = Rational(turn_tolerance) * largest;
+    if (forces[held].lower > room || forces[held].upper < -room) {
+        return Objection{true,
+                         fmt::format("the power of the load does not vanish where {} is held: its multiplier is in "
+                                     "{}",
+                                     event.closed, shown(forces[held]))};
+    }
+    const Velocities velocities(e.problem, e.inverse, e.vertex);
+    const Velocities::Solution motion = velocities.opening(held, 1);
+    const auto k = static_cast<std::size_t>(place.state->contacts[held].i);
+    Rational fastest = 0;
+    for (const Rational& v : motion.middle) {
+        fastest = std::max<Rational>(fastest, abs(v));
+    }
+    if (abs(motion.middle[k]) + motion.radius < fastest * Rational(1 - turn_tolerance)) {
+        return Objection{true, fmt::format("{} is held, but another coordinate is {} times as fast", event.closed,
+                                           Rational(fastest / abs(motion.middle[k])).get_d())};
+    }
+    return {};
+}
+
+Objections check_limit(const Place& place, const EventRecord& event, std::size_t opened, ExactLoad& at_limit) {
+    const Evidence& e = *place.evidence;
+    if (place.first) {
+        if (std::abs(event.force) > record_tolerance) {
+            return Objection{true, fmt::format("the force at a limit is {}, not 0", event.force)};
+        }
+        return check_limit_at(place, event.stress, opened, at_limit);
+    }
     const double around = record_tolerance * std::max(1.0, std::abs(event.stress));
     const LoadEndClaim claim{false, {event.stress - around, event.stress + around}, place.state->contacts[opened]};
     std::string text;
@@ -113,6 +398,26 @@ Objections check_limit(const Place& place, const EventRecord& event, std::size_t
     return {};
 }
 
+namespace {
+
+/// Order of two contacts by what the rule compares: -1 when `a` has the smaller key, 0 when it is not known.
+int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b) {
+    const Evidence& e = *place.evidence;
+    const auto key = [&](std::size_t l, bool first) {
+        const Range& force = finite ? e.forces[l] : e.infinitesimal[l];
+        const bool flipped = place.is_held(l) && force.positive(); // it competes with minus its magnitude
+        const Range& value = first ? place.first_force[l] : force;
+        return flipped ? Range(Rational(0)) - value : value;
+    };
+    Range difference = key(a, false) - key(b, false);
+    if (difference.has_zero() && finite && place.first) {
+        difference = key(a, true) - key(b, true);
+    }
+    return difference.negative() ? -1 : difference.positive() ? 1 : 0;
+}
+
+} // namespace
+
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule) {
     if (event.stress != place.stress()) {
         return Objection{
@@ -126,7 +431,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     if (decision.kind.empty()) {
         return Objection{true, "all forces are positive: an equilibrium was reached before this arc"};
     }
-    if (decision.kind != event.kind) {
+    if (place.is_held(opened) ? event.kind != "release" : decision.kind != event.kind) {
         return Objection{true, fmt::format("the kind is '{}': there is a {}force < 0 in {}", event.kind,
                                            decision.kind == "rattler" ? "infinitesimal " : "",
                                            e.name(static_cast<std::size_t>(decision.candidates[0])))};
@@ -138,17 +443,19 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     }
     Rational largest = 0;
     for (const int l : decision.candidates) {
-        const Range& force = forces[static_cast<std::size_t>(l)];
-        largest = std::max<Rational>(largest, -force.lower);
-        if (static_cast<std::size_t>(l) == opened) {
+        const auto other = static_cast<std::size_t>(l);
+        const Range& force = forces[other];
+        largest = std::max<Rational>(largest, std::max<Rational>(-force.lower, force.upper));
+        if (other == opened) {
             continue;
         }
         const bool most = rule == "most_negative";
-        if (most ? force.upper < chosen.lower : (rule == "least_negative" && force.lower > chosen.upper)) {
+        const int sign = compare_keys(place, decision.kind != "rattler", other, opened);
+        if (most ? sign < 0 : (rule == "least_negative" && sign > 0)) {
             return Objection{true, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),
                                                shown(chosen), rule, e.name(static_cast<std::size_t>(l)), shown(force))};
         }
-        if (most ? !(chosen.upper < force.lower) : (rule == "least_negative" && !(force.upper < chosen.lower))) {
+        if (sign == 0 && (most || rule == "least_negative")) {
             return Objection{false, fmt::format("the rule cannot order {} and {}", e.name(opened),
                                                 e.name(static_cast<std::size_t>(l)))};
         }

@@ -4,6 +4,8 @@
 /// is wrong or what stays open; nothing: the record is right.
 
 #include "checker/evidence.hpp"
+#include "checker/first_order.hpp"
+#include "checker/gaps.hpp"
 #include "checker/run_records.hpp"
 
 #include <memory>
@@ -19,12 +21,30 @@ using Objections = std::optional<Objection>;
 
 /// Records hold numbers that were computed in double: they are compared to this relative size.
 inline constexpr double record_tolerance = 1e-9;
+/// A power turn is located in double: the power there, and how fast the coordinate held is, are compared to this.
+inline constexpr double turn_tolerance = 1e-6;
 
-/// A vertex at a load. The state stays where it is: the evidence refers to it.
+/// What the stored stress of a state lacks to the one that is meant, and the first-order term of that: both not 0 only
+/// for runs whose ties were settled at first order, after a limit load.
+struct ExactLoad {
+    Range shift{Rational(0)};
+    Range rate{Rational(0)};
+};
+
+/// A vertex at a load. The state stays where it is: the evidence refers to it. Forces are those at the exact load.
 struct Place {
     std::unique_ptr<State<2>> state;
     std::unique_ptr<Evidence> evidence;
     std::vector<int> zeros; ///< structural zeros of the finite load
+    ExactLoad load;
+    int fresh = -1; ///< the row of a coordinate held just now: its multiplier is 0 up to the place of the turn
+    // Runs that settle ties at first order only:
+    std::unique_ptr<FirstOrder> first;
+    std::vector<int> ties;          ///< forces that cannot be told from 0 and are no structural zeros
+    std::vector<Range> first_force; ///< first-order terms of all forces at the load
+    std::vector<Gap> touching;      ///< pairs whose gaps cannot be told from 0, with their first-order gaps
+
+    [[nodiscard]] bool is_held(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::held; }
 
     [[nodiscard]] double stress() const {
         return state->load.stress[static_cast<std::size_t>(state->load.loaded_axis)];
@@ -35,7 +55,7 @@ struct Place {
 
 /// The vertex near a configuration; an objection when none is proved there, or a force is neither told from 0 nor a
 /// structural zero.
-Objections make_place(State<2> state, Place& place);
+Objections make_place(State<2> state, Place& place, const ExactLoad& load = {}, int fresh = -1);
 
 /// Which contact the rule opens at a vertex.
 struct Decision {
@@ -45,11 +65,21 @@ struct Decision {
 Objections decide(const Place& place, Decision& decision);
 
 /// The opening of an arc: `opened` is its position in the contact list.
-Objections check_limit(const Place& place, const EventRecord& event, std::size_t opened);
+Objections check_limit(const Place& place, const EventRecord& event, std::size_t opened, ExactLoad& at_limit);
+/// The same for an end of the supported interval of a run that settles ties at first order.
+Objections check_limit_at(const Place& place, double stress, std::size_t opened, ExactLoad& at_limit);
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule);
 
 /// No overlap at the end of an arc, the potential fell along it, and the record's strain, work and power are those.
 Objections check_end(const Place& from, const Place& to, const EventRecord& event);
+
+/// The pairs that touch at the start of an arc: those that close again on a way of length O(eps) end it there.
+Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction);
+/// First-order terms that the record names, against those found. `from`: start of the arc, `to`: its end.
+Objections check_ties(const Place& from, const Place& to, const EventRecord& event, std::size_t opened, int direction);
+
+/// At a power turn: the multiplier of the coordinate held is 0 up to the accuracy of its place, and it is the fastest.
+Objections check_turn(const Place& place, const EventRecord& event);
 
 /// A row of equilibria.csv against the vertex that was reached.
 Objections check_equilibrium(const Place& place, const EquilibriumLine& line);

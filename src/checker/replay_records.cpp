@@ -59,6 +59,9 @@ int rattlers(const Place& place) {
     for (std::size_t l = 0; l < place.state->contacts.size(); ++l) {
         if (!std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l))) {
             const Contact& c = place.state->contacts[l];
+            if (c.kind == ContactKind::held) {
+                continue;
+            }
             carries[static_cast<std::size_t>(c.i)] = true;
             if (c.kind == ContactKind::disk_disk) {
                 carries[static_cast<std::size_t>(c.j)] = true;
@@ -118,6 +121,16 @@ Objections check_load_end(const Place& place, const EquilibriumLine& line, bool 
     if (std::isfinite(stress) != opens.has_value()) {
         return Objection{true, "an end of the supported interval has a contact exactly when it is bounded"};
     }
+    if (opens && place.first) {
+        const auto& contacts = place.state->contacts;
+        const auto at = std::find(contacts.begin(), contacts.end(), *opens);
+        if (at == contacts.end()) {
+            return Objection{true,
+                             fmt::format("{} ends the supported interval, but is no contact", to_string<2>(*opens))};
+        }
+        ExactLoad unused;
+        return check_limit_at(place, stress, static_cast<std::size_t>(at - contacts.begin()), unused);
+    }
     LoadEndClaim claim{true, {}, {}};
     if (opens) {
         const double around = record_tolerance * std::max(1.0, std::abs(stress));
@@ -143,6 +156,14 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
         return wrong;
     }
     for (const Gap& gap : smallest_gaps(to.evidence->problem, *to.state, to.evidence->vertex)) {
+        if (gap.value.has_zero() && to.first) {
+            const Range first = to.first->gap(gap.pair);
+            if (!first.positive()) {
+                return Objection{first.negative(), fmt::format("{} touch at the end of the arc, first-order gap in {}",
+                                                               to_string<2>(gap.pair), shown(first))};
+            }
+            continue;
+        }
         if (gap.value.negative()) {
             return Objection{true, fmt::format("{} overlap at the end of the arc, gap in {}", to_string<2>(gap.pair),
                                                shown(gap.value))};
@@ -151,7 +172,14 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
             return Objection{false, fmt::format("{} may overlap at the end of the arc", to_string<2>(gap.pair))};
         }
     }
-    if (!(event.power > 0)) {
+    const bool stays =
+        std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+    if (event.power_turn) {
+        const double room = turn_tolerance * std::max(1e-300, largest_force(*to.evidence));
+        if (!(std::abs(event.power) <= room)) {
+            return Objection{true, fmt::format("the power is {} at a power turn: expected 0", event.power)};
+        }
+    } else if (!stays && !(event.power > 0)) {
         return Objection{true, fmt::format("the power is {}: expected > 0 at the end of every arc", event.power)};
     }
     if (load.kind != LoadKind::nominal) {
@@ -161,6 +189,9 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     const Range done = work(from, to, to.evidence->finite_load, size);
     if (Objections wrong = compare("work", event.work, done, 1e-3 * size)) {
         return wrong;
+    }
+    if (stays) {
+        return {}; // no finite motion, no work
     }
     // Rattlers move without any work of the finite load: then the infinitesimal one decides.
     double unused = 0;
@@ -268,6 +299,43 @@ Objections check_stored(const Place& place, const State<2>& stored) {
     if (a.stress != b.stress || a.kind != b.kind || a.reference_length != b.reference_length ||
         a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force || a.infinitesimal != b.infinitesimal) {
         return Objection{true, "the stored state has another load"};
+    }
+    if (stored.perturbation.has_value() != place.state->perturbation.has_value() ||
+        (stored.perturbation && stored.perturbation->rho != place.state->perturbation->rho)) {
+        return Objection{true, "the stored state has another direction of the radii"};
+    }
+    if (stored.perturbation) {
+        const RadiusPerturbation& said = *stored.perturbation;
+        const auto meets = [](const Range& range, const Enclosure& term) {
+            return term.radius >= 0 && range.lower <= Rational(term.value) + Rational(term.radius) &&
+                   range.upper >= Rational(term.value) - Rational(term.radius);
+        };
+        if (said.open.size() != place.touching.size() || said.zero.size() != place.ties.size()) {
+            return Objection{true,
+                             fmt::format("{} pairs that touch and {} forces that vanish, found {} and {}",
+                                         said.open.size(), said.zero.size(), place.touching.size(), place.ties.size())};
+        }
+        for (const auto& [pair, term] : said.open) {
+            const auto found = std::find_if(place.touching.begin(), place.touching.end(),
+                                            [&pair = pair](const Gap& gap) { return gap.pair == pair; });
+            if (found == place.touching.end() || !meets(found->value, term)) {
+                return Objection{true,
+                                 fmt::format("the first-order gap of {} is {} +- {}, found {}", to_string<2>(pair),
+                                             term.value, term.radius,
+                                             found == place.touching.end() ? "no such pair" : shown(found->value))};
+            }
+        }
+        for (const auto& [contact, term] : said.zero) {
+            const auto& contacts = place.state->contacts;
+            const auto l =
+                static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), contact) - contacts.begin());
+            if (l == contacts.size() || !meets(place.first_force[l], term)) {
+                return Objection{true,
+                                 fmt::format("the first-order force of {} is {} +- {}, found {}", to_string<2>(contact),
+                                             term.value, term.radius,
+                                             l == contacts.size() ? "no such contact" : shown(place.first_force[l]))};
+            }
+        }
     }
     const double size = stored.packing.max_radius();
     for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {

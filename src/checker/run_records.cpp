@@ -97,6 +97,29 @@ EventRecord event_of(const std::string& line, const std::string& where) {
     event.power = number("power");
     event.work = number("work");
     event.displacement = number("displacement");
+    if (field.has("held_at")) {
+        event.held_at = field.at("held_at").number();
+    }
+    if (field.has("perturbed")) {
+        const Field list = field.at("perturbed");
+        const auto term = [](const Field& pair, double& value, double& bound) {
+            pair.require_size(2, "[value, bound]");
+            value = pair.at(std::size_t{0}).number();
+            bound = pair.at(std::size_t{1}).number();
+        };
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const Field entry = list.at(k);
+            TieRecord tie;
+            tie.what = entry.at("decision").string();
+            tie.contact = entry.at("contact").string();
+            term(entry.at("first_order"), tie.first, tie.first_bound);
+            if (entry.has("against")) {
+                tie.against = entry.at("against").string();
+                term(entry.at("against_first_order"), tie.other, tie.other_bound);
+            }
+            event.ties.push_back(tie);
+        }
+    }
     return event;
 }
 
@@ -169,6 +192,20 @@ RunRecords read_records(const std::filesystem::path& directory) {
 }
 
 std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing) {
+    if (name.starts_with("held ")) {
+        const std::string_view rest = std::string_view(name).substr(5);
+        const std::string_view middle = " of grain ";
+        int grain = -1;
+        if (rest.size() > middle.size() + 1 && rest.substr(1, middle.size()) == middle) {
+            const std::string_view digits = rest.substr(1 + middle.size());
+            const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), grain);
+            if (error == std::errc() && stop == digits.data() + digits.size() && grain >= 0 &&
+                grain <= packing.disk_count() && (rest[0] == 'x' || rest[0] == 'y')) {
+                return Contact{ContactKind::held, 2 * grain + (rest[0] == 'x' ? 0 : 1), 0};
+            }
+        }
+        return {};
+    }
     const std::vector<std::string> parts = split(name, '-');
     const auto disk = [&packing](const std::string& text) {
         int value = -1;

@@ -12,6 +12,14 @@
 
 namespace isostat::checker {
 
+/// One decision that a run settled at first order in the radii, as its record tells it.
+struct TieRecord {
+    std::string what;             ///< "force", "opening", "limit", "zero all along", "gap", "step"
+    std::string contact, against; ///< `against` may be empty
+    double first = 0, first_bound = 0;
+    double other = 0, other_bound = 0;
+};
+
 /// One line of events.jsonl.
 struct EventRecord {
     std::string where; ///< file and line
@@ -22,6 +30,8 @@ struct EventRecord {
     std::string opened, closed; ///< names of contacts, as in messages
     bool power_turn = false;
     double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
+    std::optional<double> held_at; ///< of power turns
+    std::vector<TieRecord> ties;
 };
 
 /// One line of equilibria.csv, by the names of its header.
@@ -44,7 +54,7 @@ struct RunRecords {
 /// Throws `Error(bad_input)`.
 RunRecords read_records(const std::filesystem::path& directory);
 
-/// "12-40", "3-left"; nothing for anything else, held coordinates included.
+/// "12-40", "3-left", "held x of grain 4" (the walls are the grain after the last disk); nothing for anything else.
 std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing);
 
 /// The two columns of a contact in equilibria.csv; nothing for "none".

@@ -59,10 +59,10 @@ class Replay {
     }
 
     /// `here_` becomes the vertex near a state; empty when none is proved.
-    void go_to(State<2> state, const std::string& where) {
+    void go_to(State<2> state, const std::string& where, const ExactLoad& load) {
         Place place;
         here_ = {};
-        if (judged(make_place(std::move(state), place), where)) {
+        if (judged(make_place(std::move(state), place, load), where)) {
             here_ = std::move(place);
         }
     }
@@ -91,7 +91,10 @@ class Replay {
         std::optional<State<2>> stored = records_.stored(0);
         if (expect(stored.has_value(), line.where, "states/eq_000000.json, the start of the replay, is missing") &&
             !stopped()) {
-            go_to(std::move(*stored), line.where);
+            if (stored->perturbation && stored->perturbation->load_zero.i >= 0) {
+                leave(line.where, "the exact load of equilibrium 0 is not replayed");
+            }
+            go_to(std::move(*stored), line.where, {});
             close(line);
         }
     }
@@ -108,7 +111,7 @@ class Replay {
             here_ = {};
             const std::optional<State<2>>& from = reached_[static_cast<std::size_t>(previous)];
             if (from) {
-                go_to(*from, line.where);
+                go_to(*from, line.where, reached_load_[static_cast<std::size_t>(previous)]);
             } else {
                 leave(line.where, "the equilibrium before was not reached by the replay");
             }
@@ -133,9 +136,6 @@ class Replay {
     bool arc(const EventRecord& event) {
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
-        if (event.power_turn || event.opened.starts_with("held") || event.closed.starts_with("held")) {
-            return judged(Objection{false, "held coordinates are not replayed"}, event.where);
-        }
         const std::vector<Contact>& contacts = here_.state->contacts;
         const auto at = opened ? std::find(contacts.begin(), contacts.end(), *opened) : contacts.end();
         const bool closed_before =
@@ -143,33 +143,73 @@ class Replay {
         if (!expect(at != contacts.end(), event.where, event.opened + " opens, but is no contact of the structure") ||
             !expect(closed.has_value(), event.where, event.closed + " closes, but is no pair of grains") ||
             !expect(!closed_before, event.where, event.closed + " closes, but is closed already") ||
+            !expect(event.power_turn == (closed->kind == ContactKind::held), event.where,
+                    fmt::format("power_turn is {}, but {} is what ends the arc", event.power_turn, event.closed)) ||
             !expect((event.arc == 1) == (event.kind == "limit"), event.where,
                     fmt::format("the kind is '{}' of arc {}: the first one, and no other, starts at a limit",
                                 event.kind, event.arc))) {
             return false;
         }
         const auto position = static_cast<std::size_t>(at - contacts.begin());
-        const bool opening = judged(event.kind == "limit" ? check_limit(here_, event, position)
+        if (event.power_turn && !event.held_at) {
+            return judged(Objection{false, "the record does not say where the coordinate is held"}, event.where);
+        }
+        ExactLoad load = here_.load;
+        const bool opening = judged(event.kind == "limit" ? check_limit(here_, event, position, load)
                                                           : check_rule(here_, event, position, records_.rule),
                                     event.where);
         if (stopped()) {
             return false;
         }
-        const std::optional<std::vector<double>> end = follow(*here_.state, position, *closed, event.displacement);
-        if (!end) {
-            return judged(Objection{false, fmt::format("the motion that opens {} was not found to close {}",
-                                                       event.opened, event.closed)},
-                          event.where);
+        const int direction =
+            opened->kind == ContactKind::held && here_.evidence->forces[position].positive() ? -1 : +1;
+        if (here_.first && !judged(check_step(here_, event, position, direction), event.where)) {
+            return false;
         }
         State<2> state = *here_.state;
-        state.packing.q = *end;
+        const bool stays =
+            std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+        if (!stays) {
+            Motion motion;
+            motion.opened = position;
+            motion.direction = direction;
+            motion.closed = *closed;
+            motion.held_at = event.held_at.value_or(0);
+            motion.displacement = event.displacement;
+            Load<2> under = here_.state->load;
+            under.stress[static_cast<std::size_t>(under.loaded_axis)] = event.stress;
+            motion.power_load =
+                event.kind == "rattler" ? under.infinitesimal : under.external_force(here_.state->packing);
+            motion.power_load.resize(state.packing.q.size(), 0.0);
+            for (const Gap& gap : here_.touching) {
+                motion.touching.push_back(gap.pair);
+            }
+            const Followed followed = follow(*here_.state, motion);
+            if (!expect(followed.wrong.empty(), event.where, followed.wrong)) {
+                return false;
+            }
+            if (!followed.end) {
+                return judged(
+                    Objection{false, fmt::format("the motion that opens {} was not found to {} {}", event.opened,
+                                                 event.power_turn ? "turn with" : "close", event.closed)},
+                    event.where);
+            }
+            state.packing.q = *followed.end;
+        }
         state.contacts[position] = *closed;
         state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
         Place next;
-        if (!judged(make_place(std::move(state), next), event.where) ||
-            !judged(check_end(here_, next, event), event.where)) {
+        if (!judged(make_place(std::move(state), next, load, event.power_turn ? static_cast<int>(position) : -1),
+                    event.where) ||
+            !judged(check_end(here_, next, event), event.where) ||
+            (event.power_turn && !judged(check_turn(next, event), event.where)) ||
+            (next.first && !judged(check_ties(here_, next, event, position, direction), event.where)) ||
+            !expect(next.first != nullptr || event.ties.empty(), event.where,
+                    "first-order decisions in a run without a direction of the radii")) {
             return false;
         }
+        result_.ties_checked += static_cast<int>(event.ties.size());
+        result_.turns_checked += event.power_turn ? 1 : 0;
         here_ = std::move(next);
         result_.arcs_proved += opening ? 1 : 0;
         return true;
@@ -179,14 +219,16 @@ class Replay {
     void reload(const EquilibriumLine& line) {
         State<2> state = *here_.state;
         state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = line.at("sigma2");
-        go_to(std::move(state), line.where);
+        go_to(std::move(state), line.where, {});
     }
 
     /// Where the replay was lost, a stored state takes it up again.
     void resume(const EquilibriumLine& line) {
         std::optional<State<2>> stored = records_.stored(line.integer("number"));
-        if (stored) {
-            go_to(std::move(*stored), line.where);
+        if (stored && stored->perturbation && stored->perturbation->load_zero.i >= 0) {
+            leave(line.where, "not reached by the replay, and its exact load is not that of the stored state");
+        } else if (stored) {
+            go_to(std::move(*stored), line.where, {});
         } else {
             leave(line.where, "not reached by the replay, and no state is stored");
         }
@@ -195,15 +237,23 @@ class Replay {
     /// Checks the row, and the stored state if there is one.
     void close(const EquilibriumLine& line) {
         reached_.emplace_back();
+        reached_load_.emplace_back();
         if (!here_.state) {
             return;
         }
         const int number = line.integer("number");
+        if (here_.first && here_.ties.empty() && (here_.load.shift.lower != 0 || here_.load.shift.upper != 0)) {
+            go_to(State<2>(*here_.state), line.where, {}); // no force vanishes: the load is the stored one
+            if (!here_.state) {
+                return;
+            }
+        }
         const bool row = judged(check_equilibrium(here_, line), line.where);
         const std::optional<State<2>> stored = records_.stored(number);
         const bool same = !stored || judged(check_stored(here_, *stored), fmt::format("states/eq_{:06}.json", number));
         result_.equilibria_proved += row && same ? 1 : 0;
         reached_.back() = *here_.state;
+        reached_load_.back() = here_.load;
         here_number_ = number;
     }
 
@@ -213,6 +263,7 @@ class Replay {
     int here_number_ = -1;
     std::size_t event_ = 0;
     std::vector<std::optional<State<2>>> reached_;
+    std::vector<ExactLoad> reached_load_;
 };
 
 } // namespace

@@ -14,9 +14,10 @@ enum Status { done = 0, failed = 1, undecided = 2, interrupted = 130 };
 
 /// Options that several subcommands have.
 struct Common {
-    bool quiet = false;  ///< no progress, no tables
-    bool json = false;   ///< one JSON object on standard output and nothing else there
-    std::string command; ///< the command line, for records
+    bool quiet = false;         ///< no progress, no tables
+    bool json = false;          ///< one JSON object on standard output and nothing else there
+    std::string command;        ///< the command line, for records
+    std::optional<int> threads; ///< of the commands that have use for several; none: all cores
 };
 
 struct PrepareArguments {

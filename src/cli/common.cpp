@@ -50,6 +50,7 @@ State<2> load_start(const Scene& scene) {
         state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, *scene.infinitesimal_seed);
     }
     state.equilibrium = 0;
+    state.perturbation.reset(); // a run has its own
     snap_to_grid(state.packing);
     for (std::size_t a = 0; a < 2; ++a) {
         if (!(state.load.stress[a] > 0)) {
@@ -57,7 +58,7 @@ State<2> load_start(const Scene& scene) {
                                                           source, a, state.load.stress[a]));
         }
     }
-    check_start(state, source);
+    check_start(state, source, scene.run.ties == TiePolicy::perturb);
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
     check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
     return state;

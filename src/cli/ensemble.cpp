@@ -147,8 +147,10 @@ void work(const SampleFolders& folders, Dealer& dealer, int jobs, Board* board) 
         if (folders.sample(number).finished()) {
             return std::nullopt;
         }
-        std::vector<std::string> arguments{"run", (folders.folder(number) / "scene.toml").string(), "-o",
-                                           folders.folder(number).string(), "--quiet"};
+        std::vector<std::string> arguments{"run",     (folders.folder(number) / "scene.toml").string(),
+                                           "-o",      folders.folder(number).string(),
+                                           "--quiet", "--threads",
+                                           "1"}; // a core each
         if (folders.prepare(number)) {
             arguments.emplace_back("--resume");
         }

@@ -3,6 +3,7 @@
 #include "cli/interrupt.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/threads.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -34,6 +35,15 @@ void add_common(CLI::App& command, Common& common, bool progress) {
         command.add_flag("-q,--quiet", common.quiet, "no progress and no tables");
     }
     command.add_flag("--json", common.json, "print one JSON object on standard output, for programs");
+}
+
+void add_threads(CLI::App& command, Common& common) {
+    command
+        .add_option("--threads", common.threads,
+                    "cores for independent work (default: all that this process may use); results have the same bits "
+                    "for any number")
+        ->check(CLI::Range(1, 1024))
+        ->type_name("N");
 }
 
 /// The registered subcommands; each sets `todo` when it was chosen.
@@ -88,9 +98,11 @@ struct Program {
                                 "state.\nExample: isostat prepare examples/biaxial-400.toml -o start.json");
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+        add_threads(command, a.common);
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;
+            set_threads(a.common.threads.value_or(available_cores()));
             todo = [&a] { return prepare(a); };
         });
     }
@@ -109,9 +121,11 @@ struct Program {
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
         command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
+        add_threads(command, a.common);
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;
+            set_threads(a.common.threads.value_or(available_cores()));
             todo = [&a] { return run(a); };
         });
     }
@@ -162,9 +176,11 @@ struct Program {
                 "Examples: isostat inspect start.json\n"
                 "          isostat inspect examples/packings/triangular_patch_3x3.toml");
         command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
+        add_threads(command, a.common);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;
+            set_threads(a.common.threads.value_or(available_cores()));
             todo = [&a] { return inspect(a); };
         });
     }
@@ -180,9 +196,11 @@ struct Program {
                 "Example: isostat certify out/states/last.json -o last.cert.json");
         command.add_option("state", a.input, "state file, or vertex text")->required()->type_name("STATE.json");
         command.add_option("-o,--output", a.output, "certificate to write")->required()->type_name("CERT.json");
+        add_threads(command, a.common);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;
+            set_threads(a.common.threads.value_or(available_cores()));
             todo = [&a] { return certify(a); };
         });
     }

@@ -60,6 +60,8 @@ int verify_folder(const VerifyArguments& arguments) {
         object["folder"] = arguments.certificate;
         object["arcs"] = run.arcs;
         object["arcs_proved"] = run.arcs_proved;
+        object["power_turns_checked"] = run.turns_checked;
+        object["ties_checked"] = run.ties_checked;
         object["equilibria"] = run.equilibria;
         object["equilibria_proved"] = run.equilibria_proved;
         object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
@@ -69,6 +71,10 @@ int verify_folder(const VerifyArguments& arguments) {
         return status_of_verdict(run.verdict);
     }
     fmt::print("arcs           {} of {} proved\n", run.arcs_proved, run.arcs);
+    if (run.turns_checked > 0 || run.ties_checked > 0) {
+        fmt::print("power turns    {} checked\nties           {} first-order decisions checked\n", run.turns_checked,
+                   run.ties_checked);
+    }
     fmt::print("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
     for (const std::string& open : run.undecided) {
         fmt::print("undecided      {}\n", open);

@@ -1,6 +1,8 @@
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/exact/independent_columns.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>
@@ -9,7 +11,49 @@
 
 namespace isostat {
 
-template <int Dim> void check_start(const State<Dim>& state, const std::string& source) {
+namespace {
+
+/// One self-stress per contact that depends on those before it, as the contacts that take part: for a message.
+template <int Dim> std::string self_stresses(const State<Dim>& state) {
+    const DofMap<Dim> dofs(state.packing);
+    const std::vector<int> independent =
+        exact::independent_columns(exact_contact_matrix(state.packing, dofs, state.contacts));
+    std::vector<Contact> kept;
+    for (const int l : independent) {
+        kept.push_back(state.contacts[static_cast<std::size_t>(l)]);
+    }
+    const auto structure = IsostaticStructure<Dim>::prove(state.packing, kept);
+    if (!structure.ok()) {
+        return {};
+    }
+    const Factorisation factorisation(structure.value());
+    std::string text;
+    for (std::size_t l = 0, next = 0; l < state.contacts.size(); ++l) {
+        if (next < independent.size() && independent[next] == static_cast<int>(l)) {
+            ++next;
+            continue;
+        }
+        std::vector<double> force(kept.size(), 0.0); // unit force in contact l, balanced by the others
+        const GapGradient<Dim> g = gap_gradient(state.packing, state.contacts[l]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            if (dof >= 0) {
+                force[static_cast<std::size_t>(dof)] += g.value[k];
+            }
+        }
+        factorisation.solve_forces(force);
+        text += fmt::format("{}{{{}", text.empty() ? "" : ", ", to_string<Dim>(state.contacts[l]));
+        for (std::size_t c = 0; c < kept.size(); ++c) {
+            text += std::abs(force[c]) > 1e-9 ? " " + to_string<Dim>(kept[c]) : "";
+        }
+        text += "}";
+    }
+    return text;
+}
+
+} // namespace
+
+template <int Dim> void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed) {
     const auto bad = [&](const std::string& what) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
     };
@@ -29,6 +73,18 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
         }
     }
     const Counting count = count_contacts(state.packing, state.contacts);
+    if (count.hyperstaticity > 0 && count.mechanisms == 0) {
+        if (hyperstatic_allowed) {
+            return;
+        }
+        const std::string basis = self_stresses(state);
+        bad(fmt::format(
+            "N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = 0: a trajectory starts from "
+            "an isostatic structure, N = N_f = rank; ties = \"perturb\" in [run] keeps the contacts that "
+            "carry the load when the radii change a little{}{}",
+            count.dof_count, count.contact_count, count.rank, count.hyperstaticity,
+            basis.empty() ? "" : "; a basis of the self-stresses is in the contacts ", basis));
+    }
     if (count.hyperstaticity != 0 || count.mechanisms != 0) {
         bad(fmt::format("N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = {}: a trajectory starts "
                         "from an isostatic "
@@ -37,6 +93,6 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
     }
 }
 
-template void check_start<2>(const State<2>&, const std::string&);
+template void check_start<2>(const State<2>&, const std::string&, bool);
 
 } // namespace isostat

@@ -1,5 +1,7 @@
 #include "io/record_text.hpp"
 
+#include "io/perturbation_json.hpp"
+
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -23,6 +25,24 @@ std::string two_columns(const Contact& contact) {
     case ContactKind::held: break;
     }
     return fmt::format("{},{}", contact.i, none);
+}
+
+/// "log2_zero": bound of what vanishes in the base, null: exactly; without "bits" no difference was to be found.
+Json tie_json(const TieDecision& tie) {
+    const auto term = [](const Enclosure& e) { return Json::array({json::or_null(e.value), json::or_null(e.radius)}); };
+    Json object;
+    object["decision"] = tie.what;
+    object["contact"] = to_string<2>(tie.chosen);
+    object["first_order"] = term(tie.first);
+    if (tie.against.i >= 0) {
+        object["against"] = to_string<2>(tie.against);
+        object["against_first_order"] = term(tie.other);
+    }
+    if (tie.what != "step") {
+        object["log2_zero"] = json::exponent_json(tie.exponent);
+        object["bits"] = tie.bits;
+    }
+    return object;
 }
 
 Json certificate_json(const ArcCertificate& certificate) {
@@ -57,6 +77,9 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["opened"] = to_string<2>(arc.opened);
     line["closed"] = to_string<2>(arc.closed);
     line["power_turn"] = arc.power_turn;
+    if (arc.power_turn) {
+        line["held_at"] = arc.held_at;
+    }
     line["sigma2"] = json::or_null(arc.stress);
     line["eps2"] = json::or_null(arc.strain);
     line["force"] = json::or_null(arc.force);
@@ -66,6 +89,12 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["steps"] = arc.steps;
     line["margin"] = json::or_null(arc.margin);
     line["decided_by"] = to_string(arc.decided_by);
+    if (!arc.perturbed.empty()) {
+        line["perturbed"] = Json::array();
+        for (const TieDecision& tie : arc.perturbed) {
+            line["perturbed"].push_back(tie_json(tie));
+        }
+    }
     if (arc.certificate) {
         line["certificate"] = certificate_json(*arc.certificate);
     }
@@ -162,6 +191,9 @@ Json tally_json(const Tally& tally) {
     }
     object["ties"]["structural"] = tally.structural_ties;
     object["ties"]["other"] = tally.ties;
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
+        object["ties"]["perturbed"][std::string(to_string(static_cast<DecisionKind>(k)))] = tally.perturbed[k];
+    }
     return object;
 }
 
@@ -221,6 +253,10 @@ RunCounters counters_from(const json::Field& field) {
     }
     counters.tally.structural_ties = tally.at("ties").at("structural").integer();
     counters.tally.ties = tally.at("ties").at("other").integer();
+    for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
+        counters.tally.perturbed[k] =
+            tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()).integer();
+    }
     counters.tally.smallest_margin = tally.at("smallest_margin").number();
     const json::Field states = field.at("certified_states");
     counters.states.proved = states.at("proved").integer();

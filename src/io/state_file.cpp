@@ -1,5 +1,6 @@
 #include "io/contact_json.hpp"
 #include "io/json.hpp"
+#include "io/perturbation_json.hpp"
 #include "io/state_json.hpp"
 
 #include <isostat/core/error.hpp>
@@ -154,7 +155,7 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
         document.at("version").fail("1, the version that this program reads");
     }
     document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks",
-                   "fixed", "disk_force", "infinitesimal", "contacts", "forces"});
+                   "fixed", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
     if (document.has("dimension") && document.at("dimension").integer() != Dim) {
         document.at("dimension").fail(fmt::format("{}", Dim));
     }
@@ -178,6 +179,9 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
         state.contacts.push_back(json::contact_from_json<Dim>(contacts.at(l), state.packing));
     }
     json::refuse_duplicates<Dim>(state.contacts, source, "contacts");
+    if (document.has("perturbation")) {
+        state.perturbation = json::perturbation_from_json<Dim>(document.at("perturbation"), state.packing);
+    }
     if (document.has("forces")) {
         const Field forces = document.at("forces");
         forces.require_size(state.contacts.size(), "one force per contact");

@@ -1,5 +1,6 @@
 #include "io/contact_json.hpp"
 #include "io/json.hpp"
+#include "io/perturbation_json.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/work.hpp>
@@ -111,6 +112,9 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
         json::append_rows(text, "infinitesimal", vectors<Dim>(load.infinitesimal, "infinitesimal"));
     }
 
+    if (state.perturbation) {
+        text += fmt::format(",\n  \"perturbation\": {}", json::perturbation_to_json<Dim>(*state.perturbation).dump());
+    }
     rows.clear();
     for (const Contact& contact : state.contacts) {
         rows.push_back(json::contact_to_json<Dim>(contact));

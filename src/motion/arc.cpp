@@ -17,9 +17,8 @@ namespace {
 /// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
-constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
-
-constexpr double turn_accuracy = 1e-13; ///< where the power vanishes: the turn is as sharp as its tangent
+constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
+constexpr double end_tangent_accuracy = 1e-4;   ///< at an event, where only dips and the sign of the power are read off
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -289,13 +288,20 @@ template <int Dim> class Follower {
         if (active_.empty()) {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
-            std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
-                         [&](const Contact& c) { return c != opened_ && !kept.contains(c); });
+            std::copy_if(
+                candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
             if (opened_.kind != ContactKind::held) {
                 active_.push_back(opened_); // it may close again
             }
         }
     }
+
+    static bool listed(const std::vector<Contact>& list, const Contact& c) {
+        return std::find(list.begin(), list.end(), c) != list.end();
+    }
+    /// Its gap is 0 at the start, and grows.
+    [[nodiscard]] bool leaves(const Contact& c) const { return c == opened_ || listed(options_.leaving, c); }
 
     /// Displacement that the candidate list still allows.
     double reach_left() const {
@@ -356,7 +362,8 @@ template <int Dim> class Follower {
         for (std::size_t k = 0; k < at.q.size(); ++k) {
             off = std::max(off, std::abs(at.q[k] - guess.q[k]));
         }
-        if (off > 0.2 * s) {
+        // A start known to its last bits only is put back on the curve first: that is no bend, however short the step.
+        if (off > 0.2 * s + 1e-10 * at.min_radius()) {
             return std::nullopt; // another branch, or a curve too bent for this step
         }
         auto t = tangent_at(at, accuracy);
@@ -450,7 +457,7 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
         if (!(s > s_low && s < s_high)) {
             s = 0.5 * (s_low + s_high);
         }
-        auto point = step_to(s, turn_accuracy);
+        auto point = step_to(s, turn_tangent_accuracy);
         if (!point) {
             return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
         }
@@ -525,7 +532,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         double s_event = infinity;
         std::size_t event = 0;
         for (std::size_t c = 0; c < active_.size(); ++c) {
-            const bool opening = at_start && active_[c] == opened_;
+            const bool opening = at_start && leaves(active_[c]);
             const GapCourse course = gap_course(q_, active_[c], tangent_, curvature_);
             start_gap_[c] = opening ? 0.0 : course.value;
             start_rate_[c] = course.rate;
@@ -580,7 +587,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 if (!(reached >= -noise) || reached > 1.5 * std::max(s_max, s_event) + noise) {
                     break; // another root
                 }
-                if (at_start && closing == opened_ && reached < 0.25 * s_event) {
+                if (at_start && leaves(closing) && reached < 0.25 * s_event) {
                     break; // the start itself: the gap that opens is zero there too
                 }
                 s = std::max(reached, 0.0);

@@ -84,7 +84,8 @@ template <int Dim> class VertexSearch {
 
     Result<State<Dim>> run() {
         const std::vector<double> g = generic_infinitesimal<Dim>(packing_.radius, report_.infinitesimal_seed);
-        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), options_.stop);
+        const bool large = packing_.disk_count() > options_.interior_above;
+        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), large, options_.stop);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
         while (programmes_ < options_.max_programmes) {
@@ -110,7 +111,7 @@ template <int Dim> class VertexSearch {
             }
             // Not yet: the next programme sees the normals and the lengths of the point reached, unless it has nothing
             // new to see.
-            if (step.pivots == 0 && step.largest <= converged_below * scale_.mean_radius()) {
+            if (step.changes == 0 && step.largest <= converged_below * scale_.mean_radius()) {
                 // Clp sees neither forces nor gaps below its tolerances, nor that eps is infinitesimal.
                 auto pivoted = finish(step.contacts);
                 if (pivoted.ok()) {
@@ -176,12 +177,12 @@ template <int Dim> class VertexSearch {
         contacts_ = static_cast<int>(step.contacts.size());
         const double relative = step.largest / scale_.mean_radius();
         stage_.progress(std::clamp(std::log(relative + converged_below) / std::log(converged_below), 0.0, 1.0),
-                        fmt::format("programme {}: {} pivots, {} of {} contacts, step {:.1e} radii", programmes_,
-                                    step.pivots, contacts_, packing_.q.size(), relative));
+                        fmt::format("programme {}: {} changes, {} of {} contacts, step {:.1e} radii", programmes_,
+                                    step.changes, contacts_, packing_.q.size(), relative));
     }
 
     [[nodiscard]] bool worth_an_attempt(const ProgrammeStep& step) const {
-        const double below = step.pivots <= settled_pivots ? attempt_below : attempt_always_below;
+        const double below = step.changes <= settled_pivots ? attempt_below : attempt_always_below;
         return programmes_ > 1 // the first one keeps the overlaps of the start
                && step.bounds == 0 && step.largest <= below * scale_.mean_radius();
     }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace isostat::preparation {
 
@@ -19,6 +20,11 @@ constexpr double objective_scale = 256;
 constexpr double tolerance = 1e-9;
 /// Walls collect the displacements of all the disks in front of them.
 constexpr double wall_trust = 10;
+/// Complementarity products at the end of the interior-point method: multipliers of rattlers are of order 1e-5 in the
+/// scale of the objective, gaps that matter 1e-6.
+constexpr double interior_tolerance = 1e-14;
+/// Contacts that change from one programme to the next: a pivot each is cheaper below this.
+constexpr long few_changes = 100;
 /// Share of a complete contact list above which overlapping pairs are worth being the first basis.
 constexpr double dense_enough = 0.9;
 
@@ -54,12 +60,22 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
         contact.push_back(c);
         gap.push_back(isostat::gap(packing, c));
     }
+
+    /// First entry of each row, and the end.
+    [[nodiscard]] std::vector<int> starts() const {
+        std::vector<int> start(contact.size() + 1, 0);
+        for (const int r : row) {
+            ++start[static_cast<std::size_t>(r) + 1];
+        }
+        std::partial_sum(start.begin(), start.end(), start.begin());
+        return start;
+    }
 };
 
 template <int Dim>
-ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust,
+ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust, bool large,
                                         const std::atomic<bool>* stop)
-    : infinitesimal_(&infinitesimal), trust_(trust), stop_(stop) {}
+    : infinitesimal_(&infinitesimal), trust_(trust), stop_(stop), large_(large), inside_(large) {}
 
 template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
     // Two disks approach by at most 2 sqrt(Dim) trust: a pair farther apart cannot overlap after the step.
@@ -93,6 +109,33 @@ template <int Dim> std::vector<Contact> ContactProgramme<Dim>::candidates(const 
     return std::move(rows.contact);
 }
 
+template <int Dim>
+BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const {
+    BoxedProgramme programme;
+    programme.start = rows.starts();
+    programme.column = rows.column;
+    programme.value = rows.value;
+    const std::size_t disks = infinitesimal_->size();
+    programme.bound.assign(packing.q.size(), trust_);
+    programme.cost.assign(packing.q.size(), 0.0);
+    for (std::size_t k = 0; k < disks; ++k) {
+        programme.cost[k] = -objective_scale * eps * (*infinitesimal_)[k];
+    }
+    for (int a = 0; a < Dim; ++a) {
+        const std::size_t k = disks + static_cast<std::size_t>(a);
+        programme.bound[k] *= wall_trust;
+        programme.cost[k] = objective_scale;
+        for (int b = 0; b < Dim; ++b) {
+            programme.cost[k] *= b == a ? 1.0 : packing.length(b);
+        }
+    }
+    programme.lower.resize(rows.gap.size());
+    for (std::size_t k = 0; k < rows.gap.size(); ++k) {
+        programme.lower[k] = first_ ? std::min(0.0, -rows.gap[k]) : -rows.gap[k];
+    }
+    return programme;
+}
+
 template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>& packing, double eps) {
     Rows rows;
     collect(packing, rows);
@@ -100,24 +143,23 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
     const auto disks = static_cast<int>(infinitesimal_->size());
     const auto count = static_cast<int>(rows.contact.size());
 
-    std::vector<double> lower(packing.q.size(), -trust_);
-    std::vector<double> upper(packing.q.size(), trust_);
-    std::vector<double> cost(packing.q.size(), 0.0);
-    for (int k = 0; k < disks; ++k) {
-        cost[static_cast<std::size_t>(k)] = -objective_scale * eps * (*infinitesimal_)[static_cast<std::size_t>(k)];
-    }
-    for (int a = 0; a < Dim; ++a) {
-        const auto k = static_cast<std::size_t>(disks + a);
-        lower[k] *= wall_trust;
-        upper[k] *= wall_trust;
-        cost[k] = objective_scale;
-        for (int b = 0; b < Dim; ++b) {
-            cost[k] *= b == a ? 1.0 : packing.length(b);
+    const BoxedProgramme programme = boxed(packing, rows, eps);
+    const std::vector<double>& upper = programme.bound;
+    const std::vector<double>& cost = programme.cost;
+    const std::vector<double>& row_lower = programme.lower;
+    std::vector<double> lower(upper.size());
+    std::transform(upper.begin(), upper.end(), lower.begin(), [](double bound) { return -bound; });
+    const auto asked = [this] { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); };
+    ProgrammeStep step;
+    if (inside_) {
+        count_work(Work::linear_programmes);
+        const bool solved = solve_inside(rows, programme, step);
+        if (asked()) {
+            step.outcome = ProgrammeStep::Outcome::interrupted;
         }
-    }
-    std::vector<double> row_lower(rows.gap.size());
-    for (std::size_t k = 0; k < row_lower.size(); ++k) {
-        row_lower[k] = first_ ? std::min(0.0, -rows.gap[k]) : -rows.gap[k];
+        if (solved || asked()) {
+            return step;
+        }
     }
     CoinPackedMatrix matrix(true, rows.row.data(), rows.column.data(), rows.value.data(),
                             static_cast<CoinBigIndex>(rows.value.size()));
@@ -180,7 +222,6 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
     } else {
         simplex.dual();
     }
-    const auto asked = [this] { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); };
     long pivots = simplex.numberIterations();
     if (simplex.status() != 0 && !asked()) {
         // A bad basis can pass for an infeasible programme: believe only what the slack basis says.
@@ -189,9 +230,9 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
         pivots += simplex.numberIterations();
     }
 
-    ProgrammeStep step;
     step.status = simplex.status();
     step.pivots = pivots;
+    step.changes = pivots;
     if (asked()) {
         step.outcome = ProgrammeStep::Outcome::interrupted;
         return step;
@@ -225,7 +266,51 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
         step.bounds += status != ClpSimplex::basic ? 1 : 0;
     }
     first_ = false;
+    inside_ = large_ && pivots > few_changes;
     return step;
+}
+
+template <int Dim>
+bool ContactProgramme<Dim>::solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step) {
+    ActiveSet active = interior_point(programme, interior_tolerance, stop_);
+    if (!active.converged) {
+        return false; // infeasible, or beyond double: the simplex method says which
+    }
+    step.outcome = ProgrammeStep::Outcome::optimal;
+    step.displacement = std::move(active.x);
+    for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {
+        step.largest = std::max(step.largest, std::abs(step.displacement[k]));
+    }
+    std::vector<int> row_status(rows.contact.size());
+    std::size_t old = 0;
+    for (std::size_t k = 0; k < rows.contact.size(); ++k) {
+        row_status[k] = active.row[k] != 0 ? ClpSimplex::atLowerBound : ClpSimplex::basic;
+        if (active.row[k] != 0) {
+            step.contacts.push_back(rows.contact[k]);
+        }
+        while (old < row_contact_.size() && row_contact_[old] < rows.contact[k]) {
+            ++old;
+        }
+        const bool before =
+            old < row_contact_.size() && row_contact_[old] == rows.contact[k] && row_status_[old] != ClpSimplex::basic;
+        step.changes += before != (active.row[k] != 0) ? 1 : 0;
+    }
+    column_status_.assign(active.column.size(), ClpSimplex::basic);
+    long held = 0;
+    for (std::size_t k = 0; k < active.column.size(); ++k) {
+        if (active.column[k] != 0) {
+            ++held;
+            column_status_[k] = active.column[k] < 0 ? ClpSimplex::atLowerBound : ClpSimplex::atUpperBound;
+        }
+    }
+    const long missing =
+        std::abs(static_cast<long>(active.column.size()) - static_cast<long>(step.contacts.size()) - held);
+    step.bounds = static_cast<int>(held + missing);
+    row_contact_ = std::move(rows.contact);
+    row_status_ = std::move(row_status);
+    first_ = false;
+    inside_ = missing != 0 || step.changes > few_changes; // the simplex method needs a basis that is nearly right
+    return true;
 }
 
 template class ContactProgramme<2>;

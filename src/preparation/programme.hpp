@@ -1,7 +1,9 @@
 #pragma once
 /// \file
 /// One linear programme of the sequence: linearised gaps around a configuration, solved by Clp from the basis of the
-/// one before.
+/// one before, or by an interior-point method where many pivots are expected.
+
+#include "preparation/interior_point.hpp"
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/packing/packing.hpp>
@@ -14,11 +16,13 @@ namespace isostat::preparation {
 /// What one linear programme gave.
 struct ProgrammeStep {
     enum class Outcome { optimal, infeasible, interrupted, failed } outcome = Outcome::failed;
-    int status = 0; ///< Clp's own, for messages
-    long pivots = 0;
+    int status = 0;                   ///< Clp's own, for messages
+    long pivots = 0;                  ///< of the simplex method
+    long changes = 0;                 ///< pivots, or contacts that the interior-point method gave up or took
     std::vector<double> displacement; ///< one per coordinate of q
     std::vector<Contact> contacts;    ///< rows that are nonbasic: reduced gap 0, sorted
-    int bounds = 0;     ///< coordinates that are nonbasic: held by a trust bound; 0: a vertex of the gaps alone
+    int bounds = 0; ///< coordinates that are nonbasic: held by a trust bound; 0: a vertex of the gaps alone. After the
+                    ///< interior-point method also what is missing to (or beyond) a basis
     double largest = 0; ///< largest |displacement| of a disk's coordinate
 };
 
@@ -29,8 +33,9 @@ struct ProgrammeStep {
 /// multipliers eps g of rattlers.
 template <int Dim> class ContactProgramme {
   public:
-    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step.
-    ContactProgramme(const std::vector<double>& infinitesimal, double trust, const std::atomic<bool>* stop);
+    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step. `large`: many
+    /// pivots are expected at first.
+    ContactProgramme(const std::vector<double>& infinitesimal, double trust, bool large, const std::atomic<bool>* stop);
 
     /// Minimises sum_a F_a dL_a - eps g.dx, F_a = product of the other lengths, over displacements within the trust
     /// bounds.
@@ -49,11 +54,15 @@ template <int Dim> class ContactProgramme {
   private:
     struct Rows;
     void collect(const Packing<Dim>& packing, Rows& rows) const;
+    BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
+    bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
 
     const std::vector<double>* infinitesimal_;
     double trust_;
     const std::atomic<bool>* stop_;
+    bool large_;
     bool first_ = true;
+    bool inside_ = false;              ///< the next programme goes to the interior-point method
     std::vector<Contact> row_contact_; ///< sorted
     std::vector<int> row_status_;      ///< Clp's, one per row of the last programme
     std::vector<int> column_status_;

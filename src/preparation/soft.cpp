@@ -1,9 +1,14 @@
 #include "preparation/soft.hpp"
 
+#include "preparation/pair_forces.hpp"
+
+#include <isostat/core/threads.hpp>
 #include <isostat/core/work.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <numeric>
 #include <utility>
 
 namespace isostat::preparation {
@@ -14,6 +19,27 @@ namespace {
 /// <= 12 in a dense packing.
 constexpr double largest_step = 0.4;
 constexpr long report_interval = 500;
+/// Disks per block of a sum. Smaller packings are one block, in the order of the disks.
+constexpr std::size_t block = 8192;
+constexpr std::size_t pair_stretch = 4096;
+/// The list reaches farther when it is renewed often, less far when seldom; nothing else depends on it.
+constexpr double least_skin = 0.02; // mean diameters
+constexpr double most_skin = 0.3;
+constexpr long renewed_often = 30; // steps
+constexpr long renewed_seldom = 150;
+
+/// x and y in one register.
+using Plane [[gnu::vector_size(16)]] = double;
+
+Plane load(const double* xy) {
+    Plane result;
+    std::memcpy(&result, xy, sizeof result);
+    return result;
+}
+
+void store(double* xy, const Plane& value) {
+    std::memcpy(xy, &value, sizeof value);
+}
 
 } // namespace
 
@@ -27,130 +53,280 @@ SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, const std::atomic<bool>* 
         sum += 2 * r;
     }
     mean_diameter_ = sum / static_cast<double>(n_);
+    max_radius_ = packing.max_radius();
     wall_mass_ = std::max(1.0, static_cast<double>(n_) / 3);
-    skin_ = 0.2 * mean_diameter_;
+    skin_ = 0.1 * mean_diameter_;
+    renumber();
     refresh_pairs();
 }
 
+template <int Dim> void SoftDynamics<Dim>::renumber() {
+    order_.resize(n_);
+    std::iota(order_.begin(), order_.end(), 0);
+    if (n_ > block) {
+        const double height = 2 * mean_diameter_;
+        const auto key = [&](int i) {
+            const auto k = Dim * static_cast<std::size_t>(i);
+            return std::pair(std::floor(packing_.q[k + Dim - 1] / height), packing_.q[k]);
+        };
+        std::sort(order_.begin(), order_.end(), [&](int i, int j) {
+            const auto a = key(i);
+            const auto b = key(j);
+            return a < b || (a == b && i < j);
+        });
+    }
+    q_.resize(packing_.q.size());
+    radius_.resize(n_);
+    for (std::size_t k = 0; k < n_; ++k) {
+        const auto i = static_cast<std::size_t>(order_[k]);
+        radius_[k] = packing_.radius[i];
+        for (std::size_t a = 0; a < Dim; ++a) {
+            q_[Dim * k + a] = packing_.q[Dim * i + a];
+        }
+    }
+    std::copy(packing_.q.end() - Dim, packing_.q.end(), q_.end() - Dim);
+}
+
+template <int Dim> void SoftDynamics<Dim>::publish_lengths() {
+    std::copy(q_.end() - Dim, q_.end(), packing_.q.end() - Dim);
+}
+
+template <int Dim> SoftMeasures SoftDynamics<Dim>::finish(SoftMeasures result) {
+    publish_lengths();
+    for (std::size_t k = 0; k < n_; ++k) {
+        const auto i = static_cast<std::size_t>(order_[k]);
+        for (std::size_t a = 0; a < Dim; ++a) {
+            packing_.q[Dim * i + a] = q_[Dim * k + a];
+        }
+    }
+    result.interrupted = stopped();
+    count_work(Work::dynamics_steps, result.steps);
+    return result;
+}
+
 template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
-    find_pairs<Dim>(packing_.q, packing_.radius, skin_, pairs_);
+    find_pairs<Dim>(q_, radius_, skin_, pairs_);
     allowance_ = skin_;
+    age_ = 0;
+    const std::size_t count = pairs_.partner.size();
+    pair_first_.resize(count);
+    pair_range_.resize(count);
+    overlap_of_.resize(count);
+    push_.resize(Dim * count);
+    virial_.resize(Dim * count);
+    pair_target_.resize(count);
+    pairs_across_.clear();
+    const Pieces blocks{n_, block};
+    from_above_.resize(Dim * n_);
+    from_below_.resize(Dim * (n_ + blocks.count()));
+    for (std::size_t i = 0; i < n_; ++i) {
+        const std::size_t piece = i / block;
+        for (auto k = static_cast<std::size_t>(pairs_.start[i]); k < static_cast<std::size_t>(pairs_.start[i + 1]);
+             ++k) {
+            const auto j = static_cast<std::size_t>(pairs_.partner[k]);
+            pair_first_[k] = static_cast<int>(i);
+            pair_range_[k] = radius_[i] + radius_[j];
+            const bool inside = j < blocks.last(piece);
+            pair_target_[k] = static_cast<int>(inside ? j : n_ + piece);
+            if (!inside) {
+                pairs_across_.push_back(static_cast<int>(k));
+            }
+        }
+    }
+    wall_disks_.clear();
+    for (std::size_t i = 0; i < n_; ++i) {
+        bool near = false;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double x = q_[Dim * i + a];
+            near = near || x - radius_[i] < skin_ || q_[Dim * n_ + a] - x - radius_[i] < skin_;
+        }
+        if (near) {
+            wall_disks_.push_back({.disk = i});
+        }
+    }
+}
+
+template <int Dim> void SoftDynamics<Dim>::wall_forces() {
+    for (WallDisk& w : wall_disks_) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double x = q_[Dim * w.disk + a];
+            const double length = q_[Dim * n_ + a];
+            const double below = std::max(0.0, radius_[w.disk] - x);
+            const double above = std::max(0.0, radius_[w.disk] - (length - x));
+            w.overlap[2 * a] = below;
+            w.overlap[2 * a + 1] = above;
+            w.force[a] = below - above;
+            w.virial[2 * a] = below * x / length;
+            w.virial[2 * a + 1] = above * (1 - x / length);
+        }
+    }
+}
+
+template <int Dim>
+std::array<double, Dim> SoftDynamics<Dim>::spread(std::size_t first, std::size_t last, std::size_t piece) {
+    // One pass over the pairs without a branch: loops over the few partners of each disk are mispredicted at every end.
+    static_assert(Dim == 2);
+    const double* const push = push_.data();
+    const double* const share = virial_.data();
+    const int* const target = pair_target_.data();
+    const int* const source = pair_first_.data();
+    double* const from_below = from_below_.data();
+    double* const from_above = from_above_.data();
+    std::fill(from_below + Dim * first, from_below + Dim * last, 0.0);
+    std::fill(from_above + Dim * first, from_above + Dim * last, 0.0);
+    store(from_below + Dim * (n_ + piece), Plane{});
+    auto wall = std::lower_bound(wall_disks_.begin(), wall_disks_.end(), first,
+                                 [](const WallDisk& w, std::size_t i) { return w.disk < i; });
+    Plane virial{};
+    auto k = static_cast<std::size_t>(pairs_.start[first]);
+    const auto pairs_until = [&](std::size_t end) {
+        for (; k < end; ++k) {
+            const Plane p = load(push + Dim * k);
+            double* const own = from_above + Dim * static_cast<std::size_t>(source[k]);
+            double* const other = from_below + Dim * static_cast<std::size_t>(target[k]);
+            store(own, load(own) - p);
+            store(other, load(other) + p);
+            virial += load(share + Dim * k);
+        }
+    };
+    for (; wall != wall_disks_.end() && wall->disk < last; ++wall) {
+        pairs_until(static_cast<std::size_t>(pairs_.start[wall->disk]));
+        store(from_above + Dim * wall->disk, Plane{wall->force[0], wall->force[1]});
+        virial += Plane{wall->virial[0], wall->virial[2]};
+        virial += Plane{wall->virial[1], wall->virial[3]};
+    }
+    pairs_until(static_cast<std::size_t>(pairs_.start[last]));
+    return {virial[0], virial[1]};
+}
+
+template <int Dim> typename SoftDynamics<Dim>::Sums SoftDynamics<Dim>::add_up(std::size_t first, std::size_t last) {
+    Sums sums;
+    for (std::size_t k = Dim * first; k < Dim * last; ++k) {
+        const double f = from_below_[k] + from_above_[k];
+        const double w = velocity_[k];
+        force_[k] = f;
+        sums.power += f * w;
+        sums.vv += w * w;
+        sums.ff += f * f;
+    }
+    return sums;
 }
 
 template <int Dim> void SoftDynamics<Dim>::compute_forces(double pressure) {
-    const double* const q = packing_.q.data();
-    const double* const radius = packing_.radius.data();
-    double* const force = force_.data();
-    std::fill(force_.begin(), force_.end(), 0.0);
-    std::array<double, Dim> length{};
-    std::array<double, Dim> virial{};
-    for (std::size_t a = 0; a < Dim; ++a) {
-        length[a] = q[Dim * n_ + a];
+    const Pieces stretches{pairs_.partner.size(), pair_stretch};
+    parallel_pieces(stretches.count(), [&](std::size_t piece) {
+        const std::size_t from = stretches.first(piece);
+        const PairStretch stretch{stretches.last(piece) - from, pair_first_.data() + from, pairs_.partner.data() + from,
+                                  pair_range_.data() + from};
+        pair_forces(stretch, q_.data(), q_.data() + Dim * n_, overlap_of_.data() + from, push_.data() + Dim * from,
+                    virial_.data() + Dim * from);
+    });
+    wall_forces();
+    const Pieces blocks{n_, block};
+    std::vector<std::array<double, Dim>> virials(blocks.count());
+    parallel_pieces(blocks.count(), [&](std::size_t piece) {
+        virials[piece] = spread(blocks.first(piece), blocks.last(piece), piece);
+    });
+    for (const int k : pairs_across_) {
+        const auto p = static_cast<std::size_t>(k);
+        double* const other = from_below_.data() + Dim * static_cast<std::size_t>(pairs_.partner[p]);
+        store(other, load(other) + load(push_.data() + Dim * p));
     }
-    double overlap = 0;
-    double sum = 0;
-    int contacts = 0;
-    const auto count = [&](double f) {
-        overlap = std::max(overlap, f);
-        sum += f;
-        ++contacts;
-    };
-    for (std::size_t i = 0; i < n_; ++i) {
-        std::array<double, Dim> x{};
-        std::array<double, Dim> fi{};
-        const double ri = radius[i];
+    std::vector<Sums> sums(blocks.count());
+    parallel_pieces(blocks.count(),
+                    [&](std::size_t piece) { sums[piece] = add_up(blocks.first(piece), blocks.last(piece)); });
+    sums_ = sums.front();
+    std::array<double, Dim> virial = virials.front();
+    for (std::size_t b = 1; b < sums.size(); ++b) {
         for (std::size_t a = 0; a < Dim; ++a) {
-            x[a] = q[Dim * i + a];
-            const double below = ri - x[a];
-            if (below > 0) {
-                fi[a] += below;
-                virial[a] += below * x[a] / length[a];
-                count(below);
-            }
-            const double above = ri - (length[a] - x[a]);
-            if (above > 0) {
-                fi[a] -= above;
-                virial[a] += above * (1 - x[a] / length[a]);
-                count(above);
-            }
+            virial[a] += virials[b][a];
         }
-        for (int k = pairs_.start[i]; k < pairs_.start[i + 1]; ++k) {
-            const auto j = static_cast<std::size_t>(pairs_.partner[static_cast<std::size_t>(k)]);
-            std::array<double, Dim> d{};
-            double square = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
-                d[a] = q[Dim * j + a] - x[a];
-                square += d[a] * d[a];
-            }
-            const double range = ri + radius[j];
-            if (square < range * range && square > 0) {
-                const double distance = std::sqrt(square);
-                const double f = range - distance;
-                const double scale = f / distance;
-                for (std::size_t a = 0; a < Dim; ++a) {
-                    const double component = scale * d[a];
-                    fi[a] -= component;
-                    force[Dim * j + a] += component;
-                    virial[a] += component * d[a] / length[a];
-                }
-                count(f);
-            }
-        }
-        for (std::size_t a = 0; a < Dim; ++a) {
-            force[Dim * i + a] += fi[a];
-        }
+        sums_.power += sums[b].power;
+        sums_.vv += sums[b].vv;
+        sums_.ff += sums[b].ff;
     }
     for (std::size_t a = 0; a < Dim; ++a) {
         double area = 1;
         for (std::size_t b = 0; b < Dim; ++b) {
-            area *= b == a ? 1.0 : length[b];
+            area *= b == a ? 1.0 : q_[Dim * n_ + b];
         }
-        force[Dim * n_ + a] = virial[a] - pressure * area;
+        force_[Dim * n_ + a] = virial[a] - pressure * area;
     }
-    overlap_ = overlap;
-    force_sum_ = sum;
-    contacts_ = contacts;
 }
 
-template <int Dim> void SoftDynamics<Dim>::advance(double dt, bool walls) {
-    double* const q = packing_.q.data();
-    std::array<double, Dim> stretch{};
-    double shrink = 0;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        stretch[a] = walls ? 1 + dt * velocity_[Dim * n_ + a] / q[Dim * n_ + a] : 1.0;
-        q[Dim * n_ + a] *= stretch[a];
-        shrink = std::max(shrink, 1 - stretch[a]);
+template <int Dim> void SoftDynamics<Dim>::count_contacts() {
+    overlap_ = 0;
+    contacts_ = 0;
+    const auto count = [&](double f) {
+        overlap_ = overlap_ < f ? f : overlap_;
+        contacts_ += f > 0 ? 1 : 0;
+    };
+    for (const double f : overlap_of_) {
+        count(f);
     }
-    double fastest = 0;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (const WallDisk& w : wall_disks_) {
+        for (const double f : w.overlap) {
+            count(f);
+        }
+    }
+}
+
+template <int Dim>
+void SoftDynamics<Dim>::move(std::size_t first, std::size_t last, double dt, const std::array<double, Dim>& stretch,
+                             double& fastest) {
+    for (std::size_t i = first; i < last; ++i) {
         double square = 0;
         for (std::size_t a = 0; a < Dim; ++a) {
             const double w = velocity_[Dim * i + a];
-            q[Dim * i + a] = q[Dim * i + a] * stretch[a] + dt * w;
+            q_[Dim * i + a] = q_[Dim * i + a] * stretch[a] + dt * w;
             square += w * w;
         }
-        fastest = std::max(fastest, square);
+        fastest = fastest < square ? square : fastest;
     }
+}
+
+template <int Dim> void SoftDynamics<Dim>::advance(double dt, bool walls) {
+    std::array<double, Dim> stretch{};
+    double shrink = 0;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        stretch[a] = walls ? 1 + dt * velocity_[Dim * n_ + a] / q_[Dim * n_ + a] : 1.0;
+        q_[Dim * n_ + a] *= stretch[a];
+        shrink = std::max(shrink, 1 - stretch[a]);
+    }
+    const Pieces blocks{n_, block};
+    std::vector<double> fastest(blocks.count(), 0.0);
+    parallel_pieces(blocks.count(), [&](std::size_t piece) {
+        move(blocks.first(piece), blocks.last(piece), dt, stretch, fastest[piece]);
+    });
     // Two disks that are not listed approach by at most twice the largest peculiar displacement plus the homogeneous
-    // shortening.
-    allowance_ -= 2 * dt * std::sqrt(fastest) + shrink * (2 * packing_.max_radius() + skin_);
+    // shortening; so do a disk and a wall.
+    allowance_ -=
+        2 * dt * std::sqrt(*std::max_element(fastest.begin(), fastest.end())) + shrink * (2 * max_radius_ + skin_);
+    ++age_;
     if (allowance_ < 0) {
+        if (age_ < renewed_often) {
+            skin_ = std::min(1.5 * skin_, most_skin * mean_diameter_);
+        } else if (age_ > renewed_seldom) {
+            skin_ = std::max(0.6 * skin_, least_skin * mean_diameter_);
+        }
         refresh_pairs();
     }
 }
 
-template <int Dim> SoftMeasures SoftDynamics<Dim>::measure(double pressure) const {
+template <int Dim> SoftMeasures SoftDynamics<Dim>::measure(double pressure) {
+    count_contacts();
     SoftMeasures result;
-    double square = 0;
+    double largest = 0;
     for (std::size_t k = 0; k < Dim * n_; ++k) {
-        square = std::max(square, std::abs(force_[k]));
+        const double f = std::abs(force_[k]);
+        largest = largest < f ? f : largest;
     }
     const double unit = pressure > 0 ? pressure * mean_diameter_ : mean_diameter_;
-    result.residual = square / unit;
+    result.residual = largest / unit;
     for (std::size_t a = 0; a < Dim && pressure > 0; ++a) {
         double area = pressure;
         for (std::size_t b = 0; b < Dim; ++b) {
-            area *= b == a ? 1.0 : packing_.q[Dim * n_ + b];
+            area *= b == a ? 1.0 : q_[Dim * n_ + b];
         }
         result.pressure_error = std::max(result.pressure_error, std::abs(force_[Dim * n_ + a]) / area);
     }
@@ -165,6 +341,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::separate(double overlap, long
     const double limit = overlap * mean_diameter_;
     for (; step < max_steps && !stopped(); ++step) {
         compute_forces(0);
+        count_contacts();
         if (overlap_ <= limit) {
             break;
         }
@@ -177,10 +354,8 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::separate(double overlap, long
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     SoftMeasures result = measure(0);
     result.converged = overlap_ <= limit;
-    result.interrupted = stopped();
     result.steps = step;
-    count_work(Work::dynamics_steps, step);
-    return result;
+    return finish(result);
 }
 
 template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, double rate, long max_steps) {
@@ -201,9 +376,9 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
         for (std::size_t a = 0; a < Dim; ++a) {
             double area = pressure;
             for (std::size_t b = 0; b < Dim; ++b) {
-                area *= b == a ? 1.0 : packing_.q[Dim * n_ + b];
+                area *= b == a ? 1.0 : q_[Dim * n_ + b];
             }
-            const double length = packing_.q[Dim * n_ + a];
+            const double length = q_[Dim * n_ + a];
             const double out_of_balance = force_[Dim * n_ + a] / area;
             velocity_[Dim * n_ + a] = rate * length * std::clamp(out_of_balance, -1.0, 1.0);
             error = std::max(error, std::abs(out_of_balance));
@@ -214,16 +389,15 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
         }
         advance(dt, true);
         if (step % report_interval == 0) {
+            publish_lengths();
             progress_(std::clamp(1 - error, 0.0, 1.0));
         }
     }
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
     SoftMeasures result = measure(pressure);
     result.converged = reached;
-    result.interrupted = stopped();
     result.steps = step;
-    count_work(Work::dynamics_steps, step);
-    return result;
+    return finish(result);
 }
 
 template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double tolerance, long max_steps) {
@@ -252,6 +426,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
             }
             first_residual = std::max(first_residual, worst);
             if (step % report_interval == 0) {
+                publish_lengths();
                 progress_(
                     std::clamp(std::log(worst / first_residual) / std::log(tolerance / first_residual), 0.0, 1.0));
             }
@@ -259,14 +434,9 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
         for (std::size_t a = 0; a < Dim; ++a) {
             force_[disks + a] /= wall_mass_; // from here on: accelerations
         }
-        double power = 0;
-        double vv = 0;
-        double ff = 0;
-        for (std::size_t k = 0; k < disks; ++k) {
-            power += force_[k] * velocity_[k];
-            vv += velocity_[k] * velocity_[k];
-            ff += force_[k] * force_[k];
-        }
+        double power = sums_.power;
+        double vv = sums_.vv;
+        double ff = sums_.ff;
         for (std::size_t k = disks; k < disks + Dim; ++k) {
             power += wall_mass_ * force_[k] * velocity_[k];
             vv += wall_mass_ * velocity_[k] * velocity_[k];
@@ -291,10 +461,8 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
         }
         advance(dt, true);
     }
-    result.interrupted = stopped();
     result.steps = step;
-    count_work(Work::dynamics_steps, step);
-    return result;
+    return finish(result);
 }
 
 template class SoftDynamics<2>;

@@ -33,9 +33,14 @@ struct SoftMeasures {
 };
 
 /// The soft packing: positions and velocities of disks and walls, and its neighbour list.
+///
+/// Sums over disks and pairs are taken in blocks of 8192 disks, in order, whoever computes them: the result has the
+/// same bits for any number of threads. Larger packings are renumbered along rows of the box, so that neighbours are
+/// near each other in memory too.
 template <int Dim> class SoftDynamics {
   public:
-    /// Takes the packing as it is; overlaps are allowed.
+    /// Takes the packing as it is; overlaps are allowed. The packing is up to date after each phase; during one only
+    /// its lengths are.
     SoftDynamics(Packing<Dim>& packing, const std::atomic<bool>* stop, std::function<void(double)> progress);
 
     /// Fixed box: pushes overlapping disks apart until no overlap exceeds `overlap` mean diameters (or `max_steps`).
@@ -49,23 +54,58 @@ template <int Dim> class SoftDynamics {
     SoftMeasures relax(double pressure, double tolerance, long max_steps);
 
   private:
+    /// What a block of disks adds to the sums over all of them.
+    struct Sums {
+        double power = 0, vv = 0, ff = 0; ///< force.velocity, velocity^2, force^2
+    };
+    /// A disk that a wall may reach before the next search.
+    struct WallDisk {
+        std::size_t disk = 0;
+        std::array<double, Dim> force{};
+        std::array<double, 2 * Dim> virial{}; ///< lower and upper wall of each axis
+        std::array<double, 2 * Dim> overlap{};
+    };
+
     void compute_forces(double pressure);
+    void wall_forces();
+    /// Sums of the pairs whose first disk is in [first, last): forces on disks, virials returned.
+    std::array<double, Dim> spread(std::size_t first, std::size_t last, std::size_t piece);
+    Sums add_up(std::size_t first, std::size_t last);
     void advance(double dt, bool walls);
+    void move(std::size_t first, std::size_t last, double dt, const std::array<double, Dim>& stretch, double& fastest);
     void refresh_pairs();
-    [[nodiscard]] SoftMeasures measure(double pressure) const;
+    void renumber();
+    void count_contacts();
+    void publish_lengths();
+    SoftMeasures finish(SoftMeasures result);
+    [[nodiscard]] SoftMeasures measure(double pressure);
     [[nodiscard]] bool stopped() const { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); }
 
     Packing<Dim>& packing_;
     std::size_t n_;
+    std::vector<int> order_; ///< disk of the packing in each place here
+    std::vector<double> q_, radius_;
+    double max_radius_ = 0;
     double mean_diameter_ = 0;
     double wall_mass_ = 0;
     std::vector<double> velocity_; ///< Dim*n peculiar velocities, then the walls'
     std::vector<double> force_;    ///< the same layout
+    Sums sums_;                    ///< of the disks
     PairList pairs_;
+    std::vector<int> pair_first_;    ///< the other index of each pair
+    std::vector<double> pair_range_; ///< sum of the radii
+    std::vector<int> pair_target_;   ///< partner, or where a block keeps what goes to a disk of another block
+    std::vector<int> pairs_across_;  ///< pairs with disks in two blocks
+    std::vector<double> from_below_; ///< force on each disk by partners of lower number
+    std::vector<double> from_above_; ///< the same by walls and partners of higher number
+    std::vector<double> overlap_of_; ///< of each pair
+    std::vector<double> push_;       ///< force on the second of each pair
+    std::vector<double> virial_;     ///< share of each pair
+    std::vector<WallDisk> wall_disks_;
     double skin_ = 0;
     double allowance_ = 0; ///< relative approach of two disks that the pair list still covers
+    long age_ = 0;         ///< of the list, in steps
     double overlap_ = 0;
-    double force_sum_ = 0;
     int contacts_ = 0;
     const std::atomic<bool>* stop_;
     std::function<void(double)> progress_;

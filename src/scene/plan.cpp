@@ -78,6 +78,14 @@ void add_solvers(Plan& plan, const Scene& scene) {
                                          "factorisations per arc, more for long ones");
     plan.add("solver", "multiprecision (MPFR), exact numbers", true,
              "only where double-double does not decide a sign or an order");
+    const bool perturbs = runs && scene.run.ties == TiePolicy::perturb;
+    plan.add("solver", "first order in the radii", perturbs,
+             !runs ? std::string("no trajectory")
+             : perturbs
+                 ? fmt::format("ties = \"perturb\": ties are settled for radii R_i + eps rho_i, rho from seed {}; "
+                               "hyperstatic starts are followed",
+                               scene.run.ties_seed)
+                 : std::string("ties = \"stop\": a tie ends the run"));
     plan.add("solver", "fixed disks, external forces on disks", false,
              "a scene has none; a start file in the state format may");
 }

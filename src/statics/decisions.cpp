@@ -1,3 +1,5 @@
+#include "statics/straight_strut.hpp"
+
 #include <isostat/statics/decisions.hpp>
 
 #include <fmt/format.h>
@@ -16,9 +18,10 @@ constexpr double u = 0x1p-53;
 /// A contact that may be opened, with the quantity by which the rule orders it (smallest first).
 struct Contender {
     ContactId contact;
-    Enclosure force; ///< what must be negative (for a held coordinate: minus the magnitude)
-    Enclosure key;   ///< what the rule compares
-    double margin;   ///< with which the sign of `force` is proved
+    Enclosure force;       ///< what must be negative (for a held coordinate: minus the magnitude)
+    Enclosure key;         ///< what the rule compares
+    double margin;         ///< with which the sign of `force` is proved
+    double multiplier = 0; ///< of a held coordinate, with its sign
 };
 
 template <int Dim> std::string name(const Statics<Dim>& statics, ContactId l) {
@@ -83,10 +86,31 @@ Order order_of(Statics<Dim>& statics, const Enclosure& difference, const ForceEx
     return statics.compare(a, b);
 }
 
-/// Picks by the rule among contenders that all carry a proved negative force.
+/// First-order term of what the rule compares, for a contender of the finite stage.
+template <int Dim>
+Enclosure first_order_key(PerturbedStatics<Dim>& perturbed, const Statics<Dim>& statics, const Contender& contender,
+                          OpeningRule rule) {
+    Enclosure f1 = perturbed.force(contender.contact);
+    // A held coordinate competes with -|m|: its derivative is -sign(m) m1, and the force of the contender is -|m|.
+    const bool flipped = is_held(statics, contender.contact) && contender.multiplier > 0;
+    if (flipped != (rule == OpeningRule::least_negative)) {
+        f1.value = -f1.value;
+    }
+    return f1;
+}
+
+/// What a comparison of first-order terms needs to be called one: said in messages.
+std::string shown(const Enclosure& e) {
+    return fmt::format("{:.6g} +- {:.3g}", e.value, e.radius);
+}
+
+/// Picks by the rule among contenders that all carry a proved negative force. At a fresh hold the contacts of a
+/// straight strut carry one force (S4): the infinitesimal loads order them, not the digits to which the turn was
+/// located.
 template <int Dim, class Expression>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Expression expression, OpeningRule rule,
-                     std::uint64_t random_bits) {
+                     std::uint64_t random_bits, std::span<const ContactId> zero_holds = {},
+                     PerturbedStatics<Dim>* perturbed = nullptr) {
     if (rule == OpeningRule::random) {
         // Ordered by identity, so that the choice does not depend on the order of the contact list.
         std::sort(negative.begin(), negative.end(), [&](const Contender& a, const Contender& b) {
@@ -111,6 +135,7 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         }
         return e;
     };
+    const bool by_force = rule == OpeningRule::most_negative || rule == OpeningRule::least_negative;
     std::size_t best = 0;
     for (std::size_t k = 1; k < negative.size(); ++k) {
         if (negative[k].key.value < negative[best].key.value) {
@@ -123,9 +148,30 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         double margin = infinity;
         Rung rung = statics.rung();
         std::string tied;
+        std::vector<TieDecision> settled;
+        bool strut = false;
         std::optional<std::size_t> better;
+        const auto mates = !zero_holds.empty() && by_force ? strut_mates(statics, negative[best].contact, zero_holds)
+                                                           : std::vector<StrutMate>();
         for (std::size_t k = 0; k < negative.size() && !better; ++k) {
             if (k == best) {
+                continue;
+            }
+            const auto mate = std::find_if(mates.begin(), mates.end(),
+                                           [&](const StrutMate& m) { return m.contact == negative[k].contact; });
+            if (mate != mates.end()) {
+                strut = true;
+                const Enclosure& excess = mate->excess;
+                if (!excess.decided()) {
+                    tied +=
+                        fmt::format("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
+                                    "loads do not order: {:.3g}, known to {:.3g}",
+                                    name(statics, mate->contact), negative[k].force.value, excess.value, excess.radius);
+                } else if (excess.positive() == (rule == OpeningRule::least_negative)) {
+                    better = k;
+                } else {
+                    margin = std::min(margin, excess.margin());
+                }
                 continue;
             }
             Order order =
@@ -133,7 +179,29 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
             if (rule == OpeningRule::least_negative && !(negative[k].key - negative[best].key).decided()) {
                 order.sign = -order.sign; // expressions are forces, keys their opposites
             }
-            if (!order.decided || order.sign == 0) {
+            if ((!order.decided || order.sign == 0) && perturbed != nullptr && rule != OpeningRule::steepest &&
+                is_tie(order, perturbed->size())) {
+                const Enclosure mine = first_order_key(*perturbed, statics, negative[best], rule);
+                const Enclosure other = first_order_key(*perturbed, statics, negative[k], rule);
+                const Enclosure difference = other - mine;
+                if (!difference.decided()) {
+                    return Failure{FailureKind::undecided,
+                                   fmt::format("tied at first order too: the opening rule cannot order {} and {} ({}), "
+                                               "and the first-order terms of what it compares are {} and {}",
+                                               name(statics, negative[best].contact),
+                                               name(statics, negative[k].contact), reach(order), shown(mine),
+                                               shown(other))};
+                }
+                const auto& contacts = statics.structure().contacts();
+                settled.push_back({"opening", contacts[negative[best].contact.index()], mine,
+                                   contacts[negative[k].contact.index()], other, order.exponent, order.bits});
+                if (difference.negative()) {
+                    better = k;
+                } else {
+                    margin = std::min(margin, difference.margin());
+                    rung = std::max(rung, statics.rung());
+                }
+            } else if (!order.decided || order.sign == 0) {
                 tied += fmt::format("; {} (f = {:.17g}): {}", name(statics, negative[k].contact),
                                     negative[k].force.value, reach(order));
             } else if (order.sign < 0) {
@@ -152,8 +220,14 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
                            fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}){}",
                                        name(statics, negative[best].contact), negative[best].force.value, tied)};
         }
-        return Opening{
+        Opening opening{
             negative[best].contact, false, negative[best].force, +1, std::min(margin, negative[best].margin), rung};
+        opening.straight_strut = strut;
+        opening.perturbed = !settled.empty();
+        if (perturbed != nullptr) {
+            perturbed->log.insert(perturbed->log.end(), settled.begin(), settled.end());
+        }
+        return opening;
     }
     return Failure{FailureKind::undecided, "the comparisons of the opening rule contradict each other"};
 }
@@ -161,30 +235,39 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
 /// One stage of the lexicographic decision: all contacts with `finite` (or without) a finite force.
 template <int Dim, class Value, class Expression>
 Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, Expression force_of, OpeningRule rule,
-                              ContactId fresh_hold, std::uint64_t random_bits) {
+                              std::span<const ContactId> zero_holds, std::uint64_t random_bits,
+                              PerturbedStatics<Dim>* perturbed) {
     const auto expression = [&](ContactId l) {
         ForceExpression e = force_of(l);
         e.minus_magnitude = is_held(statics, l);
         return e;
     };
+    std::vector<ContactId> at_zero(zero_holds.begin(), zero_holds.end()); // holds without a force: they tie no strut
     std::vector<Contender> negative;
     double margin = infinity;
     std::vector<Contender> doubtful; // forces whose signs the enclosures do not prove
     for (std::size_t index = 0; index < statics.structure().contacts().size(); ++index) {
         const ContactId l(index);
-        if (l == fresh_hold || statics.is_structural_zero(l) == finite) {
+        if (statics.is_structural_zero(l) == finite) {
+            if (finite && is_held(statics, l)) {
+                at_zero.push_back(l);
+            }
+            continue;
+        }
+        if (std::find(zero_holds.begin(), zero_holds.end(), l) != zero_holds.end()) {
             continue;
         }
         Enclosure f = value(l);
+        const double multiplier = f.value;
         if (is_held(statics, l)) {
             f.value = -std::abs(f.value);
         }
         if (f.positive()) {
             margin = std::min(margin, f.margin());
         } else if (f.negative()) {
-            negative.push_back({l, f, f, f.margin()});
+            negative.push_back({l, f, f, f.margin(), multiplier});
         } else {
-            doubtful.push_back({l, f, f, 0});
+            doubtful.push_back({l, f, f, 0, multiplier});
         }
     }
     // A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the
@@ -198,9 +281,34 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         std::erase_if(doubtful, [&](const Contender& d) { return (d.force - least).positive(); });
     }
     std::string zeros;
+    OpeningDecision decision;
     for (const Contender& d : doubtful) {
         const Order order = statics.sign(expression(d.contact));
+        if (perturbed != nullptr && (!order.decided || order.sign == 0) && is_tie(order, perturbed->size())) {
+            const Enclosure f1 = perturbed->force(d.contact);
+            if (is_held(statics, d.contact) || !f1.decided()) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("the force in {} vanishes ({}), {}", name(statics, d.contact), reach(order),
+                                           is_held(statics, d.contact)
+                                               ? std::string("and held coordinates are not followed at first order")
+                                               : fmt::format("and its first-order term does not tell its sign: {}; a "
+                                                             "higher order may",
+                                                             shown(f1)))};
+            }
+            const Contact& contact = statics.structure().contacts()[d.contact.index()];
+            perturbed->log.push_back(
+                {"force", contact, f1, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
+            decision.perturbed = true;
+            if (f1.negative()) {
+                negative.push_back({d.contact, value(d.contact), {}, f1.margin(), 0});
+            } else {
+                margin = std::min(margin, f1.margin());
+                decision.zeros.push_back(d.contact);
+            }
+            continue;
+        }
         if (!order.decided) {
+
             return Failure{FailureKind::undecided,
                            fmt::format("the sign of the {}force in contact {} is not decided with {} bits: {:.3g}, "
                                        "proved to {:.3g}",
@@ -208,9 +316,12 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
                                        value(d.contact).value, value(d.contact).radius)};
         }
         if (order.sign < 0) {
-            negative.push_back({d.contact, value(d.contact), {}, order.margin});
+            negative.push_back({d.contact, value(d.contact), {}, order.margin, d.multiplier});
         } else if (order.sign > 0) {
             margin = std::min(margin, order.margin);
+        } else if (is_held(statics, d.contact)) {
+            at_zero.push_back(d.contact);
+            zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
         } else {
             zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
         }
@@ -221,9 +332,12 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
                            fmt::format("the {}force is exactly 0, and not for a structural reason, in: {}",
                                        finite ? "" : "infinitesimal ", zeros)};
         }
-        return OpeningDecision{std::nullopt, margin, statics.rung()};
+        decision.margin = margin;
+        decision.rung = statics.rung();
+        return decision;
     }
-    Result<Opening> picked = pick(statics, negative, expression, rule, random_bits);
+    Result<Opening> picked =
+        pick(statics, negative, expression, rule, random_bits, finite ? at_zero : std::vector<ContactId>(), perturbed);
     if (!picked.ok()) {
         return picked.failure();
     }
@@ -233,25 +347,32 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         opening.force = value(opening.contact);
         opening.direction = opening.force.value < 0 ? +1 : -1;
     }
-    return OpeningDecision{opening, opening.margin, std::max(opening.rung, statics.rung())};
+    opening.perturbed = opening.perturbed || decision.perturbed;
+    decision.perturbed = opening.perturbed;
+    decision.opening = opening;
+    decision.margin = opening.margin;
+    decision.rung = std::max(opening.rung, statics.rung());
+    return decision;
 }
 
 /// Contacts whose finite forces vanish together with that of `opens` for every choice of the coefficients: with the
 /// column of `opens` replaced by the unit column of the loaded wall, they are structural zeros.
 template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics, ContactId opens) {
-    const sparse::Matrix<double>& h = statics.structure().matrix();
+    const auto size = static_cast<std::size_t>(statics.structure().size());
+    const std::span<const int> all_start = statics.pattern_start();
+    const std::span<const int> all_row = statics.pattern_row();
     std::vector<int> start{0};
     std::vector<int> row;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
+    for (std::size_t j = 0; j < size; ++j) {
         if (j == opens.index()) {
             row.push_back(statics.loaded_wall_row());
         } else {
-            row.insert(row.end(), h.row.begin() + h.start[j], h.row.begin() + h.start[j + 1]);
+            row.insert(row.end(), all_row.begin() + all_start[j], all_row.begin() + all_start[j + 1]);
         }
         start.push_back(static_cast<int>(row.size()));
     }
     std::vector<ContactId> members{opens};
-    const std::vector<int> matched = sparse::perfect_matching(h.rows, start, row);
+    const std::vector<int> matched = sparse::perfect_matching(statics.structure().size(), start, row);
     if (matched.empty()) {
         return members; // cannot happen when the slope of `opens` is not zero; then no tie is claimed
     }
@@ -305,7 +426,7 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
         const Enclosure b = statics.slope(l);
         const Enclosure key =
             members.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), {std::abs(b.value), b.radius});
-        contenders.push_back({l, key, key, infinity});
+        contenders.push_back({l, key, key, infinity, 0});
     }
     const auto expression = [&](ContactId l) {
         ForceExpression e = statics.infinitesimal_expression(l);
@@ -316,17 +437,28 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
     return pick(statics, contenders, expression, OpeningRule::most_negative, 0);
 }
 
+/// Largest slope: what a zero slope is compared with.
+template <int Dim> double slope_size(const Statics<Dim>& statics) {
+    double size = 0;
+    for (int l = 0; l < statics.structure().size(); ++l) {
+        size = std::max(size, std::abs(statics.slope(ContactId(l)).value));
+    }
+    return size;
+}
+
 /// What a pass over the other contacts found out about `first`.
 struct Rivals {
     std::optional<ContactId> earlier; ///< proved to vanish before
     std::string tied;                 ///< contacts that vanish at the same load, or cannot be told from it
     double margin = infinity;
+    std::vector<TieDecision> settled; ///< ties with `first` that first-order terms settled
 };
 
 /// Everything outside the class is still positive at the limit, hence on the whole interval (forces are affine).
 template <int Dim>
 Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction, ContactId first,
-                              const LoadLimit& limit) {
+                              const LoadLimit& limit, PerturbedStatics<Dim>* perturbed) {
+    const auto& contacts = statics.structure().contacts();
     Rivals rivals;
     std::vector<unsigned char> in_class(statics.structure().contacts().size(), 0);
     for (const ContactId l : limit.tie_class) {
@@ -348,6 +480,29 @@ Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction
             continue; // positive at sigma, and constant
         }
         const Order rate = rate_sign(statics, l, direction);
+        if (perturbed != nullptr && (!rate.decided || rate.sign == 0)) {
+            // Its slope is of order eps. A force that vanishes in the base is then affine in the load at first order.
+            const Order zero = statics.sign(statics.force_expression(l, sigma));
+            if (zero.decided && zero.sign > 0 && is_tie(rate, slope_size(statics))) {
+                continue;
+            }
+            const Enclosure f1 = perturbed->force_at(l, limit.stress, limit.stress_error);
+            if (!is_tie(rate, slope_size(statics)) || !is_tie(zero, perturbed->size()) || !f1.positive()) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("the force in {} and its slope vanish in the base; its first-order term at "
+                                           "sigma = {:.17g} is {}: where on the way it changes sign is not followed",
+                                           name(statics, l), limit.stress, shown(f1))};
+            }
+            rivals.settled.push_back({"zero all along",
+                                      contacts[index],
+                                      f1,
+                                      {ContactKind::disk_disk, -1, -1},
+                                      {},
+                                      zero.exponent,
+                                      zero.bits});
+            rivals.margin = std::min(rivals.margin, f1.margin());
+            continue;
+        }
         if (!rate.decided) {
             return open_rate(statics, l, rate);
         }
@@ -356,6 +511,27 @@ Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction
         }
         const Order order =
             statics.compare(statics.distance_expression(l, sigma), statics.distance_expression(first, sigma));
+        if (perturbed != nullptr && (!order.decided || order.sign == 0) &&
+            is_tie(order, std::max(std::abs(limit.stress), std::abs(sigma)))) {
+            Enclosure mine = perturbed->limit_rate(first, limit.stress, limit.stress_error);
+            Enclosure other = perturbed->limit_rate(l, limit.stress, limit.stress_error);
+            const Enclosure difference = direction > 0 ? other - mine : mine - other;
+            if (!difference.decided()) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("tied at first order too: the forces in {} and {} vanish at one load, sigma "
+                                           "= {:.17g} ({}), and the first-order terms of the two loads are {} and {}",
+                                           name(statics, first), name(statics, l), limit.stress, reach(order),
+                                           shown(mine), shown(other))};
+            }
+            if (difference.negative()) {
+                rivals.earlier = l;
+                return rivals;
+            }
+            rivals.settled.push_back(
+                {"limit", contacts[first.index()], mine, contacts[index], other, order.exponent, order.bits});
+            rivals.margin = std::min(rivals.margin, difference.margin());
+            continue;
+        }
         if (order.decided && order.sign < 0) {
             rivals.earlier = l;
             return rivals;
@@ -372,29 +548,45 @@ Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction
 } // namespace
 
 template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                       std::uint64_t random_bits) {
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits,
+                                       PerturbedStatics<Dim>* perturbed) {
     auto finite = stage(
         statics, true, [&](ContactId l) { return statics.force(l, sigma); },
-        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, fresh_hold, random_bits);
+        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, zero_holds, random_bits, perturbed);
     if (!finite.ok() || finite.value().opening) {
         return finite;
     }
     auto infinitesimal = stage(
         statics, false, [&](ContactId l) { return statics.infinitesimal(l); },
-        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, fresh_hold, random_bits);
+        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, zero_holds, random_bits,
+        static_cast<PerturbedStatics<Dim>*>(nullptr)); // the loads are smaller than every power of eps
     if (infinitesimal.ok()) {
+        infinitesimal.value().perturbed = finite.value().perturbed;
+        infinitesimal.value().zeros = finite.value().zeros;
         infinitesimal.value().margin = std::min(infinitesimal.value().margin, finite.value().margin);
     }
     return infinitesimal;
 }
 
-template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction) {
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
+                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
+    return decide_opening(statics, sigma, rule,
+                          std::span<const ContactId>(&fresh_hold, fresh_hold.valid() ? std::size_t{1} : std::size_t{0}),
+                          random_bits, perturbed);
+}
+
+template <int Dim>
+Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction, PerturbedStatics<Dim>* perturbed) {
     const std::vector<ContactId> candidates = limiting_candidates(statics);
     ContactId first;
     double smallest = infinity;
     for (const ContactId l : candidates) {
         const double rate = direction * statics.slope(l).value;
+        if (perturbed != nullptr && !statics.slope(l).decided()) {
+            continue; // it may vanish in the base: looked at with the rivals
+        }
         const double distance = rate < 0 ? statics.force(l, sigma).value / -rate : infinity;
         if (distance < smallest) {
             smallest = distance;
@@ -404,7 +596,13 @@ template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double si
     if (!first.valid()) { // as far as rounded numbers tell
         for (const ContactId l : candidates) {
             const Order rate = rate_sign(statics, l, direction);
-            if (!rate.decided) {
+            if (perturbed != nullptr && (!rate.decided || rate.sign == 0)) {
+                const Order zero = statics.sign(statics.force_expression(l, sigma));
+                if (is_tie(rate, slope_size(statics)) && zero.decided && zero.sign > 0) {
+                    continue; // it changes by O(eps) over any finite way
+                }
+            }
+            if (!rate.decided || (perturbed != nullptr && rate.sign == 0)) {
                 return open_rate(statics, l, rate);
             }
             if (rate.sign < 0) {
@@ -449,7 +647,7 @@ template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double si
                                              : infinity;
         limit.margin = rate.margin;
         limit.tie_class = tie_class(statics, first);
-        const Result<Rivals> rivals = look_at_rivals(statics, sigma, direction, first, limit);
+        const Result<Rivals> rivals = look_at_rivals(statics, sigma, direction, first, limit, perturbed);
         if (!rivals.ok()) {
             return rivals.failure();
         }
@@ -473,12 +671,20 @@ template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double si
             limit.margin = std::min(limit.margin, chosen.value().margin);
         }
         limit.rung = statics.rung();
+        if (perturbed != nullptr) {
+            const std::vector<TieDecision>& settled = rivals.value().settled;
+            perturbed->log.insert(perturbed->log.end(), settled.begin(), settled.end());
+            limit.perturbed = !settled.empty();
+        }
         return limit;
     }
     return Failure{FailureKind::undecided, "the comparisons of the limit loads contradict each other"};
 }
 
-template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t);
-template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int);
+template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t,
+                                                   PerturbedStatics<2>*);
+template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+                                                   std::uint64_t, PerturbedStatics<2>*);
+template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

@@ -52,8 +52,44 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
     std::vector<int> all = loaded_rows_;
     all.insert(all.end(), wall.begin(), wall.end());
     loaded_wall_row_ = wall.empty() ? -1 : wall.front();
-    const sparse::Matrix<double>& h = structure.matrix();
-    backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), all);
+    backbone_ = nonzeros(all);
+}
+
+template <int Dim> std::vector<unsigned char> Statics<Dim>::nonzeros(std::span<const int> rows) const {
+    if (pattern_) {
+        return sparse::structural_nonzeros(pattern_->start, pattern_->row, pattern_->matched, rows);
+    }
+    const sparse::Matrix<double>& h = structure_->matrix();
+    return sparse::structural_nonzeros(h.start, h.row, structure_->matching(), rows);
+}
+
+template <int Dim> void Statics<Dim>::use_index_pattern() {
+    pattern_ = index_pattern(*structure_);
+    std::vector<int> all = loaded_rows_;
+    if (loaded_wall_row_ >= 0) {
+        all.push_back(loaded_wall_row_);
+    }
+    backbone_ = nonzeros(all);
+    sloped_.clear();
+}
+
+template <int Dim> std::span<const int> Statics<Dim>::pattern_start() const {
+    return pattern_ ? pattern_->start : structure_->matrix().start;
+}
+template <int Dim> std::span<const int> Statics<Dim>::pattern_row() const {
+    return pattern_ ? pattern_->row : structure_->matrix().row;
+}
+
+template <int Dim> void Statics<Dim>::set_shift(std::shared_ptr<const LoadShift> shift, double bound) {
+    shift_ = std::move(shift);
+    shift_bound_ = bound;
+    ladder_.without_exact_numbers();
+}
+
+template <int Dim> std::shared_ptr<const LoadShift> Statics<Dim>::zero_of(ContactId contact, double sigma) {
+    ForceExpression e = force_expression(contact, sigma);
+    e.shift = nullptr;
+    return ladder_.zero_of(e);
 }
 
 template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma) const {
@@ -64,7 +100,12 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
     const ForceSolution& a = ladder_.solution(present);
     if (sigma == sigma_) {
         const double low = a.low.empty() ? 0.0 : a.low[l];
-        return {a.value[l], a.bound + std::abs(low) * (1 + 2 * u)};
+        double radius = a.bound + std::abs(low) * (1 + 2 * u);
+        if (shift_) {
+            const Enclosure b = slope(contact);
+            radius += shift_bound_ * (std::abs(b.value) + b.radius) * (1 + 4 * u);
+        }
+        return {a.value[l], radius};
     }
     const ForceSolution& b = ladder_.solution(unit);
     const dd_real distance = dd_real(sigma) - sigma_;
@@ -78,10 +119,8 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
 
 template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
     if (sloped_.empty()) {
-        const sparse::Matrix<double>& h = structure_->matrix();
-        sloped_ = loaded_wall_row_ < 0
-                      ? std::vector<unsigned char>(static_cast<std::size_t>(h.cols), 0)
-                      : sparse::structural_nonzeros(h.start, h.row, structure_->matching(), {&loaded_wall_row_, 1});
+        sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
+                                       : nonzeros({&loaded_wall_row_, 1});
     }
     return sloped_[contact.index()] == 0;
 }
@@ -112,6 +151,7 @@ template <int Dim> ForceExpression Statics<Dim>::force_expression(ContactId cont
     e.slope_part = unit;
     e.at = sigma;
     e.from = sigma_;
+    e.shift = sigma == sigma_ ? shift_.get() : nullptr;
     return e;
 }
 
@@ -131,6 +171,7 @@ template <int Dim> ForceExpression Statics<Dim>::infinitesimal_expression(Contac
 
 template <int Dim> ForceExpression Statics<Dim>::distance_expression(ContactId contact, double sigma) const {
     ForceExpression e = force_expression(contact, sigma);
+    e.shift = nullptr; // the same for all that are compared
     e.divisor = ForceExpression::Divisor::part;
     e.divisor_part = unit;
     return e;

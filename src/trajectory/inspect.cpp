@@ -191,7 +191,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
                 const double uncertain =
                     1.01 *
                     std::sqrt(static_cast<double>(most_contacts(state.packing.disk_count(), inspection.contacts))) *
-                    vertex.enclosure.radius / state.packing.min_radius() * force_norm(vertex, sigma) /
+                    vertex.enclosure.distance() / state.packing.min_radius() * force_norm(vertex, sigma) /
                     vertex.inverse.sigma_min;
                 at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
                 if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {

@@ -106,7 +106,8 @@ template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, 
             (direction > 0 ? record.opens_high : record.opens_low) = {ContactKind::disk_disk, -1, -1};
             continue;
         }
-        const auto limit = find_limit(vertex.statics, sigma, direction);
+        const auto limit =
+            find_limit(vertex.statics, sigma, direction, vertex.perturbed ? &vertex.perturbed->statics : nullptr);
         if (!limit.ok()) {
             return Failure{limit.failure().kind,
                            fmt::format("{} end of the supported interval: {}", direction > 0 ? "upper" : "lower",

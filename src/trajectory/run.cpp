@@ -1,8 +1,10 @@
 #include "trajectory/plain.hpp"
 #include "trajectory/record.hpp"
+#include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/motion/arc.hpp>
+#include <isostat/preparation/backbone.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace isostat {
 
@@ -64,7 +67,29 @@ template <int Dim> class Run {
         bound_cache_ = {};
     }
 
-    void count(DecisionKind kind, double margin, Rung rung, ArcRecord<Dim>* arc = nullptr) {
+    [[nodiscard]] bool perturbs() const { return options_.ties == TiePolicy::perturb; }
+    [[nodiscard]] static PerturbedStatics<Dim>* first_order(const Vertex<Dim>& vertex) {
+        return vertex.perturbed ? &vertex.perturbed->statics : nullptr;
+    }
+    /// What the limit that a rearrangement starts from says of its load.
+    struct LimitLoad {
+        std::shared_ptr<const LoadShift> shift; ///< the exact stress less the stored one
+        double error = 0;
+        Enclosure stress_rate{0, 0};
+    };
+    Result<std::unique_ptr<Vertex<Dim>>> make_vertex(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                     const Load<Dim>& load, const LimitLoad& limit);
+    void perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit);
+    static void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into);
+    std::optional<Failure> settle(const LimitLoad& limit, const std::vector<ContactId>& zeros, double stress);
+    void store_first_order();
+    Result<bool> choose_start();
+    std::optional<Failure> still_equilibrium(double stress);
+    std::optional<Failure> reload();
+    std::optional<Failure> resume_first_order(const std::vector<std::pair<Contact, Order>>& touching);
+
+    void count(DecisionKind kind, double margin, Rung rung, ArcRecord<Dim>* arc = nullptr, bool perturbed = false) {
+        counters_.tally.perturbed[static_cast<std::size_t>(kind)] += perturbed ? 1 : 0;
         counters_.tally.count(kind, margin, rung);
         margin_ = std::min(margin_, margin);
         rung_ = std::max(rung_, rung);
@@ -75,9 +100,9 @@ template <int Dim> class Run {
     }
 
     std::optional<Failure> start();
-    std::optional<Failure> rearrange(Opening opening, const std::string& kind, double stress);
+    std::optional<Failure> rearrange(Opening opening, const std::string& kind, double stress, const LimitLoad& limit);
     Result<std::unique_ptr<Vertex<Dim>>> follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
-                                                const Load<Dim>& load, ArcRecord<Dim>& record);
+                                                const Load<Dim>& load, const LimitLoad& limit, ArcRecord<Dim>& record);
     std::optional<Failure> check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
                                      const Load<Dim>& load, ArcRecord<Dim>& record);
     void certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
@@ -98,6 +123,8 @@ template <int Dim> class Run {
     EquilibriumRecord<Dim> record_;
     double margin_ = infinity; ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
+    std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
+    bool descends_ = false;        ///< the work of the last arc was proved positive
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
@@ -105,12 +132,49 @@ Failure located(const Failure& failure, const std::string& where) {
     return {failure.kind, where + ": " + failure.message};
 }
 
+template <int Dim> void Run<Dim>::perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit) {
+    if (perturbs()) {
+        perturb(vertex, load, state_.perturbation->rho, limit.stress_rate, limit.shift, limit.error);
+    }
+}
+
+template <int Dim>
+Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::make_vertex(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                           const Load<Dim>& load, const LimitLoad& limit) {
+    auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), load, bound_cache_);
+    if (made.ok()) {
+        perturb_at(*made.value(), load, limit);
+    }
+    return made;
+}
+
+template <int Dim> void Run<Dim>::take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into) {
+    if (vertex.perturbed) {
+        std::vector<TieDecision>& log = vertex.perturbed->statics.log;
+        into.insert(into.end(), log.begin(), log.end());
+        log.clear();
+    }
+}
+
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
-                                                      const Load<Dim>& load, ArcRecord<Dim>& record) {
+                                                      const Load<Dim>& load, const LimitLoad& limit,
+                                                      ArcRecord<Dim>& record) {
     ArcOptions arc_options;
     arc_options.step_fraction = options_.step_fraction;
     const PowerLoad<Dim> power{&load, opening.infinitesimal, at_limit};
+    std::optional<Contact> next_to; // closes on a way of length O(eps)
+    std::vector<TieDecision> departed;
+    if (from.perturbed && !from.perturbed->touching.empty()) {
+        auto departure = depart(from, opening.contact, opening.direction);
+        if (!departure.ok()) {
+            return departure.failure();
+        }
+        next_to = departure.value().closes;
+        departed = departure.value().settled;
+        arc_options.leaving = departure.value().leaving;
+        arc_options.resting = departure.value().resting;
+    }
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their
     // own block costs next to nothing.
     std::optional<Factorisation> fresh;
@@ -122,7 +186,13 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
     }
     // A second pass only when the proved gaps say that another candidate closed before.
     for (int pass = 0; pass < 8; ++pass) {
-        const auto attempt = [&] {
+        const auto attempt = [&]() -> Result<Arc<Dim>> {
+            if (next_to) {
+                Arc<Dim> none;
+                none.end = from.packing;
+                none.closed = *next_to;
+                return none;
+            }
             return follow_arc(from.packing, from.structure, fresh ? *fresh : from.factorisation, opening.contact,
                               opening.direction, power, candidates_, arc_options);
         };
@@ -139,22 +209,40 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         const Arc<Dim>& path = arc.value();
         record.closed = path.closed;
         record.power_turn = path.kind == ArcEnd::power_turn;
+        record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
         auto made =
             Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load, bound_cache_);
+        if (made.ok()) {
+            perturb_at(*made.value(), load, limit);
+        }
         if (!made.ok()) {
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
-        auto gaps = made.value()->check_gaps(candidates_);
+        auto gaps = made.value()->check_gaps(candidates_, perturbs());
         if (!gaps.ok()) {
             return located(gaps.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
+        if (perturbs() && !gaps.value().negative && !gaps.value().zero.empty()) {
+            auto arrival =
+                arrive(*made.value(), gaps.value().zero, opening.contact, next_to.has_value(), arc_options.resting);
+            if (!arrival.ok()) {
+                return arrival.failure();
+            }
+            if (arrival.value().earlier) {
+                (next_to ? next_to : arc_options.closes) = arrival.value().earlier;
+                continue;
+            }
+            departed.insert(departed.end(), arrival.value().settled.begin(), arrival.value().settled.end());
+        }
         if (!gaps.value().negative) {
-            count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung, &record);
+            record.perturbed.insert(record.perturbed.end(), departed.begin(), departed.end());
+            count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung, &record, !departed.empty());
+
             record_.min_gap = gaps.value().smallest;
             record_.min_gap_contact = gaps.value().where;
             return std::move(made.value());
@@ -181,16 +269,10 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     }
     record.work = work;
     force_norm = std::sqrt(force_norm);
-    // The stored ends are within `radius` of the true ones (plus their correction): that much of the work is not known.
-    const auto off = [](const VertexEnclosure& enclosure) {
-        double square = 0;
-        for (const double c : enclosure.correction) {
-            square += c * c;
-        }
-        return enclosure.radius + std::sqrt(square);
-    };
+    // The stored ends are that far from the true ones: so much of the work is not known.
     const double unknown =
-        (force_norm * (off(from.enclosure) + off(to.enclosure)) + terms * 0x1p-52 * size) * (1 + 1e-10);
+        (force_norm * (from.enclosure.distance() + to.enclosure.distance()) + terms * 0x1p-52 * size) * (1 + 1e-10);
+    descends_ = work > unknown;
     if (load.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided,
                        fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
@@ -205,6 +287,28 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
                                      : to.statics.force(opening.contact, sigma_of(load));
     };
     Enclosure f = sign();
+    if (to.perturbed && !opening.infinitesimal && !f.decided() && !to.statics.is_structural_zero(opening.contact)) {
+        const Order order = to.statics.sign(to.statics.force_expression(opening.contact, sigma_of(load)));
+        PerturbedStatics<Dim>& side = to.perturbed->statics;
+        if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
+            f = side.force(opening.contact);
+            if (!f.positive()) {
+                return Failure{
+                    FailureKind::undecided,
+                    fmt::format("the new force in {} vanishes, and its first-order term is {:.6g} +- {:.3g}: "
+                                "the power of the load is not proved positive at the end of the arc",
+                                to_string<Dim>(record.closed), f.value, f.radius)};
+            }
+            record.perturbed.push_back(
+                {"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
+            count(DecisionKind::power, f.margin(), to.statics.rung(), &record, true);
+            return std::nullopt;
+        }
+        if (order.decided && order.sign > 0) {
+            count(DecisionKind::power, order.margin, order.rung, &record);
+            return std::nullopt;
+        }
+    }
     while (!f.decided() && to.statics.climb()) {
         f = sign();
     }
@@ -251,7 +355,175 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress) {
+template <int Dim> std::string kind_of(const Vertex<Dim>& at, const Opening& opening) {
+    return at.structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
+           : opening.infinitesimal                                                    ? "rattler"
+                                                                                      : "tension";
+}
+
+/// The load of an equilibrium that was reached at a limit: the stored stress, when every force is positive there as at
+/// the exact one; otherwise the stress at which one of the forces that vanish does so.
+template <int Dim>
+std::optional<Failure> Run<Dim>::settle(const LimitLoad& limit, const std::vector<ContactId>& zeros, double stress) {
+    RadiusPerturbation& stored = *state_.perturbation;
+    stored.load_zero = {ContactKind::disk_disk, -1, -1};
+    stored.stress_rate = {0, 0};
+    if (!limit.shift) {
+        return std::nullopt;
+    }
+    Statics<Dim>& statics = vertex_->statics;
+    const auto error = [&](const Enclosure& slope) { return limit.error * (std::abs(slope.value) + slope.radius); };
+    ContactId at_zero;
+    for (const ContactId l : zeros) {
+        if (!at_zero.valid() && statics.slope(l).decided()) {
+            at_zero = l;
+        }
+    }
+    for (int l = 0; l < statics.structure().size() && !at_zero.valid(); ++l) {
+        const ContactId id(l);
+        if (statics.is_structural_zero(id) || statics.structure().contacts()[id.index()].kind == ContactKind::held ||
+            std::find(zeros.begin(), zeros.end(), id) != zeros.end()) {
+            continue;
+        }
+        Enclosure f = statics.force(id, stress);
+        f.radius += error(statics.slope(id)) * (1 + 1e-10);
+        if (!f.positive()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("the force in {} is so small, {:.3g}, that the limit load must be known better "
+                                       "than it is stored",
+                                       to_string<Dim>(statics.structure().contacts()[id.index()]), f.value)};
+        }
+    }
+    if (!at_zero.valid()) {
+        return std::nullopt;
+    }
+    const Enclosure slope = statics.slope(at_zero);
+    const Enclosure f = statics.force(at_zero, stress);
+    const double bound = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
+    stored.load_zero = statics.structure().contacts()[at_zero.index()];
+    stored.stress_rate = limit.stress_rate;
+    Load<Dim> load = state_.load;
+    set_sigma(load, stress);
+    perturb(*vertex_, load, stored.rho, limit.stress_rate, statics.zero_of(at_zero, stress), bound);
+    return std::nullopt;
+}
+
+/// Asks again what made `vertex_` an equilibrium: after a resume the statics then stand on the same rung. Under
+/// `perturb` the answer must be the same with the load that the state stores.
+template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium(double stress) {
+    auto decision = decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0, first_order(*vertex_));
+    if (!perturbs()) {
+        return std::nullopt;
+    }
+    vertex_->perturbed->statics.log.clear();
+    if (!decision.ok() || decision.value().opening) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("equilibrium at sigma = {:.17g}: not found again with the load as it is stored{}",
+                                   stress, decision.ok() ? "" : ": " + decision.failure().message)};
+    }
+    zeros_ = decision.value().zeros;
+    return std::nullopt;
+}
+
+/// The first-order side of a start: the load that its state means, and the pairs that touch.
+template <int Dim>
+std::optional<Failure> Run<Dim>::resume_first_order(const std::vector<std::pair<Contact, Order>>& touching) {
+    const RadiusPerturbation& stored = *state_.perturbation;
+    const auto& contacts = vertex_->structure.contacts();
+    const auto at = std::find(contacts.begin(), contacts.end(), stored.load_zero);
+    if (stored.load_zero.i >= 0 && at != contacts.end()) {
+        const ContactId l(static_cast<std::size_t>(at - contacts.begin()));
+        const Enclosure slope = vertex_->statics.slope(l);
+        const Enclosure f = vertex_->statics.force(l, sigma());
+        const double bound = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
+        if (!slope.decided()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("the load at which the force in {} vanishes is not known",
+                                       to_string<Dim>(stored.load_zero))};
+        }
+        perturb(*vertex_, state_.load, stored.rho, stored.stress_rate, vertex_->statics.zero_of(l, sigma()), bound);
+    }
+    return settle_touching(*vertex_, touching);
+}
+
+/// The same vertex under another load, which is meant as it is stored.
+template <int Dim> std::optional<Failure> Run<Dim>::reload() {
+    state_.perturbation->load_zero = {ContactKind::disk_disk, -1, -1};
+    state_.perturbation->stress_rate = {0, 0};
+    const auto touching = vertex_->perturbed->touching;
+    auto made = make_vertex(vertex_->packing, vertex_->structure.contacts(), state_.load, LimitLoad{});
+    if (!made.ok()) {
+        return made.failure();
+    }
+    vertex_ = std::move(made.value());
+    vertex_->perturbed->touching = touching;
+    return still_equilibrium(sigma());
+}
+
+/// The results of the present equilibrium go with its state.
+template <int Dim> void Run<Dim>::store_first_order() {
+    if (!vertex_->perturbed) {
+        return;
+    }
+    RadiusPerturbation& stored = *state_.perturbation;
+    stored.open = vertex_->perturbed->touching;
+    stored.zero.clear();
+    for (const ContactId l : zeros_) {
+        stored.zero.emplace_back(vertex_->structure.contacts()[l.index()], vertex_->perturbed->statics.force(l));
+    }
+}
+
+/// rho is made, and of the contacts of a hyperstatic start those are kept that carry the load for small eps > 0: of
+/// those listed, and of the pairs that touch without being listed. True: a choice was made.
+template <int Dim> Result<bool> Run<Dim>::choose_start() {
+    if (!state_.perturbation) {
+        state_.perturbation.emplace();
+        state_.perturbation->seed = options_.ties_seed;
+        state_.perturbation->rho = tie_direction(state_.packing.radius, options_.ties_seed);
+    }
+    if (counters_.equilibria != 0 || counters_.steps != 0) {
+        return false;
+    }
+    const auto dofs = static_cast<std::size_t>(DofMap<Dim>(state_.packing).dof_count());
+    bool chosen = false;
+    const auto choose = [&]() -> std::optional<Failure> {
+        auto kept = first_order_backbone(state_.packing, state_.load, state_.contacts, state_.perturbation->rho);
+        if (!kept.ok()) {
+            return located(kept.failure(), "start");
+        }
+        state_.contacts = kept.value();
+        chosen = true;
+        return std::nullopt;
+    };
+    if (state_.contacts.size() > dofs) {
+        if (auto failure = choose()) {
+            return *failure;
+        }
+    }
+    auto made = make_vertex(state_.packing, state_.contacts, state_.load, LimitLoad{});
+    if (!made.ok()) {
+        return located(made.failure(), "start");
+    }
+    auto gaps = made.value()->check_gaps(candidates_, true);
+    if (!gaps.ok()) {
+        return located(gaps.failure(), "start");
+    }
+    const auto overlap = settle_touching(*made.value(), gaps.value().zero);
+    if (overlap && overlap->kind == FailureKind::overlap && !chosen) {
+        for (const auto& [contact, order] : gaps.value().zero) {
+            state_.contacts.push_back(contact);
+        }
+        if (auto failure = choose()) {
+            return *failure;
+        }
+    }
+    return chosen;
+}
+
+template <int Dim>
+std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress,
+                                           const LimitLoad& limit) {
+
     Load<Dim> load = state_.load;
     set_sigma(load, stress);
     if (options_.certify == CertifyLevel::plain) {
@@ -262,6 +534,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
     const Vertex<Dim>* from = vertex_.get();
     std::string arc_kind = kind;
     int arcs = 0;
+    std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located
     while (true) {
         if (options_.stop != nullptr && options_.stop->load()) {
             return Failure{FailureKind::interrupted,
@@ -284,10 +557,13 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         record.force = opening.force.value;
         record.margin = infinity;
         record.decided_by = Rung::combinatorial;
-        count(DecisionKind::opening, opening.margin, opening.rung, &record);
+        if (arcs == 1) {
+            take_log(*vertex_, record.perturbed);
+        }
+        count(DecisionKind::opening, opening.margin, opening.rung, &record, opening.perturbed);
         const bool at_limit = arcs == 1 && kind == "limit";
         const std::string where = fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arcs, stress);
-        auto made = follow(*from, opening, at_limit, load, record);
+        auto made = follow(*from, opening, at_limit, load, limit, record);
         if (!made.ok()) {
             return located(made.failure(), where);
         }
@@ -295,6 +571,27 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         if (auto failure = check_arc(*from, *next, opening, load, record)) {
             return located(*failure, where);
         }
+        if (arc_kind == "release" && record.power_turn && record.closed == record.opened && !descends_) {
+            // It turned back where it stood: no motion, no descent, and released once more it would do so for ever.
+            resting.push_back(opening.contact);
+            --counters_.steps;
+            --arcs;
+            auto again = decide_opening(here->statics, stress, options_.rule, std::span<const ContactId>(resting),
+                                        bits_for(options_.rule_seed, counters_.steps), first_order(*here));
+            if (!again.ok()) {
+                return located(again.failure(), where);
+            }
+            if (!again.value().opening) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("{}: every force is positive, and the multiplier of {} is 0 as far as the "
+                                           "power turn is located: whether and where it moves is not decided",
+                                           where, to_string<Dim>(record.opened))};
+            }
+            opening = *again.value().opening;
+            arc_kind = kind_of(*here, opening);
+            continue;
+        }
+        resting.clear();
         if (options_.certify == CertifyLevel::arcs) {
             certify(*from, *next, opening, at_limit, load, record);
         }
@@ -303,11 +600,13 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
         record.strain = reference > 0 ? (reference - next->packing.length(load.loaded_axis)) / reference : 0;
         const ContactId fresh_hold = record.power_turn ? opening.contact : ContactId();
         auto decision = decide_opening(next->statics, stress, options_.rule, fresh_hold,
-                                       bits_for(options_.rule_seed, counters_.steps));
+                                       bits_for(options_.rule_seed, counters_.steps), first_order(*next));
+        take_log(*next, record.perturbed);
         observer_.on_arc(record);
         if (!decision.ok()) {
             return located(decision.failure(), where);
         }
+        counters_.tally.structural_ties += decision.value().opening && decision.value().opening->straight_strut ? 1 : 0;
         here = std::move(next);
         from = here.get();
         if (std::abs(record.strain) > options_.max_strain) {
@@ -317,30 +616,42 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(Opening opening, c
                                        std::abs(record.strain), stress, options_.max_strain)};
         }
         if (!decision.value().opening) {
-            count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung);
+            count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
+                  decision.value().perturbed);
+            zeros_ = decision.value().zeros;
             break;
         }
         opening = *decision.value().opening;
-        arc_kind = here->structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
-                   : opening.infinitesimal                                                       ? "rattler"
-                                                                                                 : "tension";
+        arc_kind = kind_of(*here, opening);
     }
     // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh
     // factors and bound. A resumed run starts from the same bits.
     fresh_caches(here->packing);
-    auto anew = Vertex<Dim>::make(here->packing, here->structure.contacts(), load, bound_cache_);
+    // The load is again the stored one, if the forces allow it.
+    auto anew = make_vertex(here->packing, here->structure.contacts(), load, LimitLoad{});
     if (!anew.ok()) {
         return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
     }
     vertex_ = std::move(anew.value());
-    auto gaps = vertex_->check_gaps(candidates_);
+    auto gaps = vertex_->check_gaps(candidates_, perturbs());
     if (!gaps.ok()) {
         return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+    }
+    if (perturbs()) {
+        std::optional<Failure> failure = settle(limit, zeros_, stress);
+        if (!failure) {
+            failure = settle_touching(*vertex_, gaps.value().zero);
+        }
+        if (failure) {
+            return located(*failure, fmt::format("equilibrium at sigma = {:.17g}", stress));
+        }
     }
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
     // The questions that `start` asks after a resume: the statics then stand on the same rung.
-    (void)decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0);
+    if (auto failure = still_equilibrium(stress)) {
+        return failure;
+    }
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();
@@ -444,7 +755,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     }
     EquilibriumRecord<Dim> record = described.value();
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
-    const double allowance = 4 * vertex_->enclosure.radius;
+    const double allowance = 4 * vertex_->enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex_->packing, allowance, &candidates_);
     if (admissible.verdict != Verdict::proved) {
         return Failure{FailureKind::overlap,
@@ -473,6 +784,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     rung_ = Rung::combinatorial;
     record_ = record;
     state_.equilibrium = counters_.equilibria;
+    store_first_order();
     counters_.seconds = elapsed();
     observer_.on_equilibrium(record, state_, finite_forces(*vertex_, state_.load));
     return std::nullopt;
@@ -480,24 +792,40 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
 
 template <int Dim> std::optional<Failure> Run<Dim>::start() {
     fresh_caches(state_.packing);
-    auto made = Vertex<Dim>::make(state_.packing, state_.contacts, state_.load, bound_cache_);
+    bool touching = false; // a choice at first order was made
+    if (perturbs()) {
+        auto chosen = choose_start();
+        if (!chosen.ok()) {
+            return chosen.failure();
+        }
+        touching = chosen.value();
+    }
+    auto made = make_vertex(state_.packing, state_.contacts, state_.load, LimitLoad{});
     if (!made.ok()) {
         return located(made.failure(), "start");
     }
     vertex_ = std::move(made.value());
-    auto gaps = vertex_->check_gaps(candidates_);
+    auto gaps = vertex_->check_gaps(candidates_, perturbs());
     if (!gaps.ok()) {
         return located(gaps.failure(), "start");
     }
     if (gaps.value().negative) {
         return Failure{FailureKind::overlap, fmt::format("start: {} overlap", to_string<Dim>(*gaps.value().negative))};
     }
+    if (perturbs()) {
+        if (auto failure = resume_first_order(gaps.value().zero)) {
+            return located(*failure, "start");
+        }
+        touching = touching || !gaps.value().zero.empty();
+    }
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
     if (counters_.equilibria != 0 || counters_.steps != 0) {
         // The same questions as when the equilibrium was found: the statics then stand on the same rung, and the run
         // goes on with the same bits.
-        (void)decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), 0);
+        if (auto failure = still_equilibrium(sigma())) {
+            return failure;
+        }
         auto described = describe(*vertex_, state_.load);
         if (!described.ok()) {
             return located(described.failure(), "start");
@@ -506,16 +834,21 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         return std::nullopt;
     }
     count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung);
-    auto decision =
-        decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(), bits_for(options_.rule_seed, 0));
+    auto decision = decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(),
+                                   bits_for(options_.rule_seed, 0), first_order(*vertex_));
     if (!decision.ok()) {
         return located(decision.failure(), "start");
     }
     if (decision.value().opening) {
         const Opening& opening = *decision.value().opening;
-        return rearrange(opening, opening.infinitesimal ? "rattler" : "tension", sigma());
+        return rearrange(opening, opening.infinitesimal ? "rattler" : "tension", sigma(), LimitLoad{});
     }
-    count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung);
+    zeros_ = decision.value().zeros;
+    if (vertex_->perturbed) {
+        vertex_->perturbed->statics.log.clear();
+    }
+    count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
+          decision.value().perturbed || touching);
     return report(0);
 }
 
@@ -543,7 +876,10 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
                                                             counters_.equilibria, record_.held)};
             return outcome;
         }
-        auto found = find_limit(vertex_->statics, sigma(), segment.direction);
+        if (vertex_->perturbed) {
+            vertex_->perturbed->statics.log.clear();
+        }
+        auto found = find_limit(vertex_->statics, sigma(), segment.direction, first_order(*vertex_));
         if (!found.ok()) {
             outcome.failure = located(found.failure(), fmt::format("limit of equilibrium {}", counters_.equilibria));
             return outcome;
@@ -561,6 +897,12 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
             }
             if (ahead > 0) {
                 set_sigma(state_.load, *segment.to_stress);
+                if (perturbs()) {
+                    if (auto failure = reload()) {
+                        outcome.failure = failure;
+                        return outcome;
+                    }
+                }
                 ++counters_.equilibria;
                 if (auto failure = report(0)) {
                     outcome.failure = failure;
@@ -582,9 +924,17 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
         opening.force = {0, std::abs(vertex_->statics.slope(limit.opens).value) * limit.stress_error};
         opening.margin = limit.margin;
         opening.rung = limit.rung;
+        opening.perturbed = limit.perturbed;
+        LimitLoad at_limit;
+        if (perturbs()) {
+            at_limit.shift = vertex_->statics.zero_of(limit.opens, limit.stress);
+            at_limit.error = limit.stress_error;
+            at_limit.stress_rate =
+                vertex_->perturbed->statics.limit_rate(limit.opens, limit.stress, limit.stress_error);
+        }
         const RunCounters before = counters_;
         ++counters_.equilibria;
-        if (auto failure = rearrange(opening, "limit", limit.stress)) {
+        if (auto failure = rearrange(opening, "limit", limit.stress, at_limit)) {
             counters_.equilibria = before.equilibria; // the steps stay counted: their records are written
             counters_.seconds = elapsed();
             outcome.failure = failure;

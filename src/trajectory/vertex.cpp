@@ -114,12 +114,9 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     return vertex;
 }
 
-template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates) {
-    double correction = 0; // of the centre of the enclosure
-    for (const double c : enclosure.correction) {
-        correction += std::abs(c);
-    }
-    if (!candidates.covers(packing, 1.001 * (enclosure.radius + correction))) {
+template <int Dim>
+Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, bool ties_are_values) {
+    if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction);
     }
     const ContactSet kept(structure.contacts(), packing.disk_count());
@@ -170,11 +167,20 @@ template <int Dim> Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(Ca
             }
             continue;
         }
+        if (ties_are_values && is_tie(order, packing.min_radius())) {
+            gaps.zero.emplace_back(contact, order);
+            if (gaps.smallest > 0) {
+                gaps.smallest = 0;
+                gaps.where = contact;
+            }
+            continue;
+        }
         names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),
                              order.decided ? std::string("exactly 0") : fmt::format("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
-        return Failure{FailureKind::tie, "gaps that are zero beside those of the contacts kept: " + names};
+        return Failure{ties_are_values ? FailureKind::undecided : FailureKind::tie,
+                       "gaps that are zero beside those of the contacts kept: " + names};
     }
     return gaps;
 }

@@ -6,12 +6,27 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/statics/decisions.hpp>
+#include <isostat/statics/perturbed.hpp>
 #include <isostat/verified/configuration.hpp>
 
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace isostat {
+
+/// The first-order side of a vertex whose radii are R_i + eps rho_i.
+template <int Dim> struct FirstOrderVertex {
+    /// `rate`: first-order term of the stress.
+    FirstOrderVertex(FirstOrder<Dim> terms, Statics<Dim>& forces, const Load<Dim>& load, const Enclosure& rate)
+        : first(std::move(terms)), statics(first, forces, load, rate), stress_rate(rate) {}
+    FirstOrder<Dim> first;
+    PerturbedStatics<Dim> statics; ///< refers to `first`
+    Enclosure stress_rate;
+    /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive.
+    std::vector<std::pair<Contact, Enclosure>> touching;
+};
 
 /// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
 /// other.
@@ -44,12 +59,17 @@ template <int Dim> class Vertex {
         Contact where;
         double margin = 0;
         Rung rung = Rung::double_bound;
-        std::optional<Contact> negative; ///< proved to overlap: it closed before
+        std::optional<Contact> negative;             ///< proved to overlap: it closed before
+        std::vector<std::pair<Contact, Order>> zero; ///< only when asked for: ties
     };
     /// Gaps of all pairs that are not contacts, at the true vertex: `candidates` is made anew when it is not complete
     /// there (T6). Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the
     /// precision reached.
-    Result<Gaps> check_gaps(CandidateList<Dim>& candidates);
+    /// With `ties_are_values` they are returned instead; `undecided` when too few bits say that a gap is 0.
+    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, bool ties_are_values = false);
+
+    /// Under `ties = "perturb"` only.
+    std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
 
   private:
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);

@@ -62,6 +62,15 @@ dd_real quadratic_dd(const Packing<Dim>& packing, const std::vector<double>& cor
 
 } // namespace
 
+double VertexEnclosure::distance() const {
+    std::vector<double> size;
+    size.reserve(correction.size());
+    for (const double c : correction) {
+        size.push_back(std::abs(c));
+    }
+    return (radius + norm_above(size)) * (1 + 0x1p-50);
+}
+
 template <int Dim>
 VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                const InverseBound& inverse) {
@@ -203,6 +212,9 @@ Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<D
             order.margin = gap_there.margin();
             return order;
         }
+        const Interval absolute = magnitude(gap_there);
+        mpfr_log2(moved.get(), absolute.high.get(), MPFR_RNDU);
+        order.exponent = moved.above();
         start = vertex.coordinate;
     }
     // A stored configuration that closes every kept gap exactly is the true vertex.
@@ -210,7 +222,9 @@ Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<D
         return c.kind == ContactKind::held || gap_sign(packing, c, 0) == 0;
     });
     if (exact && order.rung != Rung::none) { // unique there, by the enclosure
-        order = {true, gap_sign(packing, contact, 0), std::numeric_limits<double>::infinity(), Rung::exact, 0};
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        const int sign = gap_sign(packing, contact, 0);
+        order = {true, sign, infinity, Rung::exact, 0, sign == 0 ? -infinity : infinity};
     }
     return order;
 }

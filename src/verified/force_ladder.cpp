@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -118,6 +119,7 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
     std::optional<RefinedVertex> refined_vertex;
     Rung rung = Rung::double_bound;
     int bits = 53;
+    bool exact_allowed = true;
     mutable std::vector<Part> parts;
     std::optional<ExtendedMatrix> extended;
     std::optional<RefinedSystem<Dim>> system;
@@ -370,8 +372,12 @@ template <int Dim> Interval ForceLadder<Dim>::Implementation::mechanism_norm(std
 template <int Dim> Interval ForceLadder<Dim>::Implementation::evaluate(const ForceExpression& e) const {
     const std::size_t l = e.contact.index();
     Interval value = component(e.part, l);
-    if (e.slope_part >= 0 && e.at != e.from) {
-        value = value + difference(e.at, e.from, value.bits()) * component(e.slope_part, l);
+    if (e.slope_part >= 0 && (e.at != e.from || e.shift != nullptr)) {
+        Interval way = difference(e.at, e.from, value.bits());
+        if (e.shift != nullptr) {
+            way = way + e.shift->value(bits);
+        }
+        value = value + way * component(e.slope_part, l);
     }
     if (e.minus_magnitude) {
         value = -magnitude(value);
@@ -424,7 +430,7 @@ mpq_class ForceLadder<Dim>::Implementation::exact_value(const ForceExpression& e
 }
 
 template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
-    if (structure->size() > options.exact_size) {
+    if (structure->size() > options.exact_size || !exact_allowed) {
         return false;
     }
     if (vertex != nullptr) { // the stored configuration must be the true vertex, not only near it
@@ -586,8 +592,20 @@ Order order_of(const Interval& value, Rung rung, int bits) {
     } else if (value.zero()) {
         order.decided = true;
         order.margin = std::numeric_limits<double>::infinity();
+        order.exponent = -std::numeric_limits<double>::infinity();
+    } else {
+        Real size(64);
+        const Interval absolute = magnitude(value);
+        mpfr_log2(size.get(), absolute.high.get(), MPFR_RNDU);
+        order.exponent = mpfr_nan_p(size.get()) != 0 ? std::numeric_limits<double>::infinity() : size.above();
     }
     return order;
+}
+
+/// An exact number of which only the sign is known.
+Order exact_order(int sign) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {true, sign, infinity, Rung::exact, 0, sign == 0 ? -infinity : infinity};
 }
 
 } // namespace
@@ -600,7 +618,7 @@ template <int Dim> Order ForceLadder<Dim>::sign(const ForceExpression& a) const 
     ForceExpression numerator = a; // divisors are positive
     numerator.divisor = ForceExpression::Divisor::none;
     mpq_class square;
-    return {true, sgn(self.exact_value(numerator, square)), std::numeric_limits<double>::infinity(), self.rung, 0};
+    return exact_order(sgn(self.exact_value(numerator, square)));
 }
 
 template <int Dim> Order ForceLadder<Dim>::compare(const ForceExpression& a, const ForceExpression& b) const {
@@ -613,7 +631,58 @@ template <int Dim> Order ForceLadder<Dim>::compare(const ForceExpression& a, con
     const int sign_a = sgn(self.exact_value(a, square_a));
     const int sign_b = sgn(self.exact_value(b, square_b));
     const int sign = sign_a != sign_b ? (sign_a > sign_b ? 1 : -1) : sign_a * sgn(mpq_class(square_a - square_b));
-    return {true, sign, std::numeric_limits<double>::infinity(), self.rung, 0};
+    return exact_order(sign);
+}
+
+namespace {
+
+/// -(p + (at - from) s) / s from the solutions of a ladder that climbs when it must.
+template <int Dim> class ZeroOfForce final : public LoadShift {
+  public:
+    using Value = std::function<Interval(int)>;
+    explicit ZeroOfForce(Value value) : value_(std::move(value)) {}
+    [[nodiscard]] Interval value(int bits) const override { return value_(bits); }
+
+  private:
+    Value value_;
+};
+
+} // namespace
+
+bool is_tie(const Order& order, double size) {
+    if (order.decided) {
+        return order.sign == 0;
+    }
+    return size > 0 && order.exponent <= std::log2(size) - tie_bits;
+}
+
+template <int Dim> void ForceLadder<Dim>::without_exact_numbers() {
+    implementation_->exact_allowed = false;
+}
+
+template <int Dim> std::shared_ptr<const LoadShift> ForceLadder<Dim>::zero_of(const ForceExpression& force) {
+    const auto value = [this, force](int bits) {
+        while (rung() != Rung::exact && this->bits() < bits && climb()) {
+        }
+        const Implementation& self = *implementation_;
+        const std::size_t l = force.contact.index();
+        if (self.rung == Rung::exact) {
+            mpq_class square;
+            mpq_class ratio = self.exact_value(force, square);
+            Part& slope = self.parts[static_cast<std::size_t>(force.slope_part)];
+            self.bring(slope);
+            ratio /= slope.unknown[l];
+            Interval result(std::max(bits + 32, 160));
+            mpfr_set_q(result.low.get(), mpq_class(-ratio).get_mpq_t(), MPFR_RNDD);
+            mpfr_set_q(result.high.get(), mpq_class(-ratio).get_mpq_t(), MPFR_RNDU);
+            return result;
+        }
+        const Interval slope = self.component(force.slope_part, l);
+        const Interval p = self.evaluate(force);
+        const Interval quotient = p / magnitude(slope);
+        return slope.positive() ? -quotient : quotient;
+    };
+    return std::make_shared<ZeroOfForce<Dim>>(value);
 }
 
 template class ForceLadder<2>;

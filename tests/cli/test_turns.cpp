@@ -16,6 +16,9 @@ std::vector<std::string> events_of(const std::string& scene) {
         lines.push_back(line);
     }
     BOOST_TEST(contains(scratch::read(out / "summary.json"), "\"undecided\": 0"));
+    const Outcome verified = run({"verify", out.string()}); // held coordinates and all
+    expect(verified, 0);
+    BOOST_TEST(contains(verified.out, "proved"));
     return lines;
 }
 

@@ -34,7 +34,8 @@ BOOST_AUTO_TEST_CASE(size_ratios_up_to_ten_thousand) {
 }
 
 BOOST_AUTO_TEST_CASE(nearly_crystalline_radii) {
-    for (const double width : {1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 1e-15}) {
+    for (const double width :
+         {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15}) {
         extreme::prepared("nearly equal radii", fmt::format("diameters in [1, 1 + {:.0e}]", width),
                           disks(40, 1, 1 + width));
     }

@@ -78,6 +78,35 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
     check_bits(forces, back.forces);
 }
 
+BOOST_AUTO_TEST_CASE(the_direction_of_the_radii_and_first_order_terms_come_back) {
+    State<2> state = crafted::two_disks(1, 2, 1, 1);
+    RadiusPerturbation& p = state.perturbation.emplace();
+    p.seed = 7;
+    p.rho = {0x1.8p-5, -0.25};
+    BOOST_TEST(!parse_state<2>(state_text(crafted::two_disks(1, 2, 1, 1)), "s").state.perturbation.has_value());
+    BOOST_TEST(parse_state<2>(state_text(state), "s").state.perturbation->load_zero.i == -1);
+    p.load_zero = crafted::bottom(1);
+    p.stress_rate = {0.1, 1e-17};
+    p.open = {{crafted::top(0), {0.3, 1e-15}}};
+    p.zero = {{crafted::pair(0, 1), {1.5, 0}}, {crafted::left(0), {2, 3e-11}}};
+    const State<2> back = parse_state<2>(state_text(state), "s").state;
+    BOOST_TEST_REQUIRE(back.perturbation.has_value());
+    const RadiusPerturbation& r = *back.perturbation;
+    BOOST_TEST(r.seed == 7U);
+    check_bits(r.rho, p.rho);
+    BOOST_TEST((r.load_zero == p.load_zero));
+    BOOST_TEST(r.stress_rate.value == 0.1);
+    BOOST_TEST(r.stress_rate.radius == 1e-17);
+    BOOST_TEST(r.open.size() == 1U);
+    BOOST_TEST((r.open[0].first == crafted::top(0)));
+    BOOST_TEST(r.open[0].second.value == 0.3);
+    BOOST_TEST(r.zero.size() == 2U);
+    BOOST_TEST(r.zero[1].second.radius == 3e-11);
+    refuses(replaced(state_text(state), "\"rho\":[", "\"rho\":[1,"), {"crafted.json", "rho", "one number per disk"});
+    refuses(replaced(state_text(state), "\"seed\":7", "\"seed\":-7"), {"crafted.json", "seed"});
+    refuses(replaced(state_text(state), "\"seed\"", "\"sed\""), {"crafted.json", "sed"});
+}
+
 BOOST_AUTO_TEST_CASE(every_bit_pattern_of_a_finite_number_comes_back) {
     State<2> state = crafted::one_disk(1, 1);
     std::uint64_t bits = 88172645463325252ULL;

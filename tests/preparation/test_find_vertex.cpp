@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
     for (unsigned long long seed = 1; seed <= 10; ++seed) {
         Packing<2> packing = loose_lattice(7, seed);
         const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
-        room::ContactProgramme<2> programme(g, 0.3, nullptr);
+        room::ContactProgramme<2> programme(g, 0.3, false, nullptr);
         for (int k = 0; k < 6; ++k) {
             const double area = packing.length(0) * packing.length(1);
             const room::ProgrammeStep step = programme.solve(packing, 1e-7);
@@ -109,6 +109,65 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
             BOOST_TEST(packing.length(0) * packing.length(1) < area);
             BOOST_TEST(step.contacts.size() + static_cast<std::size_t>(step.bounds) == packing.q.size());
         }
+    }
+}
+
+// Two methods that share nothing but the programme: same point; same contacts where the optimum is not degenerate.
+BOOST_AUTO_TEST_CASE(interior_points_and_the_simplex_method_end_at_the_same_point) {
+    const auto compare = [](const Packing<2>& packing, unsigned long long seed, bool contacts) {
+        const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
+        room::ContactProgramme<2> simplex(g, 0.3, false, nullptr);
+        room::ContactProgramme<2> interior(g, 0.3, true, nullptr);
+        const room::ProgrammeStep expected = simplex.solve(packing, 1e-5);
+        const room::ProgrammeStep step = interior.solve(packing, 1e-5);
+        BOOST_REQUIRE((expected.outcome == room::ProgrammeStep::Outcome::optimal));
+        BOOST_REQUIRE((step.outcome == room::ProgrammeStep::Outcome::optimal));
+        BOOST_TEST(step.pivots == 0); // not by way of Clp
+        double apart = 0;
+        for (std::size_t c = 0; c < packing.q.size(); ++c) {
+            apart = std::max(apart, std::abs(step.displacement[c] - expected.displacement[c]));
+        }
+        BOOST_TEST(apart < 1e-6);
+        if (contacts) {
+            BOOST_TEST((step.contacts == expected.contacts));
+            BOOST_TEST(step.bounds == expected.bounds);
+        }
+    };
+    for (unsigned long long seed = 1; seed <= 6; ++seed) {
+        compare(loose_lattice(6, seed), seed, false); // many disks at their trust bounds by symmetry
+    }
+    const State<2> vertex = prepared(100, 2);
+    for (const double amplitude : {1e-6, 1e-3, 1e-2}) {
+        Noise noise(5);
+        Packing<2> shaken = vertex.packing;
+        for (double& x : shaken.q) {
+            x = x * (1 + amplitude) + 0.5 * amplitude * noise();
+        }
+        compare(shaken, 2, true);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_infeasible_programme_has_no_interior_point) {
+    // x >= 1 and -x >= 0, |x| <= 2
+    const room::BoxedProgramme programme{{0, 1, 2}, {0, 0}, {1, -1}, {1, 0}, {1}, {2}};
+    BOOST_TEST(!room::interior_point(programme, 1e-12, nullptr).converged);
+    const room::BoxedProgramme feasible{{0, 1, 2}, {0, 0}, {1, -1}, {-0.5, -1}, {1}, {2}};
+    const room::ActiveSet answer = room::interior_point(feasible, 1e-12, nullptr);
+    BOOST_REQUIRE(answer.converged);
+    BOOST_TEST(std::abs(answer.x[0] + 0.5) < 1e-9);
+    BOOST_TEST(answer.row[0] == 1);
+    BOOST_TEST(answer.row[1] == 0);
+    BOOST_TEST(answer.column[0] == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_vertex_found_with_interior_points_is_proved_like_any_other) {
+    for (unsigned long long seed = 1; seed <= 4; ++seed) {
+        PreparationOptions options;
+        options.interior_above = 0;
+        PreparationReport<2> report;
+        const auto found = find_vertex<2>(loose_lattice(6, seed), options, report);
+        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+        check::is_proved_vertex(found.value(), 1);
     }
 }
 

@@ -3,6 +3,7 @@
 #include "check.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/threads.hpp>
 
 #include <fmt/format.h>
 
@@ -98,6 +99,24 @@ BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_bits_and_another_seed_another_
     BOOST_TEST((first.result.value().load.infinitesimal == again.result.value().load.infinitesimal));
     BOOST_TEST((first.result.value().packing.radius != other.result.value().packing.radius));
     BOOST_TEST((first.result.value().packing.q != other.result.value().packing.q));
+}
+
+// Sums are taken in blocks of 8192 disks: three of them here, a few steps of the dynamics, disks renumbered.
+BOOST_AUTO_TEST_CASE(the_number_of_threads_does_not_change_the_bits) {
+    PreparationOptions options;
+    options.disks = 17000;
+    options.max_steps = 60;
+    options.max_programmes = 0;
+    std::vector<std::vector<double>> positions;
+    for (const int count : {1, 2, 3}) {
+        set_threads(count);
+        const Outcome outcome = run(options);
+        BOOST_REQUIRE(outcome.report.last.has_value());
+        positions.push_back(outcome.report.last->q);
+    }
+    set_threads(1);
+    BOOST_TEST((positions[0] == positions[1]));
+    BOOST_TEST((positions[0] == positions[2]));
 }
 
 BOOST_AUTO_TEST_CASE(watching_does_not_change_the_bits) {

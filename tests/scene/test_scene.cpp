@@ -88,6 +88,8 @@ max_arcs = 11
 max_strain = 0.25
 step_fraction = 0.5
 certify = "arcs"
+ties = "perturb"
+ties_seed = 9
 [output]
 states_every = 10
 checkpoint_seconds = 2.5
@@ -126,7 +128,9 @@ vtk = true
     BOOST_TEST(!scene.pictures);
     BOOST_TEST(scene.vtk);
     // Nothing of this scene is a default: a key that was read but not recorded would be missing here.
-    BOOST_TEST(scene.settings.size() == 33U);
+    BOOST_TEST((scene.run.ties == TiePolicy::perturb));
+    BOOST_TEST(scene.run.ties_seed == 9U);
+    BOOST_TEST(scene.settings.size() == 35U);
     for (const Setting& setting : scene.settings) {
         BOOST_TEST((setting.line > 0 || setting.key == "name"), setting.section << "." << setting.key);
     }
@@ -173,6 +177,7 @@ BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
     refuses(head + "[load]\nkind = \"dead\"\n", {"s.toml:4:", "kind", "dead", "nominal"});
     refuses(head + "[load]\nsigma1 = 0\n", {"s.toml:4:", "sigma1", "positive"});
     refuses(head + "[run]\nrule = \"best\"\n", {"s.toml:4:", "rule", "best", "most_negative"});
+    refuses(head + "[run]\nties = \"break\"\n", {"s.toml:4:", "ties", "break", "perturb"});
     refuses(head + "[run]\nmax_arcs = 0\n", {"s.toml:4:", "max_arcs", "0"});
     refuses(head + "[run]\nstep_fraction = -0.1\n", {"s.toml:4:", "step_fraction", "-0.1"});
     refuses(head + "[output]\npictures = 1\n", {"s.toml:4:", "pictures", "true or false"});
@@ -191,6 +196,7 @@ BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
     refuses("[packing]\nfile = \"v.txt\"\nseed = 2\n", {"s.toml:3:", "seed", "file"});
     refuses("[packing]\nfile = \"v.txt\"\n[preparation]\nsoftness = 1e-6\n", {"s.toml:3:", "[preparation]"});
     refuses("[packing]\nfile = \"v.txt\"\n[load]\nsigma1 = 2\n", {"s.toml:4:", "sigma1"});
+    refuses(head + "[run]\nties_seed = 2\n", {"s.toml:4:", "ties_seed", "perturb"});
     refuses(head + "[load]\ninfinitesimal_seed = 2\n", {"s.toml:4:", "infinitesimal_seed"});
 }
 

@@ -1,8 +1,7 @@
 // The sequence of events is a property of the packing: not of the predictor, the labels, the side from which one looks,
 // or the unit.
 #include "support/crafted.hpp"
-
-#include <isostat/preparation/preparation.hpp>
+#include "support/same_sequence.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -13,44 +12,6 @@ using namespace isostat;
 using namespace crafted;
 
 namespace {
-
-State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    auto result = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message));
-    return result.value();
-}
-
-/// A contact as seen after a change of labels and sides.
-template <class Map> std::vector<std::pair<Contact, Contact>> events(const Recorder& records, Map map) {
-    std::vector<std::pair<Contact, Contact>> list;
-    for (const auto& arc : records.arcs) {
-        list.emplace_back(map(arc.opened), map(arc.closed));
-    }
-    return list;
-}
-Contact same(const Contact& contact) {
-    return contact;
-}
-
-void check_same_sequence(const Played& a, const Played& b, const std::vector<std::pair<Contact, Contact>>& events_b,
-                         double stress_tolerance = 1e-8) {
-    const auto events_a = events(a.records, same);
-    BOOST_TEST_REQUIRE(events_a.size() == events_b.size());
-    for (std::size_t k = 0; k < events_a.size(); ++k) {
-        BOOST_TEST((events_a[k] == events_b[k]), "arc " << k + 1 << ": " << to_string<2>(events_a[k].first) << " -> "
-                                                        << to_string<2>(events_a[k].second) << " against "
-                                                        << to_string<2>(events_b[k].first) << " -> "
-                                                        << to_string<2>(events_b[k].second));
-    }
-    for (std::size_t k = 0; k < a.records.equilibria.size(); ++k) {
-        BOOST_TEST(a.records.equilibria[k].stress == b.records.equilibria[k].stress,
-                   boost::test_tools::tolerance(stress_tolerance));
-    }
-}
 
 constexpr int equilibria = 12;
 
@@ -75,116 +36,19 @@ BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_predictor_step, Base
 }
 
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_the_labels, Base) {
-    const int n = start.packing.disk_count();
-    std::vector<int> label(static_cast<std::size_t>(n)); // new label -> old label
-    std::iota(label.begin(), label.end(), 0);
-    std::mt19937 random(3);
-    for (std::size_t k = label.size(); k > 1; --k) {
-        std::swap(label[k - 1], label[random() % k]);
-    }
-    std::vector<int> inverse(label.size());
-    State<2> shuffled = start;
-    for (std::size_t k = 0; k < label.size(); ++k) {
-        const auto old = static_cast<std::size_t>(label[k]);
-        inverse[old] = static_cast<int>(k);
-        shuffled.packing.radius[k] = start.packing.radius[old];
-        for (std::size_t a = 0; a < 2; ++a) {
-            shuffled.packing.q[2 * k + a] = start.packing.q[2 * old + a];
-            shuffled.load.infinitesimal[2 * k + a] = start.load.infinitesimal[2 * old + a];
-        }
-    }
-    const auto relabel = [](const Contact& c, const std::vector<int>& to) {
-        return c.kind == ContactKind::disk_disk
-                   ? pair(to[static_cast<std::size_t>(c.i)], to[static_cast<std::size_t>(c.j)])
-               : c.kind == ContactKind::held ? Contact{c.kind, 2 * to[static_cast<std::size_t>(c.i / 2)] + c.i % 2, 0}
-                                             : Contact{c.kind, to[static_cast<std::size_t>(c.i)], c.j};
-    };
-    for (Contact& c : shuffled.contacts) {
-        c = relabel(c, inverse);
-    }
-    std::reverse(shuffled.contacts.begin(), shuffled.contacts.end());
-    const Played other = play(shuffled, +1, equilibria);
-    check_same_sequence(played, other, events(other.records, [&](const Contact& c) { return relabel(c, label); }));
+    check_same_sequence(played, relabelled(start, 3), equilibria);
 }
 
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_mirroring_the_box, Base) {
-    State<2> mirrored = start;
-    const int n = start.packing.disk_count();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-        mirrored.packing.q[2 * i] = start.packing.length(0) - start.packing.q[2 * i];
-        mirrored.load.infinitesimal[2 * i] = -start.load.infinitesimal[2 * i];
-    }
-    const auto mirror = [](const Contact& c) {
-        if (c.kind == ContactKind::lower_wall && c.j == 0) {
-            return Contact{ContactKind::upper_wall, c.i, 0};
-        }
-        if (c.kind == ContactKind::upper_wall && c.j == 0) {
-            return Contact{ContactKind::lower_wall, c.i, 0};
-        }
-        return c;
-    };
-    for (Contact& c : mirrored.contacts) {
-        c = mirror(c);
-    }
-    const Played other = play(mirrored, +1, equilibria);
-    check_same_sequence(played, other, events(other.records, mirror));
+    check_same_sequence(played, mirrored(start), equilibria);
 }
 
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_exchanging_the_axes, Base) {
-    State<2> turned = start;
-    for (std::size_t k = 0; k < turned.packing.q.size(); k += 2) {
-        std::swap(turned.packing.q[k], turned.packing.q[k + 1]);
-    }
-    for (std::size_t k = 0; k < turned.load.infinitesimal.size(); k += 2) {
-        std::swap(turned.load.infinitesimal[k], turned.load.infinitesimal[k + 1]);
-    }
-    std::swap(turned.load.stress[0], turned.load.stress[1]);
-    std::swap(turned.load.reference_length[0], turned.load.reference_length[1]);
-    turned.load.loaded_axis = 0;
-    const auto exchange = [](const Contact& c) {
-        return c.kind == ContactKind::disk_disk ? c
-               : c.kind == ContactKind::held    ? Contact{c.kind, c.i ^ 1, 0}
-                                                : Contact{c.kind, c.i, 1 - c.j};
-    };
-    for (Contact& c : turned.contacts) {
-        c = exchange(c);
-    }
-    const Played other = play(turned, +1, equilibria);
-    check_same_sequence(played, other, events(other.records, exchange));
+    check_same_sequence(played, exchanged(start), equilibria);
 }
 
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_a_quarter_turn_of_the_box, Base) {
-    // (x, y) -> (L_y - y, x): left becomes bottom, bottom right, right top, top left.
-    State<2> turned = start;
-    const auto n = static_cast<std::size_t>(start.packing.disk_count());
-    for (std::size_t i = 0; i < n; ++i) {
-        turned.packing.q[2 * i] = start.packing.length(1) - start.packing.q[2 * i + 1];
-        turned.packing.q[2 * i + 1] = start.packing.q[2 * i];
-        turned.load.infinitesimal[2 * i] = -start.load.infinitesimal[2 * i + 1];
-        turned.load.infinitesimal[2 * i + 1] = start.load.infinitesimal[2 * i];
-    }
-    turned.packing.length(0) = start.packing.length(1);
-    turned.packing.length(1) = start.packing.length(0);
-    std::swap(turned.load.stress[0], turned.load.stress[1]);
-    std::swap(turned.load.reference_length[0], turned.load.reference_length[1]);
-    turned.load.loaded_axis = 0;
-    const auto turn = [](const Contact& c) {
-        switch (c.kind) {
-        case ContactKind::disk_disk: return c;
-        case ContactKind::held: return Contact{c.kind, c.i ^ 1, 0};
-        case ContactKind::lower_wall:
-            return Contact{c.j == 0 ? ContactKind::lower_wall : ContactKind::upper_wall, c.i, 1 - c.j};
-        case ContactKind::upper_wall:
-            return Contact{c.j == 0 ? ContactKind::upper_wall : ContactKind::lower_wall, c.i, 1 - c.j};
-        }
-        return c;
-    };
-    const auto back = [&](const Contact& c) { return turn(turn(turn(c))); };
-    for (Contact& c : turned.contacts) {
-        c = turn(c);
-    }
-    const Played other = play(turned, +1, equilibria);
-    check_same_sequence(played, other, events(other.records, back));
+    check_same_sequence(played, quarter_turned(start), equilibria);
 }
 
 BOOST_FIXTURE_TEST_CASE(the_sequence_does_not_depend_on_noise_far_below_the_margins, Base) {
@@ -283,15 +147,10 @@ BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
         RunOptions options;
         options.rule = rule;
         const Played run = play(start, +1, 6, {}, options);
-        // A strut that stands straight at a power turn carries the same force in both contacts, up to what the turn is
-        // known to. The paper's rule does not meet it here; others may end there, with the reason named.
-        const auto ends_at_a_straight_strut = [&run] {
-            const FailureKind kind = run.outcome.failure->kind;
-            return kind == FailureKind::tie || kind == FailureKind::cap_reached ||
-                   (kind == FailureKind::not_converged &&
-                    run.why().find("power of the load vanishes") != std::string::npos);
-        };
-        BOOST_TEST((run.outcome.completed || (rule != OpeningRule::most_negative && ends_at_a_straight_strut())),
+        // The weakest traction may be that of a disk that carries nothing but what its turn was rounded by: a tie,
+        // named.
+        BOOST_TEST((run.outcome.completed ||
+                    (rule == OpeningRule::least_negative && run.outcome.failure->kind == FailureKind::tie)),
                    run.why());
         BOOST_TEST(run.records.equilibria.size() > 1U);
         for (const auto& e : run.records.equilibria) {

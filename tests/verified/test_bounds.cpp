@@ -1,6 +1,7 @@
 // Proved bounds against a reference in 100 digits: the bound is never below the error, and it is not useless.
 #include "support/crafted.hpp"
 
+#include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/statics/statics.hpp>
@@ -272,6 +273,32 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
         BOOST_TEST(step.radius < 1.6 * std::sqrt(square));
         BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, proved.value(), bound).radius);
     }
+}
+
+BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_includes_the_correction) {
+    // Contacts that overlap by 1e-12 as stored: the corrected radius is far smaller, and no allowance for overlaps.
+    // Runs with 1936 and 4900 disks refused their own contacts over this.
+    State<2> state = two_disks(1, 2, 1, 1);
+    for (double& length : state.packing.q) {
+        length *= 1 - 1e-12;
+    }
+    auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    const Factorisation factorisation(proved.value());
+    InverseBoundCache cache;
+    const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
+    const VertexEnclosure vertex = enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound);
+    BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
+    const Real root2 = sqrt(Real(2));
+    const std::vector<Real> exact{1, 1, 1 + 2 * root2, 2, 3 + 2 * root2, 4};
+    Real square = 0;
+    for (std::size_t k = 0; k < exact.size(); ++k) {
+        square += (Real(state.packing.q[k]) - exact[k]) * (Real(state.packing.q[k]) - exact[k]);
+    }
+    BOOST_TEST(sqrt(square) <= Real(vertex.distance()));
+    BOOST_TEST(vertex.distance() < 1e-10);
+    BOOST_TEST((certify_admissible(state.packing, 4 * vertex.distance()).verdict == Verdict::proved));
+    BOOST_TEST((certify_admissible(state.packing, 4 * vertex.radius).verdict == Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {

@@ -22,12 +22,15 @@ struct RunVerification {
     std::vector<std::string> undecided;
     int arcs = 0;              ///< records of arcs
     int arcs_proved = 0;       ///< opening proved by the rule, end proved to be an admissible vertex, W proved to fall
+    int ties_checked = 0;      ///< first-order terms of decisions found again, of the arcs that were replayed
+    int turns_checked = 0;     ///< power turns whose held coordinate was found to be right
     int equilibria = 0;        ///< rows of equilibria.csv
     int equilibria_proved = 0; ///< all forces, gaps, ends of the load interval and the rank proved to be as recorded
 };
 
-/// Replays events.jsonl and equilibria.csv from states/eq_000000.json. An arc that cannot be followed (a held
-/// coordinate, a Newton iteration that goes elsewhere) is undecided, and the replay goes on at the next stored state
+/// Replays events.jsonl and equilibria.csv from states/eq_000000.json. An arc that cannot be followed (a
+/// Newton iteration that goes elsewhere, a record of an older version that does not say where a coordinate is held) is
+/// undecided, and the replay goes on at the next stored state
 /// (`states_every = 1` stores all). `progress` is called after each record with the number of the equilibrium. Throws
 /// `Error(bad_input)` when a file is missing, cannot be read, or has unknown or missing columns. Cost: one certificate
 /// check per arc.

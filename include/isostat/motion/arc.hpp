@@ -18,6 +18,10 @@ struct ArcOptions {
     int max_steps = 100000;       ///< predictor steps before the motion is called unbounded
     double max_length_change = 1; ///< |L_a / L_a(start) - 1| beyond which the motion is called unbounded
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
+    /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
+    /// does), and those proved to keep their distance all along (both at rest).
+    std::vector<Contact> leaving;
+    std::vector<Contact> resting;
 };
 
 /// The load whose power is watched along the arc: -dW/ds = F_ext . dq/ds must stay positive.

@@ -62,6 +62,8 @@ template <int Dim> class DofMap {
     explicit DofMap(const Packing<Dim>& packing);
     /// N_f.
     [[nodiscard]] int dof_count() const { return static_cast<int>(coordinate_of_.size()); }
+    /// Coordinates of the packing, those that cannot move included.
+    [[nodiscard]] int coordinate_count() const { return static_cast<int>(dof_of_.size()); }
     /// Degree of freedom of a coordinate index, or -1 when that coordinate cannot move.
     [[nodiscard]] int dof_of(std::size_t coordinate) const { return dof_of_[coordinate]; }
     /// Coordinate index of a degree of freedom.

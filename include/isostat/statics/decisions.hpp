@@ -3,10 +3,12 @@
 /// The two static decisions of a trajectory: where the supported interval ends, and which contact opens.
 
 #include <isostat/core/result.hpp>
+#include <isostat/statics/perturbed.hpp>
 #include <isostat/statics/statics.hpp>
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -26,6 +28,8 @@ struct Opening {
     int direction = +1;         ///< rate of the gap; -1 only for a held coordinate that is pushed downwards
     double margin = 0;          ///< smallest |difference| / bound over the comparisons made
     Rung rung = Rung::none;
+    bool perturbed = false;      ///< a first-order comparison was needed
+    bool straight_strut = false; ///< another end of the same straight strut had the same force (statement S4)
 };
 
 /// The state of a vertex at a load: nothing to open (equilibrium), or the contact to open.
@@ -33,15 +37,21 @@ struct OpeningDecision {
     std::optional<Opening> opening; ///< none: every force is proved positive, lexicographically in (f0, f1)
     double margin = 0;
     Rung rung = Rung::none;
+    bool perturbed = false;       ///< a first-order comparison was needed
+    std::vector<ContactId> zeros; ///< finite forces that vanish in the base, and are positive at first order
 };
 
 /// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its
-/// multiplier is 0 by construction and does not compete. `random_bits` is used by the rule `random` only. May climb
-/// `statics` to double-double. Failure: `undecided` (a sign), `tie` (two candidates that cannot be ordered), naming the
-/// contacts and the numbers.
+/// multiplier is 0 by construction and does not compete. The two ends of a strut that such a turn leaves straight carry
+/// exactly the same force there (S4): by the rules that compare forces they are ordered by the infinitesimal loads.
+/// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
+/// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
+/// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that
+/// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
+/// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`.
 template <int Dim>
 Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                       std::uint64_t random_bits);
+                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr);
 
 /// End of the supported interval in one direction of sigma.
 struct LoadLimit {
@@ -53,14 +63,26 @@ struct LoadLimit {
         tie_class; ///< contacts whose forces vanish together for structural reasons, `opens` included
     double margin = 0;
     Rung rung = Rung::none;
+    bool perturbed = false; ///< a first-order comparison was needed
 };
 
 /// \pre every finite force positive at `sigma`. `direction` +1 or -1. Held coordinates do not limit. May climb.
 /// Failure: `tie` when two forces vanish at loads that cannot be ordered, and that no structural argument ties
-/// together.
-template <int Dim> Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction);
+/// together. With `perturbed`: the first-order terms of the loads tell which is first; `undecided` when they do not.
+template <int Dim>
+Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
+                             PerturbedStatics<Dim>* perturbed = nullptr);
 
-extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t);
-extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int);
+/// The same with several held coordinates whose multipliers are 0.
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
+                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits,
+                                       PerturbedStatics<Dim>* perturbed = nullptr);
+
+extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t,
+                                                          PerturbedStatics<2>*);
+extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+                                                          std::uint64_t, PerturbedStatics<2>*);
+extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

@@ -6,7 +6,11 @@
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/verified/force_ladder.hpp>
+#include <isostat/verified/index_pattern.hpp>
 
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -38,6 +42,18 @@ template <int Dim> class Statics {
     [[nodiscard]] bool slope_is_zero(ContactId contact) const;
     /// Contacts whose finite force is not a structural zero.
     [[nodiscard]] int backbone_count() const;
+
+    /// From now on structural zeros are those of the index pattern: also normals that are parallel to an axis in the
+    /// stored configuration may turn. Before the first question.
+    void use_index_pattern();
+    /// The load that is meant is not the stored stress but `shift` more (|shift| <= bound): forces at the stored
+    /// stress, their signs and their order are those at the exact one.
+    void set_shift(std::shared_ptr<const LoadShift> shift, double bound);
+    /// The shift at which the force of a contact vanishes near `sigma`, see `ForceLadder::zero_of`. \pre slope proved.
+    [[nodiscard]] std::shared_ptr<const LoadShift> zero_of(ContactId contact, double sigma);
+    /// The pattern by which structural zeros are judged.
+    [[nodiscard]] std::span<const int> pattern_start() const;
+    [[nodiscard]] std::span<const int> pattern_row() const;
 
     /// Goes to the next rung of precision (ForceLadder); false when there is none. Every enclosure above is then the
     /// better one.
@@ -76,6 +92,7 @@ template <int Dim> class Statics {
 
   private:
     enum Part : int { present, unit, infinitesimal_part };
+    [[nodiscard]] std::vector<unsigned char> nonzeros(std::span<const int> rows) const;
 
     const IsostaticStructure<Dim>* structure_;
     const Factorisation* factorisation_;
@@ -85,6 +102,9 @@ template <int Dim> class Statics {
     std::vector<int> loaded_rows_;
     int loaded_wall_row_ = -1;
     std::vector<unsigned char> backbone_;
+    std::optional<IndexPattern> pattern_;
+    std::shared_ptr<const LoadShift> shift_;
+    double shift_bound_ = 0;
     mutable std::vector<unsigned char> sloped_; ///< empty until asked for
 };
 

@@ -5,6 +5,7 @@
 #include <isostat/contact/state.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/motion/arc_certificate.hpp>
+#include <isostat/statics/perturbed.hpp>
 
 #include <array>
 #include <optional>
@@ -22,6 +23,7 @@ template <int Dim> struct ArcRecord {
     std::string kind;    ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
     Contact opened;      ///< contact opened (or held coordinate released)
     Contact closed;      ///< contact met, or the coordinate held at a power turn
+    double held_at = 0;  ///< power turns: the value of the coordinate held
     bool power_turn = false;      ///< true: the arc ended where the power of the load vanished
     double stress = 0;            ///< sigma_2
     double strain = 0;            ///< eps_2 at the end of the arc
@@ -33,6 +35,7 @@ template <int Dim> struct ArcRecord {
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided); or NaN
     Rung decided_by = Rung::none; ///< highest rung that was needed; `none` at level `plain`: nothing was proved
     std::optional<ArcCertificate> certificate; ///< level `arcs` only
+    std::vector<TieDecision> perturbed;        ///< what first-order terms settled, from the opening to the end
 };
 
 /// One equilibrium, checked.
@@ -144,6 +147,8 @@ struct Tally {
     long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
     long structural_ties =
         0; ///< forces that vanish together for a structural reason, ordered by the infinitesimal loads
+    /// Decisions that a first-order comparison settled, by kind (they are among the counted ones).
+    std::array<long, decision_kinds> perturbed{};
     double smallest_margin = 0; ///< smallest |quantity| / bound among the decided ones (0: none yet)
     /// The same by kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
     std::array<std::array<long, 5>, decision_kinds> by_kind{};

@@ -25,6 +25,12 @@ struct Segment {
     std::string name;                ///< for records: "up", "down", "cycle 10"...
 };
 
+/// What becomes of a tie: two quantities that are exactly equal, or agree to the cap of the precision ladder.
+/// - stop: the run ends with `tie`;
+/// - perturb: the radii are R_i + eps rho_i, eps > 0 smaller than every positive number, rho from `ties_seed` once for
+///   the whole run: first-order terms decide (proofs/perturbation.md); when they do not, the run ends with `undecided`.
+enum class TiePolicy : unsigned char { stop, perturb };
+
 /// Caps and choices of a run.
 struct RunOptions {
     OpeningRule rule = OpeningRule::most_negative;
@@ -33,8 +39,14 @@ struct RunOptions {
     double max_strain = 0.5;                        ///< |eps_2| since the reference state
     double step_fraction = 0.1;                     ///< longest predictor step, in units of the smallest radius
     CertifyLevel certify = CertifyLevel::decisions; ///< `states` is the observer's work: here as `decisions`
-    const std::atomic<bool>* stop = nullptr;        ///< set by Ctrl-C: the run ends after the current arc
+    TiePolicy ties = TiePolicy::stop;
+    std::uint64_t ties_seed = 1;             ///< of rho
+    const std::atomic<bool>* stop = nullptr; ///< set by Ctrl-C: the run ends after the current arc
 };
+
+/// The direction rho of a run: rho_i = k_i 2^(e-16), k_i an integer in [-2^15, 2^15) from a splitmix64 sequence started
+/// at `seed`, 2^e the largest power of two that is not above the smallest radius.
+std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64_t seed);
 
 /// Counters that let an interrupted run go on with the same bits.
 struct RunCounters {

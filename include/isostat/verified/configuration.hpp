@@ -18,6 +18,10 @@ struct VertexEnclosure {
     std::vector<double> correction; ///< empty on the rung double_bound; else one per coordinate of q
     double max_gap = 0;             ///< largest |gap| of the contacts at the stored configuration, as computed
     Rung rung = Rung::double_bound;
+
+    /// The true vertex is within this distance (2-norm, all coordinates) of the *stored* configuration: `radius` is
+    /// about the corrected one, and alone says nothing of the stored one.
+    [[nodiscard]] double distance() const;
 };
 
 /// Rung double_bound: gaps in double, radius about 1e-15 sqrt(N) / sigma_min. Cost O(N).

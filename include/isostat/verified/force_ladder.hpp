@@ -13,6 +13,16 @@
 
 namespace isostat {
 
+class Interval;
+
+/// What the stored stress lacks to the exact one, for a limit load: known to any number of bits.
+class LoadShift {
+  public:
+    virtual ~LoadShift() = default;
+    /// An interval of about `bits` bits, as far as the ladder behind it goes.
+    [[nodiscard]] virtual Interval value(int bits) const = 0;
+};
+
 /// A quantity by which contacts are ordered: p_l + (at - from) s_l with p, s the solutions of two right-hand sides,
 /// possibly divided by |d_l| (d a third solution, then proved not zero) or by the 2-norm of the mechanism that opens
 /// contact l at unit rate. All doubles are exact.
@@ -23,7 +33,8 @@ struct ForceExpression {
     int slope_part = -1; ///< -1: no second term
     double at = 0;
     double from = 0;
-    bool minus_magnitude = false; ///< -|.| instead of the sum (held coordinates)
+    const LoadShift* shift = nullptr; ///< added to `at`; not on the rung exact
+    bool minus_magnitude = false;     ///< -|.| instead of the sum (held coordinates)
     Divisor divisor = Divisor::none;
     int divisor_part = -1;
 };
@@ -64,6 +75,12 @@ template <int Dim> class ForceLadder {
     [[nodiscard]] int bits() const;
     /// A bound of |H - H*|_2 between the stored configuration and the one that is spoken of (0 without a vertex).
     [[nodiscard]] double normal_uncertainty() const;
+
+    /// The rung exact is not used: for expressions with a shift.
+    void without_exact_numbers();
+    /// What must be added to `force.at` for the quantity (without divisor) to vanish. \pre its slope is proved not 0.
+    /// The ladder must outlive the result, and climbs when more bits are asked for.
+    [[nodiscard]] std::shared_ptr<const LoadShift> zero_of(const ForceExpression& force);
 
     /// Sign of a quantity, and of the difference a - b, on the present rung.
     [[nodiscard]] Order sign(const ForceExpression& a) const;

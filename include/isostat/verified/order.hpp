@@ -4,6 +4,8 @@
 
 #include <isostat/core/verdict.hpp>
 
+#include <limits>
+
 namespace isostat {
 
 /// How far a ladder may climb.
@@ -20,6 +22,14 @@ struct Order {
     double margin = 0;    ///< |centre| / radius of the enclosure that decided; infinite for exact numbers
     Rung rung = Rung::none;
     int bits = 0; ///< of the arithmetic: 53, 106, those of MPFR, or 0 for exact numbers
+    /// Without a sign (undecided, or 0): log2 of a proved bound of |quantity|, -infinity when it is exactly 0.
+    double exponent = std::numeric_limits<double>::infinity();
 };
+
+/// Bits below the size of the terms to which two quantities must agree to be called tied when no exact number says so.
+inline constexpr int tie_bits = 1000;
+
+/// A tie: proved to be exactly 0, or to be smaller than `size` 2^-tie_bits. `size` > 0 is that of the terms.
+bool is_tie(const Order& order, double size);
 
 } // namespace isostat

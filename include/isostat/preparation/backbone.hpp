@@ -1,0 +1,27 @@
+#pragma once
+/// \file
+/// The contacts of a hyperstatic packing that carry the load when the radii change a little.
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/packing/load.hpp>
+
+#include <vector>
+
+namespace isostat {
+
+/// Among the contacts of a packing with more contacts than degrees of freedom, the N_f that stay closed in equilibrium
+/// when the radii become R_i + eps rho_i, eps > 0 small: the basis of the linear programme of P2
+/// (proofs/perturbation.md), maximise F.v with all first-order gaps >= 0, ties broken by the infinitesimal loads.
+/// Clp, double: a proposal, not a proof. What makes it right are the signs of all forces and of the first-order gaps of
+/// the other contacts, which the caller must prove. In the order of `contacts`.
+/// Failure: `not_isostatic` when the programme has no vertex with N_f contacts (mechanisms), `unbounded` when the
+/// contacts do not support the load, `not_converged`.
+template <int Dim>
+Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
+                                                  const std::vector<Contact>& contacts, const std::vector<double>& rho);
+
+extern template Result<std::vector<Contact>>
+first_order_backbone<2>(const Packing<2>&, const Load<2>&, const std::vector<Contact>&, const std::vector<double>&);
+
+} // namespace isostat

@@ -1,0 +1,66 @@
+#pragma once
+/// \file
+/// Ties of forces settled at first order in a change of the radii R_i + eps rho_i (proofs/perturbation.md).
+
+#include <isostat/statics/statics.hpp>
+#include <isostat/verified/first_order.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// One decision that a first-order comparison settled: in the base, quantities that cannot be told apart; their
+/// derivatives with respect to eps can.
+struct TieDecision {
+    /// - "force": the force in `chosen` vanishes; `first` is its first-order term (no `against`);
+    /// - "opening": two contacts that the rule orders alike; first-order terms of both keys;
+    /// - "limit": two forces that vanish at one load; first-order terms of the two loads;
+    /// - "zero all along": a force and its slope vanish; `first`: its first-order term at the limit (no `against`);
+    /// - "gap": `against` touches where `chosen` closes (or touches on from before); `other` is its first-order gap;
+    /// - "step": both close on the way of length O(eps); first-order lengths of the two ways.
+    std::string what;
+    Contact chosen;
+    Enclosure first;
+    Contact against{ContactKind::disk_disk, -1, -1}; ///< i = -1: none
+    Enclosure other;
+    double exponent = 0; ///< log2 of a proved bound of the base quantity; -infinity: exactly 0
+    int bits = 0;        ///< of the arithmetic that found no difference; 0: exact numbers
+};
+
+/// First-order terms of the forces of one vertex, at the present load whose stress is sigma + eps sigma1. The arguments
+/// must outlive the object.
+template <int Dim> class PerturbedStatics {
+  public:
+    /// `stress_rate`: sigma1 (0, radius 0, for a load that was given).
+    PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load, Enclosure stress_rate);
+
+    /// f1 at the present load; {0, 0} for structural zeros. Cost: one solve, once per rung of `statics`.
+    [[nodiscard]] Enclosure force(ContactId contact);
+    /// f1 at another stress, fixed.
+    [[nodiscard]] Enclosure force_at(ContactId contact, double sigma, double sigma_error);
+    /// sigma1 of the stress at which the force vanishes, sigma its base value: -f1 / slope.
+    [[nodiscard]] Enclosure limit_rate(ContactId contact, double sigma, double sigma_error);
+    /// Largest finite force: what a zero is compared with.
+    [[nodiscard]] double size();
+
+    std::vector<TieDecision> log; ///< what was settled, in order; whoever writes records takes it
+
+  private:
+    [[nodiscard]] std::vector<Enclosure> terms(double sigma, double sigma_error) const;
+
+    const FirstOrder<Dim>* first_;
+    Statics<Dim>* statics_;
+    Load<Dim> load_;
+    Enclosure stress_rate_;
+    std::vector<Enclosure> present_;
+    Rung present_rung_ = Rung::none;
+    std::vector<Enclosure> elsewhere_;
+    double elsewhere_sigma_ = 0;
+    double elsewhere_error_ = -1;
+    double size_ = 0;
+};
+
+extern template class PerturbedStatics<2>;
+
+} // namespace isostat

@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// First-order change of a true vertex when the radii become R_i + eps rho_i (proofs/checker.md, K12 to K14).
+
+#include "checker/forces.hpp"
+#include "checker/vertex.hpp"
+
+#include <isostat/contact/state.hpp>
+
+#include <memory>
+
+namespace isostat::checker {
+
+/// Solutions of A(q*) v = b, enclosed. Lengths are real; the arguments of the constructor must outlive it.
+class Velocities {
+  public:
+    Velocities(const Problem& problem, const InverseBound& inverse, const TrueVertex& vertex);
+
+    struct Solution {
+        std::vector<Rational> middle; ///< per coordinate; 0 where it does not move
+        Rational radius;              ///< of every component that moves
+    };
+    /// `b` per contact: the rate of F_l.
+    [[nodiscard]] Solution solve(const std::vector<Rational>& b) const;
+    /// The motion on which the gap of a contact changes at rate `direction` and all others do not.
+    [[nodiscard]] Solution opening(std::size_t contact, int direction) const;
+    /// The rate of the gap of a pair that touches at the true vertex.
+    [[nodiscard]] Range gap_rate(const State<2>& state, const Contact& pair, const Solution& v) const;
+    [[nodiscard]] const Solver& solver() const { return solver_; }
+
+  private:
+    const Problem& problem_;
+    const InverseBound& inverse_;
+    const TrueVertex& vertex_;
+    Solver solver_;
+};
+
+/// Derivatives with respect to eps at eps = 0; the contacts stay closed.
+class FirstOrder {
+  public:
+    FirstOrder(const State<2>& state, const Problem& problem, const InverseBound& inverse, const TrueVertex& vertex,
+               const std::vector<double>& rho);
+
+    /// First-order gap of a pair that touches at the true vertex.
+    [[nodiscard]] Range gap(const Contact& pair) const;
+    /// First-order forces at a fixed stress, from the forces there.
+    [[nodiscard]] std::vector<Range> forces(const std::vector<Range>& f0) const;
+    [[nodiscard]] const Velocities& velocities() const { return velocities_; }
+
+  private:
+    [[nodiscard]] Rational grown(const Contact& pair) const;
+    const State<2>& state_;
+    const Problem& problem_;
+    const InverseBound& inverse_;
+    const TrueVertex& vertex_;
+    const std::vector<double>& rho_;
+    Velocities velocities_;
+    Velocities::Solution change_;
+};
+
+} // namespace isostat::checker

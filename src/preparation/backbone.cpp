@@ -1,0 +1,102 @@
+#include <isostat/core/work.hpp>
+#include <isostat/preparation/backbone.hpp>
+
+#include <ClpSimplex.hpp>
+#include <CoinPackedMatrix.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+/// Weight of the infinitesimal loads: small against the forces, large against Clp's dual tolerance.
+constexpr double infinitesimal_weight = 1e-5;
+constexpr double tolerance = 1e-9;
+
+double largest(const std::vector<double>& x) {
+    double size = 0;
+    for (const double c : x) {
+        size = std::max(size, std::abs(c));
+    }
+    return size > 0 ? size : 1;
+}
+
+} // namespace
+
+template <int Dim>
+Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
+                                                  const std::vector<Contact>& contacts,
+                                                  const std::vector<double>& rho) {
+    const DofMap<Dim> dofs(packing);
+    const std::vector<double> force = load.external_force(packing);
+    const double force_size = largest(force);
+    const double small_size = largest(load.infinitesimal) / infinitesimal_weight;
+    const double rho_size = largest(rho);
+    const auto columns = static_cast<std::size_t>(dofs.dof_count());
+    std::vector<double> cost(columns, 0.0);
+    for (std::size_t mu = 0; mu < columns; ++mu) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        cost[mu] = -(force[k] / force_size + (k < load.infinitesimal.size() ? load.infinitesimal[k] / small_size : 0));
+    }
+    std::vector<int> row;
+    std::vector<int> column;
+    std::vector<double> value;
+    std::vector<double> lower; // gradient . v >= rho_i + rho_j
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& c = contacts[l];
+        const GapGradient<Dim> g = gap_gradient(packing, c);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            if (dof >= 0) {
+                row.push_back(static_cast<int>(l));
+                column.push_back(dof);
+                value.push_back(g.value[k]);
+            }
+        }
+        const double grown = rho[static_cast<std::size_t>(c.i)] +
+                             (c.kind == ContactKind::disk_disk ? rho[static_cast<std::size_t>(c.j)] : 0.0);
+        lower.push_back(grown / rho_size);
+    }
+    const std::vector<double> free_low(columns, -COIN_DBL_MAX);
+    const std::vector<double> free_high(columns, COIN_DBL_MAX);
+    CoinPackedMatrix matrix(true, row.data(), column.data(), value.data(), static_cast<CoinBigIndex>(row.size()));
+    matrix.setDimensions(static_cast<int>(contacts.size()), static_cast<int>(columns));
+    ClpSimplex simplex;
+    simplex.setLogLevel(0);
+    simplex.loadProblem(matrix, free_low.data(), free_high.data(), cost.data(), lower.data(), nullptr);
+    simplex.setPrimalTolerance(tolerance);
+    simplex.setDualTolerance(tolerance);
+    simplex.setPerturbation(100); // none: the basis is the result
+    count_work(Work::linear_programmes);
+    simplex.primal();
+    if (simplex.status() == 2) {
+        return Failure{FailureKind::unbounded, "the contacts do not support the load"};
+    }
+    if (simplex.status() != 0) {
+        return Failure{
+            FailureKind::not_converged,
+            fmt::format("the linear programme of the perturbed start ended with status {}", simplex.status())};
+    }
+    std::vector<Contact> kept;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (simplex.getRowStatus(static_cast<int>(l)) != ClpSimplex::basic) {
+            kept.push_back(contacts[l]);
+        }
+    }
+    if (kept.size() != columns) {
+        return Failure{
+            FailureKind::not_isostatic,
+            fmt::format("{} of {} contacts are needed by the perturbed packing, expected N_f = {}: there are "
+                        "mechanisms",
+                        kept.size(), contacts.size(), columns)};
+    }
+    return kept;
+}
+
+template Result<std::vector<Contact>> first_order_backbone<2>(const Packing<2>&, const Load<2>&,
+                                                              const std::vector<Contact>&, const std::vector<double>&);
+
+} // namespace isostat

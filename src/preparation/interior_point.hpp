@@ -1,0 +1,37 @@
+#pragma once
+/// \file
+/// Interior-point method for one linear programme of the preparation: where the simplex method would need a number of
+/// pivots that grows with the packing, this needs some thirty sparse factorisations whatever the size.
+
+#include <atomic>
+#include <vector>
+
+namespace isostat::preparation {
+
+/// minimise cost.x subject to A x >= lower, |x_k| <= bound_k.
+struct BoxedProgramme {
+    std::vector<int> start;    ///< rows of A: entries start[l] ... start[l + 1] - 1
+    std::vector<int> column;   ///< at most 4 per row, all different
+    std::vector<double> value; ///< of each entry
+    std::vector<double> lower; ///< one per row
+    std::vector<double> cost;  ///< one per column
+    std::vector<double> bound; ///< > 0, one per column
+};
+
+/// Which constraints hold with equality at the optimum, as far as the iteration tells.
+struct ActiveSet {
+    bool converged = false;          ///< otherwise the rest means nothing
+    int iterations = 0;              ///< factorisations
+    std::vector<unsigned char> row;  ///< 1: A x = lower
+    std::vector<signed char> column; ///< -1: x = -bound, 1: x = bound, 0: between
+    std::vector<double> x;           ///< the point reached
+};
+
+/// Predictor-corrector steps (S. Mehrotra, SIAM J. Optim. 2, 575 (1992)) on the normal equations, CHOLMOD without BLAS,
+/// so that the bits do not depend on a library's kernels. Ends when the complementarity products are below `tolerance`
+/// (cost unit x length unit) and the constraints hold to it. A generic programme has one solution, strictly
+/// complementary: the active set is then the basis of the simplex method. It is a proposal: nothing is proved.
+/// Cost: O(n^1.5) per iteration for planar contact graphs, O(n log n) memory.
+ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, const std::atomic<bool>* stop);
+
+} // namespace isostat::preparation

@@ -1,0 +1,95 @@
+#include <isostat/statics/perturbed.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+
+Enclosure product(const Enclosure& a, const Enclosure& b) {
+    const double value = a.value * b.value;
+    return {value, (std::abs(a.value) * b.radius + a.radius * std::abs(b.value) + a.radius * b.radius) * (1 + 8 * u) +
+                       2 * u * std::abs(value)};
+}
+
+Enclosure sum(const Enclosure& a, const Enclosure& b) {
+    return a - Enclosure{-b.value, b.radius};
+}
+
+} // namespace
+
+template <int Dim>
+PerturbedStatics<Dim>::PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load,
+                                        Enclosure stress_rate)
+    : first_(&first), statics_(&statics), load_(load), stress_rate_(stress_rate) {}
+
+template <int Dim> std::vector<Enclosure> PerturbedStatics<Dim>::terms(double sigma, double sigma_error) const {
+    const auto n = static_cast<std::size_t>(statics_->structure().size());
+    std::vector<Enclosure> f0(n);
+    std::vector<unsigned char> zero(n);
+    for (std::size_t l = 0; l < n; ++l) {
+        const ContactId id(l);
+        zero[l] = statics_->is_structural_zero(id) ? 1 : 0;
+        f0[l] = statics_->force(id, sigma);
+        if (sigma_error > 0 && zero[l] == 0) {
+            const Enclosure slope = statics_->slope(id);
+            f0[l].radius += sigma_error * (std::abs(slope.value) + slope.radius) * (1 + 8 * u);
+        }
+    }
+    Load<Dim> load = load_;
+    load.stress[static_cast<std::size_t>(load.loaded_axis)] = sigma;
+    return first_->forces(f0, zero, load, sigma_error);
+}
+
+template <int Dim> Enclosure PerturbedStatics<Dim>::force(ContactId contact) {
+    if (present_rung_ != statics_->rung()) { // better forces
+        present_ = terms(load_.stress[static_cast<std::size_t>(load_.loaded_axis)], 0);
+        present_rung_ = statics_->rung();
+        if (stress_rate_.value != 0 || stress_rate_.radius != 0) {
+            for (std::size_t l = 0; l < present_.size(); ++l) {
+                if (!statics_->is_structural_zero(ContactId(l))) {
+                    present_[l] = sum(present_[l], product(stress_rate_, statics_->slope(ContactId(l))));
+                }
+            }
+        }
+    }
+    return present_[contact.index()];
+}
+
+template <int Dim> Enclosure PerturbedStatics<Dim>::force_at(ContactId contact, double sigma, double sigma_error) {
+    if (elsewhere_.empty() || elsewhere_sigma_ != sigma || elsewhere_error_ != sigma_error) {
+        elsewhere_ = terms(sigma, sigma_error);
+        elsewhere_sigma_ = sigma;
+        elsewhere_error_ = sigma_error;
+    }
+    return elsewhere_[contact.index()];
+}
+
+template <int Dim> Enclosure PerturbedStatics<Dim>::limit_rate(ContactId contact, double sigma, double sigma_error) {
+    const Enclosure f = force_at(contact, sigma, sigma_error);
+    const Enclosure b = statics_->slope(contact);
+    const double smallest = std::abs(b.value) - b.radius;
+    if (!(smallest > 0)) {
+        return {0, std::numeric_limits<double>::infinity()};
+    }
+    const double value = -f.value / b.value;
+    return {value, (f.radius + std::abs(value) * b.radius) / smallest * (1 + 16 * u) + 4 * u * std::abs(value)};
+}
+
+template <int Dim> double PerturbedStatics<Dim>::size() {
+    if (size_ == 0) {
+        const double sigma = load_.stress[static_cast<std::size_t>(load_.loaded_axis)];
+        for (int l = 0; l < statics_->structure().size(); ++l) {
+            size_ = std::max(size_, std::abs(statics_->force(ContactId(l), sigma).value));
+        }
+    }
+    return size_;
+}
+
+template class PerturbedStatics<2>;
+
+} // namespace isostat

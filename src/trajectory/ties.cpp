@@ -1,0 +1,179 @@
+#include "trajectory/ties.hpp"
+
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr Contact nobody{ContactKind::disk_disk, -1, -1};
+
+std::string shown(const Enclosure& e) {
+    return fmt::format("{:.6g} +- {:.3g}", e.value, e.radius);
+}
+
+/// c / |rate| of a pair that closes.
+Enclosure way(const Enclosure& gap, const Enclosure& rate) {
+    const double value = gap.value / std::abs(rate.value);
+    const double smallest = std::abs(rate.value) - rate.radius;
+    return {value, (gap.radius + std::abs(value) * rate.radius) / smallest * (1 + 16 * u) + 4 * u * std::abs(value)};
+}
+
+} // namespace
+
+std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64_t seed) {
+    const double smallest = *std::min_element(radius.begin(), radius.end());
+    int exponent = 0;
+    std::frexp(smallest, &exponent); // smallest = x 2^exponent, x in [1/2, 1)
+    std::vector<double> rho;
+    rho.reserve(radius.size());
+    std::uint64_t state = seed;
+    for (std::size_t i = 0; i < radius.size(); ++i) {
+        state += 0x9e3779b97f4a7c15ULL;
+        std::uint64_t z = state;
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+        z ^= z >> 31;
+        rho.push_back(std::ldexp(static_cast<double>(z >> 48) - 32768, exponent - 1 - 16));
+    }
+    return rho;
+}
+
+template <int Dim>
+void perturb(Vertex<Dim>& vertex, const Load<Dim>& load, const std::vector<double>& rho, const Enclosure& stress_rate,
+             std::shared_ptr<const LoadShift> shift, double shift_bound) {
+    vertex.statics.use_index_pattern();
+    if (shift) {
+        vertex.statics.set_shift(std::move(shift), shift_bound);
+    }
+    vertex.perturbed = std::make_unique<FirstOrderVertex<Dim>>(
+        FirstOrder<Dim>(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.enclosure, rho),
+        vertex.statics, load, stress_rate);
+}
+
+template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction) {
+    Departure<Dim> departure;
+    struct Closing {
+        Contact contact;
+        Enclosure way;
+    };
+    std::vector<Closing> closing;
+    for (const auto& [contact, c] : from.perturbed->touching) {
+        const Enclosure rate = from.perturbed->first.rate(opened, direction, contact);
+        if (rate.value == 0 && rate.radius == 0) {
+            departure.resting.push_back(contact);
+        } else if (rate.positive()) {
+            departure.leaving.push_back(contact);
+        } else if (rate.negative()) {
+            closing.push_back({contact, way(c, rate)});
+        } else {
+            return Failure{FailureKind::undecided,
+                           fmt::format("{} touch without being a contact, and the rate of their gap when {} opens is "
+                                       "not told from 0: {}; pairs that move alike are not followed at first order",
+                                       to_string<Dim>(contact),
+                                       to_string<Dim>(from.structure.contacts()[opened.index()]), shown(rate))};
+        }
+    }
+    if (closing.empty()) {
+        return departure;
+    }
+    const auto first = std::min_element(closing.begin(), closing.end(),
+                                        [](const Closing& a, const Closing& b) { return a.way.value < b.way.value; });
+    for (const Closing& other : closing) {
+        if (&other == &*first) {
+            continue;
+        }
+        if (!(other.way - first->way).positive()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("tied at first order too: {} and {} touch, and close again after ways of eps "
+                                       "({}) and eps ({})",
+                                       to_string<Dim>(first->contact), to_string<Dim>(other.contact), shown(first->way),
+                                       shown(other.way))};
+        }
+        departure.settled.push_back({"step", first->contact, first->way, other.contact, other.way, 0, 0});
+    }
+    if (closing.size() == 1) {
+        departure.settled.push_back({"step", first->contact, first->way, nobody, {}, 0, 0});
+    }
+    departure.closes = first->contact;
+    return departure;
+}
+
+template <int Dim>
+Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact, Order>>& zero, ContactId slot,
+                            bool stayed, const std::vector<Contact>& resting) {
+    Arrival<Dim> arrival;
+    FirstOrderVertex<Dim>& side = *to.perturbed;
+    side.touching.clear();
+    const Contact& closed = to.structure.contacts()[slot.index()];
+    for (const auto& [contact, order] : zero) {
+        const Enclosure c = side.first.gap(contact);
+        if (!c.decided()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("{} touch where {} closes, and their first-order gap is not told from 0: {}",
+                                       to_string<Dim>(contact), to_string<Dim>(closed), shown(c))};
+        }
+        const bool rests = std::find(resting.begin(), resting.end(), contact) != resting.end();
+        if (!stayed && !rests) {
+            // Simple roots (P3): going back opens both.
+            const Enclosure back =
+                closed.kind == ContactKind::held ? Enclosure{0, 0} : side.first.rate(slot, +1, contact);
+            if (!back.positive()) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("{} touch where {} closes, but are not proved to close there: the rate of "
+                                           "their gap is {} times that of the other; grazing is not followed at first "
+                                           "order",
+                                           to_string<Dim>(contact), to_string<Dim>(closed), shown(back))};
+            }
+        }
+        if (c.negative()) {
+            if (rests) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("{} at rest overlap at first order: {}", to_string<Dim>(contact), shown(c))};
+            }
+            arrival.earlier = contact;
+            return arrival;
+        }
+        side.touching.emplace_back(contact, c);
+        arrival.settled.push_back({"gap", closed, {0, 0}, contact, c, order.exponent, order.bits});
+    }
+    return arrival;
+}
+
+template <int Dim>
+std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero) {
+    FirstOrderVertex<Dim>& side = *vertex.perturbed;
+    side.touching.clear();
+    std::string names;
+    for (const auto& [contact, order] : zero) {
+        const Enclosure c = side.first.gap(contact);
+        if (!c.decided()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("{} touch, and their first-order gap is not told from 0: {}",
+                                       to_string<Dim>(contact), shown(c))};
+        }
+        if (c.negative()) {
+            names += fmt::format("{}{}", names.empty() ? "" : ", ", to_string<Dim>(contact));
+        }
+        side.touching.emplace_back(contact, c);
+    }
+    if (!names.empty()) {
+        return Failure{FailureKind::overlap, "pairs that touch overlap at first order: " + names};
+    }
+    return std::nullopt;
+}
+
+template void perturb<2>(Vertex<2>&, const Load<2>&, const std::vector<double>&, const Enclosure&,
+                         std::shared_ptr<const LoadShift>, double);
+template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
+template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
+                                      const std::vector<Contact>&);
+template std::optional<Failure> settle_touching<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&);
+
+} // namespace isostat

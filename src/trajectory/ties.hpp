@@ -1,0 +1,49 @@
+#pragma once
+/// \file
+/// Ties under `ties = "perturb"`: the decisions of a vertex at first order in eps. Private to the room.
+
+#include "trajectory/vertex.hpp"
+
+namespace isostat {
+
+/// Gives a vertex its first-order side. `stress_rate`: first-order term of the stress of its load; `shift`: what its
+/// stored stress lacks to the exact one (null: nothing), at most `shift_bound`. Before any question to its statics.
+template <int Dim>
+void perturb(Vertex<Dim>& vertex, const Load<Dim>& load, const std::vector<double>& rho, const Enclosure& stress_rate,
+             std::shared_ptr<const LoadShift> shift, double shift_bound);
+
+/// What becomes of the pairs that touch at the start of an arc besides the contacts.
+template <int Dim> struct Departure {
+    std::vector<Contact> leaving; ///< proved to separate at once
+    std::vector<Contact> resting; ///< their gaps do not change, whatever the positions of the grains
+    /// The first pair to close, when some approach: the way is of length O(eps), the configuration stays.
+    std::optional<Contact> closes;
+    std::vector<TieDecision> settled;
+};
+/// Failure: `undecided` when a rate is not told from 0, or two pairs close at once to first order.
+template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction);
+
+/// Judges the pairs that touch at the end of an arc, whose new contact is in the place `slot`: `touching` of `to` is
+/// set. `stayed`: the arc has length O(eps), or the pairs `resting` did not move; all other pairs must be proved to
+/// close there, not to graze.
+/// Success: nothing, or the pair that closed before the new contact.
+template <int Dim> struct Arrival {
+    std::optional<Contact> earlier;
+    std::vector<TieDecision> settled;
+};
+template <int Dim>
+Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact, Order>>& zero, ContactId slot,
+                            bool stayed, const std::vector<Contact>& resting);
+
+/// At a start: `touching` is set. Failure: `overlap` naming the pairs that overlap at first order.
+template <int Dim>
+std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero);
+
+extern template void perturb<2>(Vertex<2>&, const Load<2>&, const std::vector<double>&, const Enclosure&,
+                                std::shared_ptr<const LoadShift>, double);
+extern template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
+extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
+                                             const std::vector<Contact>&);
+extern template std::optional<Failure> settle_touching<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&);
+
+} // namespace isostat

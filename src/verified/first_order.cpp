@@ -1,0 +1,234 @@
+#include "verified/norm.hpp"
+#include "verified/vertex_bounds.hpp"
+
+#include <isostat/verified/first_order.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+constexpr double root2 = 1.4142135623731;
+constexpr double raise = 1 + 1e-10; ///< rounding of sums of non-negative terms
+
+double length_of(const std::vector<double>& x) {
+    std::vector<double> size(x.size());
+    std::transform(x.begin(), x.end(), size.begin(), [](double c) { return std::abs(c); });
+    return norm_above(size);
+}
+
+} // namespace
+
+template <int Dim>
+FirstOrder<Dim>::FirstOrder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                            const Factorisation& factorisation, const InverseBound& inverse,
+                            const VertexEnclosure& enclosure, const std::vector<double>& rho)
+    : packing_(&packing), structure_(&structure), factorisation_(&factorisation), rho_(&rho) {
+    assert(inverse.verdict == Verdict::proved && enclosure.verdict == Verdict::proved);
+    assert(rho.size() == packing.radius.size());
+    away_ = enclosure.distance() * raise;
+    uncertainty_ = normal_rate(packing, structure.contacts()) * away_ * raise;
+    sigma_ = (inverse.sigma_min - uncertainty_) * (1 - 4 * u);
+    std::vector<double> approach;
+    std::vector<double> rounding;
+    for (const Contact& c : structure.contacts()) {
+        double sum = 0;
+        if (c.kind != ContactKind::held) {
+            sum = rho[static_cast<std::size_t>(c.i)];
+            if (c.kind == ContactKind::disk_disk) {
+                sum += rho[static_cast<std::size_t>(c.j)];
+            }
+        }
+        approach.push_back(-sum);
+        rounding.push_back(2 * u * std::abs(sum));
+    }
+    change_ = velocity(approach, norm_above(rounding));
+}
+
+/// v with G v = approach: |v - v*|_2 <= (|G v - approach| + |G - G*| |v|) / sigma_min.
+template <int Dim>
+typename FirstOrder<Dim>::Velocity FirstOrder<Dim>::velocity(const std::vector<double>& approach,
+                                                             double approach_error) const {
+    const sparse::Matrix<double>& h = structure_->matrix();
+    std::vector<double> v = approach;
+    factorisation_->solve_velocities(v);
+    std::vector<double> residual(v.size());
+    for (std::size_t l = 0; l < v.size(); ++l) {
+        double dot = -approach[l];
+        double terms = std::abs(dot);
+        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+            const auto s = static_cast<std::size_t>(e);
+            const double term = h.value[s] * v[static_cast<std::size_t>(h.row[s])];
+            dot += term;
+            terms += std::abs(term);
+        }
+        residual[l] = std::abs(dot) + 12 * u * terms; // at most 4 terms, 5u per entry
+    }
+    Velocity result;
+    result.v.assign(packing_->q.size(), 0.0);
+    for (std::size_t mu = 0; mu < v.size(); ++mu) {
+        result.v[static_cast<std::size_t>(structure_->dofs().coordinate_of(static_cast<int>(mu)))] = v[mu];
+    }
+    const double open = norm_above(residual) + approach_error + uncertainty_ * length_of(v);
+    result.error = sigma_ > 0 ? open / sigma_ * raise : std::numeric_limits<double>::infinity();
+    return result;
+}
+
+template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, const Velocity& velocity) const {
+    if (contact.kind == ContactKind::held) {
+        return {velocity.v[static_cast<std::size_t>(contact.i)], velocity.error};
+    }
+    const GapGradient<Dim> g = gap_gradient(*packing_, contact);
+    double sum = 0;
+    double terms = 0;
+    for (int k = 0; k < g.count; ++k) {
+        const auto e = static_cast<std::size_t>(k);
+        const double term = g.value[e] * velocity.v[static_cast<std::size_t>(g.coordinate[e])];
+        sum += term;
+        terms += std::abs(term);
+    }
+    double turned = 0; // the normal of the true vertex is another one
+    if (contact.kind == ContactKind::disk_disk) {
+        double square = 0;
+        for (int a = 0; a < Dim; ++a) {
+            const double r = velocity.v[static_cast<std::size_t>(Dim * contact.j + a)] -
+                             velocity.v[static_cast<std::size_t>(Dim * contact.i + a)];
+            square += r * r;
+        }
+        // |n - n*| <= 2 |x - x*| / d for the relative positions x
+        turned = std::sqrt(square) * 2 * root2 * away_ / (0.99 * target(*packing_, contact));
+    }
+    return {sum, (root2 * velocity.error + turned + 12 * u * terms) * raise};
+}
+
+template <int Dim> Enclosure FirstOrder<Dim>::gap(const Contact& contact) const {
+    Enclosure c = gap_rate(contact, change_);
+    if (contact.kind != ContactKind::held) {
+        double grown = (*rho_)[static_cast<std::size_t>(contact.i)];
+        if (contact.kind == ContactKind::disk_disk) {
+            grown += (*rho_)[static_cast<std::size_t>(contact.j)];
+        }
+        c = c - Enclosure{grown, 2 * u * std::abs(grown)};
+    }
+    return c;
+}
+
+template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int direction, const Contact& contact) const {
+    // h_m = sum a_l h_l over the structure: the rate is a multiple of a_opened, which may be a structural zero.
+    const std::vector<int> rows = touched_rows(structure_->dofs(), packing_->disk_count(), contact);
+    if (!pattern_) {
+        pattern_ = index_pattern(*structure_);
+    }
+    if (sparse::structural_nonzeros(pattern_->start, pattern_->row, pattern_->matched, rows)[opened.index()] == 0) {
+        return {0, 0};
+    }
+    std::vector<double> approach(static_cast<std::size_t>(structure_->size()), 0.0);
+    approach[opened.index()] = -direction;
+    return gap_rate(contact, velocity(approach, 0));
+}
+
+template <int Dim>
+std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
+                                               const std::vector<unsigned char>& structural_zero, const Load<Dim>& load,
+                                               double stress_error) const {
+    const sparse::Matrix<double>& h = structure_->matrix();
+    const DofMap<Dim>& dofs = structure_->dofs();
+    const auto& contacts = structure_->contacts();
+    const std::vector<double>& v = change_.v;
+    std::vector<double> right(v.size(), 0.0); // on coordinates
+    std::vector<double> error(v.size(), 0.0);
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& c = contacts[l];
+        if (c.kind != ContactKind::disk_disk) {
+            continue; // normals of walls do not turn
+        }
+        std::array<double, static_cast<std::size_t>(Dim)> x{};
+        std::array<double, static_cast<std::size_t>(Dim)> r{};
+        double square = 0;
+        double dot = 0;
+        double speed = 0;
+        for (int a = 0; a < Dim; ++a) {
+            const auto e = static_cast<std::size_t>(a);
+            const auto i = static_cast<std::size_t>(Dim * c.i + a);
+            const auto j = static_cast<std::size_t>(Dim * c.j + a);
+            x[e] = packing_->q[j] - packing_->q[i];
+            r[e] = v[j] - v[i];
+            square += x[e] * x[e];
+            dot += x[e] * r[e];
+            speed += r[e] * r[e];
+        }
+        const double d = std::sqrt(square);
+        speed = std::sqrt(speed);
+        // dn = (r - n (n.r)) / d; relative errors of n and d at the true vertex, of r, and of the arithmetic.
+        const double place = root2 * away_ / d;
+        const double off = (root2 * change_.error + speed * (6 * place + 40 * u)) / d * 1.01;
+        for (int a = 0; a < Dim; ++a) {
+            const auto e = static_cast<std::size_t>(a);
+            const double turn = (r[e] - x[e] * dot / square) / d;
+            const double push = f0[l].value * turn;
+            const double unknown = f0[l].radius * (std::abs(turn) + off) + std::abs(f0[l].value) * off;
+            const auto i = static_cast<std::size_t>(Dim * c.i + a);
+            const auto j = static_cast<std::size_t>(Dim * c.j + a);
+            right[i] -= push; // column l of H is +n on i and -n on j
+            right[j] += push;
+            error[i] += unknown + 2 * u * (std::abs(push) + std::abs(right[i]));
+            error[j] += unknown + 2 * u * (std::abs(push) + std::abs(right[j]));
+        }
+    }
+    if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other length
+        static_assert(Dim == 2, "the product of the other lengths has one factor");
+        for (int a = 0; a < Dim; ++a) {
+            const auto wall = static_cast<std::size_t>(Dim * packing_->disk_count() + a);
+            const auto other = static_cast<std::size_t>(Dim * packing_->disk_count() + 1 - a);
+            const double stress = load.stress[static_cast<std::size_t>(a)];
+            right[wall] -= stress * v[other];
+            error[wall] += std::abs(stress) * (change_.error + 4 * u * std::abs(v[other])) +
+                           stress_error * (std::abs(v[other]) + change_.error);
+        }
+    }
+    const auto n = static_cast<std::size_t>(structure_->size());
+    std::vector<double> b(n);
+    std::vector<double> open(n);
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        b[mu] = right[k];
+        open[mu] = error[k];
+    }
+    std::vector<double> f1 = b;
+    factorisation_->solve_forces(f1);
+    std::vector<double> sum = b;
+    std::vector<double> terms(n);
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        terms[mu] = std::abs(b[mu]);
+    }
+    std::vector<int> count(n, 2);
+    for (std::size_t l = 0; l < n; ++l) {
+        for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+            const auto s = static_cast<std::size_t>(e);
+            const auto mu = static_cast<std::size_t>(h.row[s]);
+            const double term = h.value[s] * f1[l];
+            sum[mu] -= term;
+            terms[mu] += std::abs(term);
+            ++count[mu];
+        }
+    }
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        open[mu] += std::abs(sum[mu]) + (count[mu] + 6) * u * terms[mu]; // 5u per entry
+    }
+    const double bound = sigma_ > 0 ? (norm_above(open) + uncertainty_ * length_of(f1)) / sigma_ * raise
+                                    : std::numeric_limits<double>::infinity();
+    std::vector<Enclosure> result(n);
+    for (std::size_t l = 0; l < n; ++l) {
+        result[l] = structural_zero[l] != 0 ? Enclosure{0, 0} : Enclosure{f1[l], bound};
+    }
+    return result;
+}
+
+template class FirstOrder<2>;
+
+} // namespace isostat

@@ -1,0 +1,195 @@
+// Runs with power turns, held coordinates and ties settled at first order, re-checked from their records; one number or
+// name changed in each kind of record must be found.
+#include "support/mirror.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/checker/verify_run.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cstdlib>
+
+using namespace isostat;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Plays one segment into a folder, every state stored; how it ends does not matter.
+void play(State<2> state, const Segment& segment, TiePolicy ties, std::uint64_t seed, const fs::path& folder) {
+    RunHeader header;
+    header.program = "test";
+    header.settings = R"({"run":{"rule":"most_negative"}})";
+    header.states_every = 1;
+    RunCounters counters;
+    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
+    RunOptions options;
+    options.ties = ties;
+    options.ties_seed = seed;
+    directory.begin_segment(0, segment, 0, 0);
+    (void)run_segment<2>(state, segment, 0, options, counters, directory);
+    directory.finish(RunStatus::completed, "");
+}
+
+Segment towards(int direction, int equilibria) {
+    Segment segment;
+    segment.direction = direction;
+    segment.equilibria = equilibria;
+    return segment;
+}
+
+void is_proved(const fs::path& folder) {
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST((run.verdict == Verdict::proved));
+    BOOST_TEST(run.arcs_proved == run.arcs);
+    BOOST_TEST(run.equilibria_proved == run.equilibria);
+}
+
+/// One change in a file; the replay must refute the run, with these words.
+void finds(const fs::path& folder, const std::string& file, const std::string& from, const std::string& to,
+           const std::string& said) {
+    BOOST_TEST_CONTEXT(file << " " << from << " -> " << to) {
+        const std::string original = scratch::read(folder / file);
+        const std::string changed = scratch::replaced(original, from, to);
+        BOOST_REQUIRE(changed != original);
+        scratch::write(folder / file, changed);
+        const RunVerification run = verify_run(folder);
+        BOOST_TEST((run.verdict == Verdict::refuted), (run.undecided.empty() ? "" : run.undecided[0]));
+        BOOST_TEST((run.wrong.find(said) != std::string::npos), run.wrong);
+        scratch::write(folder / file, original);
+    }
+}
+
+/// The text of the number or list after "name": in the first line that has it.
+std::string value_of(const std::string& text, const std::string& name) {
+    const std::size_t at = text.find("\"" + name + "\":");
+    BOOST_REQUIRE(at != std::string::npos);
+    const std::size_t begin = at + name.size() + 3;
+    return text.substr(begin, text.find_first_of(",}]", begin) - begin);
+}
+
+std::string scaled(const std::string& number, double factor) {
+    std::ostringstream text;
+    text.precision(17);
+    text << std::strtod(number.c_str(), nullptr) * factor;
+    return text.str();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1, 1), TiePolicy::stop, 1,
+         folder);
+    is_proved(folder);
+    BOOST_TEST(verify_run(folder).turns_checked == 1);
+    const std::string events = scratch::read(folder / "events.jsonl");
+    const std::string held = value_of(events, "held_at");
+    finds(folder, "events.jsonl", "\"held_at\":" + held, "\"held_at\":" + scaled(held, 1 + 1e-3), "");
+    finds(folder, "events.jsonl", "\"power_turn\":true", "\"power_turn\":false", "power_turn");
+    finds(folder, "events.jsonl", "\"closed\":\"held x of grain 1\"", "\"closed\":\"held x of grain 0\"", "");
+    finds(folder, "events.jsonl", "\"opened\":\"held x of grain 1\"", "\"opened\":\"held y of grain 1\"",
+          "is no contact");
+    finds(folder, "events.jsonl", "\"kind\":\"release\"", "\"kind\":\"tension\"", "kind");
+    // The multiplier of the release.
+    const std::string release = events.substr(events.find("\"kind\":\"release\""));
+    const std::string force = value_of(release, "force");
+    finds(folder, "events.jsonl", "\"force\":" + force, "\"force\":" + scaled(force, 1 + 1e-5), "force");
+}
+
+BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
+    // The turning arc closes 3-bottom; said to close another pair, the record is wrong.
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1, 1), TiePolicy::stop, 1,
+         folder);
+    if (verify_run(folder).arcs == 0) {
+        const fs::path other = scratch_folder / "up";
+        play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(+1, 1), TiePolicy::stop,
+             1, other);
+        is_proved(other);
+        return;
+    }
+    is_proved(folder);
+}
+
+BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_terms_are_found) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::mirror_forces(), towards(-1, 1), TiePolicy::perturb, 1, folder);
+    is_proved(folder);
+    BOOST_TEST(verify_run(folder).ties_checked == 2);
+    const std::string events = scratch::read(folder / "events.jsonl");
+    const std::string first = value_of(events, "first_order").substr(1);
+    finds(folder, "events.jsonl", "\"first_order\":[" + first, "\"first_order\":[" + scaled(first, -1), "first-order");
+    finds(folder, "events.jsonl", "\"first_order\":[" + first, "\"first_order\":[" + scaled(first, 1 + 1e-6),
+          "first-order");
+    // The other one of the two is said to open.
+    const bool one = events.find("\"opened\":\"1-bottom\"") != std::string::npos;
+    finds(folder, "events.jsonl", one ? "\"opened\":\"1-bottom\"" : "\"opened\":\"2-bottom\"",
+          one ? "\"opened\":\"2-bottom\"" : "\"opened\":\"1-bottom\"", "at first order");
+    // The direction of the radii, and the first-order force of the contact that stays at 0.
+    const std::string stored = scratch::read(folder / "states/eq_000001.json");
+    const std::string rho = value_of(stored, "rho").substr(1);
+    finds(folder, "states/eq_000001.json", "\"rho\":[" + rho, "\"rho\":[" + scaled(rho, 2), "direction of the radii");
+    const std::size_t zero = stored.find("\"zero\":[[");
+    BOOST_REQUIRE(zero != std::string::npos);
+    const std::size_t begin = stored.find("],", zero) + 2;
+    const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
+    finds(folder, "states/eq_000001.json", "]," + term, "]," + scaled(term, 1.001), "first-order force");
+}
+
+BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::mirror_gaps(), towards(+1, 1), TiePolicy::perturb, 1, folder);
+    is_proved(folder);
+    const std::string events = scratch::read(folder / "events.jsonl");
+    const bool one = events.find("\"closed\":\"1-bottom\"") != std::string::npos;
+    finds(folder, "events.jsonl", one ? "\"closed\":\"1-bottom\"" : "\"closed\":\"2-bottom\"",
+          one ? "\"closed\":\"2-bottom\"" : "\"closed\":\"1-bottom\"", "first-order gap");
+    const std::string other = value_of(events, "against_first_order").substr(1);
+    finds(folder, "events.jsonl", "\"against_first_order\":[" + other,
+          "\"against_first_order\":[" + scaled(other, 1 + 1e-6), "first-order");
+    const std::string stored = scratch::read(folder / "states/eq_000001.json");
+    const std::size_t open = stored.find("\"open\":[[");
+    BOOST_REQUIRE(open != std::string::npos);
+    const std::size_t begin = stored.find("],", open) + 2;
+    const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
+    finds(folder, "states/eq_000001.json", "]," + term, "]," + scaled(term, -1), "first-order gap");
+}
+
+BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
+    const scratch::Folder scratch_folder;
+    Segment to;
+    to.direction = -1;
+    to.to_stress = 0.5;
+    play(crafted::equal_pair(), to, TiePolicy::perturb, 1, scratch_folder / "pair");
+    is_proved(scratch_folder / "pair");
+    int arcs = 0;
+    int ties = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        const fs::path folder = scratch_folder / ("lattice" + std::to_string(seed));
+        play(crafted::triangular(3, 2), towards(+1, 3), TiePolicy::perturb, seed, folder);
+        if (fs::file_size(folder / "equilibria.csv") < 600) {
+            continue; // not even an equilibrium 0: nothing to check
+        }
+        const RunVerification run = verify_run(folder);
+        BOOST_TEST(run.wrong == "");
+        arcs += run.arcs_proved;
+        ties += run.ties_checked;
+        for (const std::string& open : run.undecided) {
+            BOOST_TEST_MESSAGE(open);
+        }
+    }
+    BOOST_TEST(arcs > 0);
+    BOOST_TEST_MESSAGE(arcs << " arcs, " << ties << " first-order decisions");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,86 @@
+// Ties in the smallest scenes known, as a user runs them: examples/ties.
+#include "cli/program.hpp"
+
+#include <nlohmann/json.hpp>
+
+using namespace program;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string example(const std::string& name) {
+    return std::string(ISOSTAT_EXAMPLES) + "/ties/" + name;
+}
+
+/// The scene under ties = "stop", next to the state that it reads.
+std::string stopped(const scratch::Folder& folder, const std::string& name) {
+    const std::string text = scratch::read(example(name + ".toml"));
+    scratch::write(folder / "stop.toml", scratch::replaced(scratch::replaced(text, "\"perturb\"", "\"stop\""),
+                                                           "file = \"", "file = \"" + example("")));
+    return (folder / "stop.toml").string();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(ties_stop_the_run_or_are_settled_and_the_records_say_how) {
+    for (const std::string name : {"two-gaps", "two-forces"}) {
+        BOOST_TEST_CONTEXT(name) {
+            const scratch::Folder folder;
+            const std::string out = (folder / "run").string();
+            expect(run({"run", stopped(folder, name), "-o", (folder / "stop").string(), "-q"}), 2, {"tie", "1-", "2-"});
+            BOOST_TEST(contains(scratch::read(folder / "stop/summary.json"), "undecided"));
+            expect(run({"run", example(name + ".toml"), "-o", out, "-q"}), 0);
+            const std::string events = scratch::read(folder / "run/events.jsonl");
+            BOOST_TEST(contains(events, "\"perturbed\":[{\"decision\":"));
+            BOOST_TEST(contains(events, "\"first_order\":["));
+            const auto summary = nlohmann::json::parse(scratch::read(folder / "run/summary.json"));
+            long settled = 0;
+            for (const auto& [kind, count] : summary.at("decisions").at("ties").at("perturbed").items()) {
+                settled += count.get<long>();
+            }
+            BOOST_TEST(settled > 0);
+            BOOST_TEST(contains(scratch::read(folder / "run/states/eq_000001.json"), "\"rho\":["));
+            const Outcome verified = run({"verify", out});
+            expect(verified, 0);
+            BOOST_TEST(contains(verified.out, "first-order decisions checked"));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_followed) {
+    const scratch::Folder folder;
+    expect(run({"run", stopped(folder, "equal-pair"), "-o", (folder / "stop").string(), "-q"}), 1,
+           {"h = 1", "self-stresses", "0-top", "1-top", "0-bottom", "1-bottom", "ties = \"perturb\""});
+    expect(run({"run", example("equal-pair.toml"), "-o", (folder / "run").string(), "-q"}), 0);
+    const std::string state = scratch::read(folder / "run/states/eq_000000.json");
+    BOOST_TEST(contains(state, "\"open\":[["));
+    BOOST_TEST(contains(state, "\"zero\":[["));
+    expect(run({"verify", (folder / "run").string()}), 0);
+    const Outcome planned = run({"plan", example("equal-pair.toml")});
+    expect(planned, 0);
+    BOOST_TEST(contains(planned.out, "first order in the radii"));
+    BOOST_TEST(contains(planned.out, "rho from seed 1"));
+}
+
+BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records) {
+    const scratch::Folder folder;
+    const std::string text =
+        scratch::replaced(scratch::read(example("two-forces.toml")), "file = \"", "file = \"" + example(""));
+    // One segment of two limits against two segments of one: the second starts from what was stored.
+    scratch::write(folder / "one.toml", scratch::replaced(text, "equilibria = 1", "equilibria = 2"));
+    scratch::write(folder / "two.toml",
+                   scratch::replaced(text, "equilibria = 1",
+                                     "equilibria = 1\n\n[[programme]]\ndo = \"down\"\nfrom = 1\nequilibria = 1"));
+    (void)run({"run", (folder / "one.toml").string(), "-o", (folder / "one").string(), "-q"});
+    (void)run({"run", (folder / "two.toml").string(), "-o", (folder / "two").string(), "-q"});
+    BOOST_TEST(scratch::read(folder / "one/events.jsonl") == scratch::read(folder / "two/events.jsonl"));
+    const auto reason = [&](const char* name) {
+        const std::string summary = scratch::read(folder / (std::string(name) + "/summary.json"));
+        return summary.substr(summary.find("arc 1 of the rearrangement"), 60);
+    };
+    BOOST_TEST(reason("one") == reason("two"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

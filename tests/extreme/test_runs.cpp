@@ -1,0 +1,168 @@
+// Runs, not only states: what steers them decided at the edge too. And dynamics of any stiffness.
+#include "extreme/catalogue.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/shortcuts/soft_grains.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace isostat;
+
+namespace {
+
+std::optional<State<2>> prepared(const PreparationOptions& options) {
+    PreparationReport<2> report;
+    auto made = prepare<2>(options, report);
+    return made.ok() ? std::optional(made.value()) : std::nullopt;
+}
+
+PreparationOptions disks(int count, double smallest = 1, double largest = 2) {
+    PreparationOptions options;
+    options.disks = count;
+    options.diameters = {smallest, largest};
+    return options;
+}
+
+/// One row for a run; the state where it ends is a row of its own, checked in 400 bits. W never grows.
+void follow(const std::string& family, const std::string& parameter, State<2> state, const Segment& segment) {
+    BOOST_TEST_CONTEXT(family << ", " << parameter) {
+        RunOptions options;
+        options.max_arcs = 2000;
+        options.max_strain = 1e3; // towards extreme ratios the box becomes a column
+        RunCounters counters;
+        crafted::Recorder records;
+        extreme::Row row;
+        row.family = family;
+        row.disks = state.packing.disk_count();
+        const extreme::Clock clock;
+        const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, records);
+        row.seconds = clock.seconds();
+        const auto found = static_cast<long>(records.equilibria.size());
+        row.parameter = fmt::format("{} ({} arcs, {} equilibria)", parameter, records.arcs.size(), found);
+        Rung rung = Rung::combinatorial;
+        for (const auto& e : records.equilibria) {
+            BOOST_TEST((e.verdict == Verdict::proved));
+            rung = std::max(rung, e.decided_by);
+        }
+        for (const auto& arc : records.arcs) {
+            rung = std::max(rung, arc.decided_by);
+            BOOST_TEST(arc.work > -1e-9 * state.load.stress[1] * state.packing.length(0) * state.packing.length(1));
+        }
+        row.rung = to_string(rung);
+        row.outcome = "proved";
+        row.checked = "W along every arc; the last state in 400 bits (next row)";
+        if (!outcome.completed) {
+            const FailureKind kind = outcome.failure->kind;
+            row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
+            row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message);
+        }
+        extreme::add(row);
+        if (found > 0) {
+            const auto last = extreme::inspect(family, parameter + ", last equilibrium", records.states.back());
+            BOOST_TEST((last && last->record.verdict == Verdict::proved));
+        }
+    }
+}
+
+Segment up(int equilibria) {
+    Segment segment;
+    segment.equilibria = equilibria;
+    return segment;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(extreme_cases)
+
+BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
+    struct Case {
+        std::string name;
+        PreparationOptions options;
+    };
+    std::vector<Case> cases;
+    for (const double ratio : {1.5, 100.0, 1e4}) {
+        cases.push_back({fmt::format("diameters in [1, {:g}]", ratio), disks(40, 1, ratio)});
+    }
+    for (const double width : {1e-2, 1e-4, 1e-6, 1e-9}) {
+        cases.push_back({fmt::format("diameters in [1, 1 + {:.0e}]", width), disks(40, 1, 1 + width)});
+    }
+    for (const double aspect : {1e-3, 1e3}) {
+        Case c{fmt::format("loose box 1 : {:g}", aspect), disks(40)};
+        c.options.aspect = aspect;
+        cases.push_back(c);
+    }
+    Case huge{"radius 100 among 40 of 0.5 to 1", {}};
+    huge.options.radii = {100};
+    for (int i = 0; i < 40; ++i) {
+        huge.options.radii.push_back(0.5 + 0.5 * std::fmod(i * 0.618033988749895, 1.0));
+    }
+    cases.push_back(huge);
+    int made = 0;
+    for (const Case& c : cases) {
+        if (const auto start = prepared(c.options)) {
+            ++made;
+            follow("run", c.name, *start, up(4));
+        }
+    }
+    BOOST_TEST(made >= 8); // those that end in the preparation have their rows there
+}
+
+BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
+    for (const int count : {2, 4, 10}) {
+        const auto start = prepared(disks(count));
+        BOOST_REQUIRE(start);
+        for (const int power : {-12, -4, 4, 12}) {
+            Segment segment;
+            segment.direction = power < 0 ? -1 : +1;
+            segment.to_stress = std::pow(10.0, power);
+            follow("stress ratio", fmt::format("{} disks, run to σ₂/σ₁ = 1e{:+03d}", count, power), *start, segment);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
+    const auto start = prepared(disks(30));
+    BOOST_REQUIRE(start);
+    const auto rigid = inspect_vertex(*start);
+    BOOST_REQUIRE((rigid.ok() && rigid.value().equilibrium));
+    const double largest = *std::max_element(rigid.value().forces.begin(), rigid.value().forces.end());
+    for (const double kappa : {1e2, 1e4, 1e6, 1e8}) {
+        extreme::Row row;
+        row.family = "stiff dynamics";
+        row.disks = 30;
+        row.rung = "none";
+        SoftGrainOptions options;
+        options.stiffness_ratio = kappa;
+        options.max_steps = 400'000;
+        const extreme::Clock clock;
+        SoftGrains<2> soft(start->packing, start->load, options);
+        const bool relaxed = soft.relax();
+        row.seconds = clock.seconds();
+        row.parameter = fmt::format("soft grains, stiffness / pressure = {:.0e} ({} steps of {:.2f} sqrt(m/K))", kappa,
+                                    soft.steps(), soft.time_step());
+        BOOST_TEST(std::isfinite(soft.energy())); // no step was unstable
+        double error = 0;
+        const auto contacts = soft.contacts();
+        for (std::size_t l = 0; l < start->contacts.size(); ++l) {
+            const auto at = std::find_if(contacts.begin(), contacts.end(),
+                                         [&](const SoftContact& c) { return c.contact == start->contacts[l]; });
+            const double force = at == contacts.end() ? 0 : at->force;
+            error = std::max(error, std::abs(force - rigid.value().forces[l]) / largest);
+        }
+        row.outcome = "approximate";
+        row.reason = fmt::format("forces differ from the rigid ones by {:.1e} of the largest{}", error,
+                                 relaxed ? "" : "; not relaxed");
+        row.checked = "forces of the rigid state; error below 1000 / stiffness ratio where it relaxes";
+        if (relaxed && kappa >= 1e4) {
+            BOOST_TEST(error < 1e3 / kappa + 1e-6);
+        }
+        BOOST_TEST((relaxed || kappa > 1e7)); // beyond, rounding of the overlaps is above the tolerance
+        extreme::add(row);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,144 @@
+// Linear gaps against closed forms and against the exact path.
+#include "support/crafted.hpp"
+
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/shortcuts/small_displacements.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+LinearEvent event_of(const State<2>& state, const Contact& opened) {
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_REQUIRE(structure.ok());
+    const Factorisation factorisation(structure.value());
+    const auto at = std::find(state.contacts.begin(), state.contacts.end(), opened) - state.contacts.begin();
+    const auto pairs = find_candidates(state.packing, 0.8).contacts;
+    const auto event =
+        find_linear_event(state.packing, structure.value(), factorisation, ContactId(static_cast<int>(at)), +1, pairs);
+    BOOST_REQUIRE(event.ok());
+    return event.value();
+}
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto state = prepare<2>(options, report);
+    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message));
+    return state.value();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(shortcuts)
+
+BOOST_AUTO_TEST_CASE(the_linear_event_of_two_disks_errs_with_the_square_of_the_arc) {
+    // Disk 1 leaves the bottom and rolls on disk 0 until it meets the left wall: (x1 - R0, y1 - R0) goes from
+    // (X, Y) = (2 sqrt(R0 R1), R1 - R0) to (Y, X). The tangent at the start is (-Y, X) / |.|.
+    std::vector<double> error;
+    std::vector<double> arc;
+    for (const double distance : {1e-1, 1e-2, 1e-3}) {
+        const double r1 = (3 + 2 * std::sqrt(2.0)) * (1 - distance);
+        const State<2> state = two_disks(1, r1, 1, 1);
+        const LinearEvent event = event_of(state, bottom(1));
+        BOOST_TEST((event.closed == left(1)));
+        const double x = 2 * std::sqrt(r1);
+        const double y = r1 - 1;
+        BOOST_TEST(event.displacement[2] == y - x, boost::test_tools::tolerance(1e-9));
+        BOOST_TEST(event.displacement[3] == (x - y) * x / y, boost::test_tools::tolerance(1e-9));
+        arc.push_back(x - y);
+        error.push_back(std::abs(event.displacement[3] - (x - y)));
+    }
+    BOOST_TEST(std::log(error[0] / error[1]) / std::log(arc[0] / arc[1]) == 2.0, boost::test_tools::tolerance(0.05));
+    BOOST_TEST(std::log(error[1] / error[2]) / std::log(arc[1] / arc[2]) == 2.0, boost::test_tools::tolerance(0.05));
+}
+
+BOOST_AUTO_TEST_CASE(the_drift_of_the_first_arc_is_the_curvature_of_the_gaps) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        const State<2> start = prepared(30, seed);
+        const auto run = load_with_linear_gaps(start, LinearGeometry::moved, 1, 1);
+        BOOST_REQUIRE(run.arcs.size() == 1U);
+        std::vector<double> moved(start.packing.q.size());
+        for (std::size_t k = 0; k < moved.size(); ++k) {
+            moved[k] = run.coordinates[0][k] - start.packing.q[k];
+        }
+        double expected = 0;
+        for (const Contact& c : start.contacts) {
+            if (c != run.arcs[0].opened) {
+                expected = std::max(expected, 0.5 * gap_curvature(start.packing, c, moved.data()));
+            }
+        }
+        Packing<2> end = start.packing;
+        end.q = run.coordinates[0];
+        double drift = 0;
+        for (const Contact& c : start.contacts) {
+            drift = c == run.arcs[0].opened ? drift : std::max(drift, std::abs(gap(end, c)));
+        }
+        BOOST_TEST(drift == expected, boost::test_tools::tolerance(0.1));
+        BOOST_TEST(run.arcs[0].drift * start.packing.min_radius() >= drift);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_frozen_geometry_keeps_its_linear_gaps_closed_and_the_load_works) {
+    int arcs = 0;
+    int changes = 0;
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+        const State<2> start = prepared(20, seed);
+        const auto run = load_with_linear_gaps(start, LinearGeometry::frozen, 6, 300);
+        std::vector<Contact> contacts = start.contacts;
+        std::vector<double> before = start.packing.q;
+        for (std::size_t a = 0; a < run.arcs.size(); ++a, ++arcs) {
+            *std::find(contacts.begin(), contacts.end(), run.arcs[a].opened) = run.arcs[a].closed;
+            const std::vector<double>& q = run.coordinates[a];
+            for (const Contact& c : contacts) {
+                const auto g = gap_gradient(start.packing, c);
+                double h = gap(start.packing, c);
+                for (int e = 0; e < g.count; ++e) {
+                    const auto k = static_cast<std::size_t>(g.coordinate[static_cast<std::size_t>(e)]);
+                    h += g.value[static_cast<std::size_t>(e)] * (q[k] - start.packing.q[k]);
+                }
+                BOOST_TEST(std::abs(h) < 1e-9);
+            }
+            Load<2> load = start.load;
+            load.stress[1] = run.arcs[a].stress;
+            const auto force = load.external_force(start.packing);
+            double work = 0;
+            for (std::size_t k = 0; k < q.size(); ++k) {
+                work += force[k] * (q[k] - before[k]);
+            }
+            BOOST_TEST(work > -1e-9); // rattlers' arcs and the first of a rearrangement do none
+            before = q;
+        }
+        for (std::size_t e = 1; e < run.equilibria.size(); ++e) {
+            BOOST_TEST(run.equilibria[e].stress == run.equilibria[e - 1].stress_high,
+                       boost::test_tools::tolerance(1e-9));
+            BOOST_TEST(run.equilibria[e].stress > run.equilibria[e - 1].stress); // never taken back
+            changes += run.equilibria[e].stress > 1.0001 * run.equilibria[e - 1].stress ? 1 : 0;
+        }
+    }
+    BOOST_TEST(arcs > 10);
+    BOOST_TEST(changes > 5);
+}
+
+BOOST_AUTO_TEST_CASE(geometry_that_moves_follows_the_exact_path_for_some_arcs_and_then_drifts) {
+    const State<2> start = prepared(30, 1);
+    const Played exact = play(start, +1, 5);
+    BOOST_REQUIRE_MESSAGE(exact.outcome.completed, exact.why());
+    const auto run = load_with_linear_gaps(start, LinearGeometry::moved, 5, 1000);
+    BOOST_REQUIRE(!run.arcs.empty());
+    // The first limit is that of the exact path, to rounding: no arc was approximated before it.
+    BOOST_TEST(run.arcs[0].stress == exact.records.arcs[0].stress, boost::test_tools::tolerance(1e-9));
+    BOOST_TEST((run.arcs[0].opened == exact.records.arcs[0].opened));
+    BOOST_TEST(run.arcs.back().drift > run.arcs.front().drift);
+    BOOST_TEST(run.arcs.back().drift > 1e-9); // it is an approximation
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,85 @@
+#pragma once
+// Small packings with genuine ties: mirror images, and lattices of equal disks.
+
+#include "support/crafted.hpp"
+
+#include <cmath>
+#include <vector>
+
+namespace crafted {
+
+/// Two disks of radius 3 on a fixed one of radius 2, pushed together by 12, under the top wall; weights 1. Loading
+/// parts them at sigma2 = 1.5, and they reach the bottom together: a tie of two gaps. Unloaded, both lose the top wall
+/// together at sigma2 = 0.
+inline State<2> mirror_gaps() {
+    State<2> state = in_box({{2, 10, 2.5}, {3, 7, 6.5}, {3, 13, 6.5}}, 20, 9.5, 1, 1,
+                            {pair(0, 1), pair(0, 2), pair(1, 2), top(1), top(2)});
+    state.packing.fixed = {1, 0, 0};
+    state.packing.walls.upper[0] = isostat::WallKind::fixed;
+    state.load.reference_length = {20, 9.5};
+    state.load.disk_force = {0, 0, 12, -1, -12, -1};
+    state.load.infinitesimal[0] = state.load.infinitesimal[1] = 0;
+    return state;
+}
+
+/// A disk of radius 2 between two of radius 3 at fixed side walls, under the top wall; the two are lifted by 3.5 each.
+/// Unloading, both leave the bottom at sigma2 = 0.5: a tie of two forces. Afterwards one of them stands at force 0.
+inline State<2> mirror_forces() {
+    State<2> state = in_box({{2, 7, 6}, {3, 3, 3}, {3, 11, 3}}, 14, 8, 1, 1,
+                            {pair(0, 1), pair(0, 2), left(1), bottom(1), right(2), bottom(2), top(0)});
+    state.packing.walls.upper[0] = isostat::WallKind::fixed;
+    state.load.reference_length = {14, 8};
+    state.load.disk_force = {0, 0, 0, 3.5, 0, 3.5};
+    return state;
+}
+
+/// Two equal disks side by side in the box: h = 1, the top wall rests on both.
+inline State<2> equal_pair() {
+    State<2> state = in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1,
+                            {left(0), pair(0, 1), right(1), bottom(0), bottom(1), top(0), top(1)});
+    state.load.reference_length = {4, 2};
+    return state;
+}
+
+/// Rows of `columns` and `columns` - 1 equal disks in turn, from the bottom: a triangular lattice between the walls,
+/// with all its contacts. h > 0 from three columns on.
+inline State<2> triangular(int columns, int rows) {
+    std::vector<DiskAt> disks;
+    for (int row = 0; row < rows; ++row) {
+        const int count = row % 2 == 0 ? columns : columns - 1;
+        for (int c = 0; c < count; ++c) {
+            disks.push_back({1, 1.0 + row % 2 + 2 * c, 1 + row * std::sqrt(3.0)});
+        }
+    }
+    const double lx = 2 * columns;
+    const double ly = 2 + (rows - 1) * std::sqrt(3.0);
+    std::vector<Contact> contacts;
+    const int n = static_cast<int>(disks.size());
+    for (int i = 0; i < n; ++i) {
+        const DiskAt& a = disks[static_cast<std::size_t>(i)];
+        for (int j = i + 1; j < n; ++j) {
+            const DiskAt& b = disks[static_cast<std::size_t>(j)];
+            if (std::hypot(a.x - b.x, a.y - b.y) < 2.5) {
+                contacts.push_back(pair(i, j));
+            }
+        }
+        const auto near = [](double gap) { return std::abs(gap) < 0.5; };
+        if (near(a.x - 1)) {
+            contacts.push_back(left(i));
+        }
+        if (near(lx - a.x - 1)) {
+            contacts.push_back(right(i));
+        }
+        if (near(a.y - 1)) {
+            contacts.push_back(bottom(i));
+        }
+        if (near(ly - a.y - 1)) {
+            contacts.push_back(top(i));
+        }
+    }
+    State<2> state = in_box(disks, lx, ly, 1, 1, contacts);
+    state.load.reference_length = {lx, ly};
+    return state;
+}
+
+} // namespace crafted

@@ -1,0 +1,286 @@
+// Ties: stopped, or settled at first order in R_i + eps rho_i. The same packings with radii that are really changed by
+// a small eps, run under `stop`, must open and close the same contacts in the same order.
+#include "support/mirror.hpp"
+
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/preparation/backbone.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+struct Course {
+    std::vector<std::string> events;
+    std::vector<EquilibriumRecord<2>> equilibria;
+    std::vector<State<2>> states;
+    std::vector<ArcRecord<2>> arcs;
+    SegmentOutcome outcome;
+    RunCounters counters;
+    [[nodiscard]] std::string end() const { return outcome.completed ? "completed" : to_string(outcome.failure->kind); }
+};
+
+class CourseRecorder : public RunObserver<2> {
+  public:
+    explicit CourseRecorder(Course& course) : course_(course) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        course_.events.push_back(
+            fmt::format("{}:{}>{}", arc.equilibrium, to_string<2>(arc.opened), to_string<2>(arc.closed)));
+        course_.arcs.push_back(arc);
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>&) override {
+        course_.equilibria.push_back(record);
+        course_.states.push_back(state);
+    }
+
+  private:
+    Course& course_;
+};
+
+Course follow_load(State<2> state, int direction, int equilibria, TiePolicy ties, std::uint64_t seed = 1) {
+    Course course;
+    CourseRecorder recorder(course);
+    Segment segment;
+    segment.direction = direction;
+    segment.equilibria = equilibria;
+    RunOptions options;
+    options.ties = ties;
+    options.ties_seed = seed;
+    course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+    return course;
+}
+
+/// The contacts that a run under `perturb` starts from.
+std::vector<Contact> starting_contacts(const State<2>& state, const std::vector<double>& rho) {
+    if (static_cast<int>(state.contacts.size()) == DofMap<2>(state.packing).dof_count()) {
+        return state.contacts;
+    }
+    const auto kept = first_order_backbone(state.packing, state.load, state.contacts, rho);
+    BOOST_TEST_REQUIRE(kept.ok());
+    return kept.value();
+}
+
+/// The packing with radii R + eps rho and the same contacts closed, by Newton's method.
+State<2> really_perturbed(State<2> state, const std::vector<double>& rho, double eps) {
+    state.contacts = starting_contacts(state, rho);
+    for (std::size_t i = 0; i < rho.size(); ++i) {
+        state.packing.radius[i] += eps * rho[i];
+    }
+    for (int step = 0; step < 12; ++step) {
+        auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        BOOST_TEST_REQUIRE(structure.ok());
+        const Factorisation factorisation(structure.value());
+        std::vector<double> v;
+        for (const Contact& c : state.contacts) {
+            v.push_back(gap(state.packing, c));
+        }
+        factorisation.solve_velocities(v);
+        for (std::size_t mu = 0; mu < v.size(); ++mu) {
+            state.packing.q[static_cast<std::size_t>(structure.value().dofs().coordinate_of(static_cast<int>(mu)))] +=
+                v[mu];
+        }
+        snap_to_grid(state.packing);
+    }
+    return state;
+}
+
+/// Both runs, for several directions rho: the symbolic one may end undecided where first order does not tell, and is
+/// then the beginning of the real one.
+struct Agreement {
+    int events = 0, settled = 0, undecided = 0;
+};
+Agreement agree(const State<2>& state, int direction, int equilibria, int seeds) {
+    Agreement sum;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        const auto s = static_cast<std::uint64_t>(seed);
+        const Course symbolic = follow_load(state, direction, equilibria, TiePolicy::perturb, s);
+        const std::vector<double> rho = tie_direction(state.packing.radius, s);
+        for (const long count : symbolic.counters.tally.perturbed) {
+            sum.settled += static_cast<int>(count);
+        }
+        sum.events += static_cast<int>(symbolic.events.size());
+        const bool open = symbolic.end() == "undecided";
+        sum.undecided += open ? 1 : 0;
+        for (const double eps : {1e-6, 1e-8}) {
+            const Course real = follow_load(really_perturbed(state, rho, eps), direction, equilibria, TiePolicy::stop);
+            std::vector<std::string> expected = real.events;
+            if (open) {
+                BOOST_TEST_REQUIRE(expected.size() >= symbolic.events.size());
+                expected.resize(symbolic.events.size());
+            } else {
+                BOOST_TEST(symbolic.end() == real.end());
+            }
+            BOOST_TEST(symbolic.events == expected, boost::test_tools::per_element());
+        }
+    }
+    return sum;
+}
+
+bool mentions(const Course& course, const std::string& word) {
+    return course.outcome.failure && course.outcome.failure->message.find(word) != std::string::npos;
+}
+
+bool settled_as(const Course& course, const std::string& what) {
+    for (const ArcRecord<2>& arc : course.arcs) {
+        for (const TieDecision& tie : arc.perturbed) {
+            if (tie.what == what) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_stops_the_run_and_names_them) {
+    const Course course = follow_load(mirror_forces(), -1, 1, TiePolicy::stop);
+    BOOST_TEST(course.end() == "tie");
+    BOOST_TEST(mentions(course, "1-bottom"));
+    BOOST_TEST(mentions(course, "2-bottom"));
+    BOOST_TEST(mentions(course, "exactly equal"));
+}
+
+BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_stops_the_run_and_names_them) {
+    State<2> state = mirror_gaps();
+    state.load.disk_force[3] = -1.25; // its lower end is no tie then; the motion is the same
+    const Course course = follow_load(state, +1, 1, TiePolicy::stop);
+    BOOST_TEST(course.end() == "tie");
+    BOOST_TEST((mentions(course, "1-bottom") || mentions(course, "2-bottom")));
+    BOOST_TEST(mentions(course, "bits"));
+}
+
+BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_settled_by_the_radii_and_so_is_the_force_that_stays_at_zero) {
+    int first_opens = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const Course course = follow_load(mirror_forces(), -1, 1, TiePolicy::perturb, seed);
+        BOOST_TEST(course.end() == "completed");
+        BOOST_TEST_REQUIRE(course.arcs.size() >= 1U);
+        BOOST_TEST(settled_as(course, "limit"));
+        const bool first = course.arcs[0].opened == bottom(1);
+        BOOST_TEST((first || course.arcs[0].opened == bottom(2)));
+        first_opens += first ? 1 : 0;
+        // By symmetry the other one has force 0 at the limit, and is kept: its first-order term is positive.
+        const State<2>& reached = course.states.back();
+        BOOST_TEST_REQUIRE(reached.perturbation.has_value());
+        BOOST_TEST_REQUIRE(reached.perturbation->zero.size() == 1U);
+        BOOST_TEST((reached.perturbation->zero[0].first == bottom(first ? 2 : 1)));
+        BOOST_TEST(reached.perturbation->zero[0].second.positive());
+        BOOST_TEST((reached.perturbation->load_zero == bottom(first ? 2 : 1)));
+    }
+    BOOST_TEST(first_opens > 0); // rho decides: both happen
+    BOOST_TEST(first_opens < 8);
+}
+
+BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_settled_by_the_radii_and_the_other_gap_stays_open_at_first_order) {
+    int first_closes = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const Course course = follow_load(mirror_gaps(), +1, 1, TiePolicy::perturb, seed);
+        BOOST_TEST(course.end() == "completed");
+        BOOST_TEST_REQUIRE(course.arcs.size() == 1U);
+        BOOST_TEST(settled_as(course, "gap"));
+        BOOST_TEST((course.arcs[0].opened == pair(1, 2)));
+        const bool first = course.arcs[0].closed == bottom(1);
+        BOOST_TEST((first || course.arcs[0].closed == bottom(2)));
+        first_closes += first ? 1 : 0;
+        BOOST_TEST_REQUIRE(course.states.back().perturbation->open.size() == 1U);
+        BOOST_TEST((course.states.back().perturbation->open[0].first == bottom(first ? 2 : 1)));
+        BOOST_TEST(course.states.back().perturbation->open[0].second.positive());
+        BOOST_TEST(course.counters.tally.perturbed[static_cast<std::size_t>(DecisionKind::gaps)] == 1);
+    }
+    BOOST_TEST(first_closes > 0);
+    BOOST_TEST(first_closes < 8);
+}
+
+BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_when_the_radii_are_really_changed_mirror_images) {
+    for (const int direction : {+1, -1}) {
+        const Agreement gaps = agree(mirror_gaps(), direction, 3, 6);
+        const Agreement forces = agree(mirror_forces(), direction, 3, 6);
+        BOOST_TEST(gaps.settled + forces.settled > 0);
+        BOOST_TEST_MESSAGE("events " << gaps.events + forces.events << ", settled " << gaps.settled + forces.settled
+                                     << ", undecided " << gaps.undecided + forces.undecided);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_same_contacts_open_and_close_when_the_radii_are_really_changed_lattices) {
+    int events = 0;
+    for (const int direction : {+1, -1}) {
+        for (const auto& [columns, rows] : {std::pair{2, 2}, std::pair{3, 2}, std::pair{2, 3}, std::pair{3, 3}}) {
+            const Agreement a = agree(triangular(columns, rows), direction, 4, 4);
+            events += a.events;
+            BOOST_TEST_MESSAGE(columns << " x " << rows << ": events " << a.events << ", settled " << a.settled
+                                       << ", undecided " << a.undecided);
+        }
+    }
+    BOOST_TEST(events > 10);
+}
+
+BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_changed_radii_keep) {
+    int first = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        State<2> state = equal_pair();
+        Segment segment;
+        segment.direction = -1;
+        segment.to_stress = 0.5;
+        RunOptions options;
+        options.ties = TiePolicy::perturb;
+        options.ties_seed = seed;
+        Course course;
+        CourseRecorder recorder(course);
+        course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+        BOOST_TEST(course.outcome.completed);
+        const std::vector<double> rho = tie_direction(state.packing.radius, seed);
+        // The larger one bears the top wall; the other is pressed to the bottom by a contact that is tilted O(eps).
+        const int bearer = rho[0] > rho[1] ? 0 : 1;
+        first += bearer == 0 ? 1 : 0;
+        BOOST_TEST_REQUIRE(course.states.size() == 2U);
+        const RadiusPerturbation& found = *course.states[0].perturbation;
+        BOOST_TEST_REQUIRE(found.open.size() == 1U);
+        BOOST_TEST((found.open[0].first == top(1 - bearer)));
+        BOOST_TEST(std::abs(found.open[0].second.value - 2 * std::abs(rho[0] - rho[1])) <= found.open[0].second.radius);
+        BOOST_TEST_REQUIRE(found.zero.size() == 1U);
+        BOOST_TEST((found.zero[0].first == bottom(1 - bearer)));
+        // f1 = sigma1 L2 (rho_bearer - rho_other) / 2R
+        BOOST_TEST(std::abs(found.zero[0].second.value - 2 * std::abs(rho[0] - rho[1]) / 2) <=
+                   found.zero[0].second.radius + 1e-15);
+        BOOST_TEST(course.counters.tally.perturbed[static_cast<std::size_t>(DecisionKind::equilibrium)] > 0);
+    }
+    BOOST_TEST(first > 0);
+    BOOST_TEST(first < 8);
+}
+
+BOOST_AUTO_TEST_CASE(equal_forces_that_stay_equal_at_first_order_are_undecided_not_guessed) {
+    State<2> state = equal_pair();
+    state.packing.radius = {1, 1, 1, 1};
+    state.packing.q = {1, 1, 3, 1, 1, 3, 3, 3, 4, 4};
+    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 7);
+    state.load.reference_length = {4, 4};
+    state.contacts = {left(0),  bottom(0), bottom(1),  right(1),   left(2),    top(2),
+                      right(3), top(3),    pair(0, 1), pair(2, 3), pair(0, 2), pair(1, 3)};
+    const Course course = follow_load(state, +1, 2, TiePolicy::perturb, 1);
+    BOOST_TEST(course.end() == "undecided");
+    BOOST_TEST(mentions(course, "first"));
+}
+
+BOOST_AUTO_TEST_CASE(without_ties_perturb_changes_nothing) {
+    const Course stop = follow_load(three_disks(1, 1.1, 1.5, 1, 1), -1, 2, TiePolicy::stop);
+    const Course perturb = follow_load(three_disks(1, 1.1, 1.5, 1, 1), -1, 2, TiePolicy::perturb);
+    BOOST_TEST(stop.events == perturb.events, boost::test_tools::per_element());
+    BOOST_TEST(stop.end() == perturb.end());
+    for (std::size_t k = 0; k < std::min(stop.states.size(), perturb.states.size()); ++k) {
+        BOOST_TEST(stop.states[k].packing.q == perturb.states[k].packing.q, boost::test_tools::per_element());
+        BOOST_TEST(perturb.states[k].perturbation->open.empty());
+        BOOST_TEST(perturb.states[k].perturbation->zero.empty());
+    }
+    for (const long count : perturb.counters.tally.perturbed) {
+        BOOST_TEST(count == 0);
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -102,7 +102,7 @@ struct Program {
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;
-            set_threads(a.common.threads.value_or(available_cores()));
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return prepare(a); };
         });
     }
@@ -125,7 +125,7 @@ struct Program {
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;
-            set_threads(a.common.threads.value_or(available_cores()));
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return run(a); };
         });
     }
@@ -180,7 +180,7 @@ struct Program {
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;
-            set_threads(a.common.threads.value_or(available_cores()));
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return inspect(a); };
         });
     }
@@ -200,7 +200,7 @@ struct Program {
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;
-            set_threads(a.common.threads.value_or(available_cores()));
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return certify(a); };
         });
     }

@@ -109,14 +109,18 @@ struct Program {
 
     void add_run(const std::string& line) {
         RunArguments& a = run_arguments;
-        CLI::App& command = add("run", "a whole trajectory: start, then the programme of the scene",
-                                "The folder holds run.json, events.jsonl, equilibria.csv, checkpoint.json, states/ "
-                                "and, at the end, summary.json and\n"
-                                "figures/. After a kill or Ctrl-C, --resume goes on from the last equilibrium; the "
-                                "files are then those of a run that\n"
-                                "was not interrupted, times apart.\n"
-                                "Examples: isostat run examples/biaxial-400.toml -o out\n"
-                                "          isostat run examples/biaxial-400.toml -o out --resume");
+        CLI::App& command = add(
+            "run", "a whole trajectory: start, then the programme of the scene",
+            "The folder holds run.json, events.jsonl, equilibria.csv, checkpoint.json, states/ "
+            "and, at the end, summary.json and\n"
+            "figures/. After a kill or Ctrl-C, --resume goes on from the last equilibrium; the "
+            "files are then those of a run that\n"
+            "was not interrupted, times apart.\n"
+            "A tie (two forces that vanish at one load, two gaps that close at once) ends the run with exit status 2; "
+            "with\n"
+            "ties = \"perturb\" in [run] it is settled for radii R_i + eps rho_i, eps -> 0, and the records say how.\n"
+            "Examples: isostat run examples/biaxial-400.toml -o out\n"
+            "          isostat run examples/biaxial-400.toml -o out --resume");
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
@@ -261,8 +265,9 @@ struct Program {
                 "Exit status 0: all claims of a stable equilibrium are there and proved; 1: a claim is refuted; 2: a "
                 "claim is\n"
                 "undecided or absent.\n"
-                "Of the folder of a run every arc and every equilibrium is replayed; the first wrong record is named. "
-                "Runs with\n"
+                "Of the folder of a run every arc and every equilibrium is replayed, power turns, held coordinates and "
+                "ties settled at\n"
+                "first order included; the first wrong record is named. Runs with\n"
                 "states_every = 1 can be taken up again after an arc that the replay cannot follow.\n"
                 "Examples: isostat verify certificate.json --input state.json\n          isostat verify out");
         command.add_option("certificate", a.certificate, "certificate (JSON), or folder of a run")

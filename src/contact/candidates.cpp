@@ -88,7 +88,8 @@ template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packin
     return list;
 }
 
-template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing, double allowance) {
+template <int Dim>
+Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, const CandidateList<Dim>* known) {
     assert(allowance >= 0);
     count_work(Work::overlap_proofs);
     Admissibility result;
@@ -108,8 +109,16 @@ template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing,
         }
     };
     // Any positive reach finds every overlapping pair.
-    for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius())) {
-        look(contact);
+    if (known != nullptr && known->reach > 0 && packing.fixed.empty() && known->reference == packing.q) {
+        for (const Contact& contact : known->contacts) {
+            if (contact.kind == ContactKind::disk_disk) {
+                look(contact);
+            }
+        }
+    } else {
+        for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius())) {
+            look(contact);
+        }
     }
     for_each_wall_contact(packing, look);
     return result;
@@ -117,6 +126,6 @@ template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing,
 
 template struct CandidateList<2>;
 template CandidateList<2> find_candidates<2>(const Packing<2>&, double);
-template Admissibility certify_admissible<2>(const Packing<2>&, double);
+template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);
 
 } // namespace isostat

@@ -43,6 +43,18 @@ SparseVector column_of(const sparse::Matrix<double>& matrix, int column) {
             {matrix.value.begin() + matrix.start[c], matrix.value.begin() + matrix.start[c + 1]}};
 }
 
+/// x -> solve(part of x), 0 elsewhere.
+template <class Solve>
+void in_block(std::span<double> x, const std::vector<int>& from, const std::vector<int>& to, Solve solve) {
+    std::vector<double> part(from.size());
+    std::transform(from.begin(), from.end(), part.begin(), [&](int k) { return x[static_cast<std::size_t>(k)]; });
+    solve(part);
+    std::fill(x.begin(), x.end(), 0.0);
+    for (std::size_t k = 0; k < to.size(); ++k) {
+        x[static_cast<std::size_t>(to[k])] = part[k];
+    }
+}
+
 } // namespace
 
 struct ApproximateInverse::Base {
@@ -51,6 +63,7 @@ struct ApproximateInverse::Base {
     klu_symbolic* symbolic = nullptr;
     klu_numeric* numeric = nullptr;
     sparse::Matrix<double> matrix;
+    std::vector<int> block_rows, block_columns; ///< empty: the whole matrix
     explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
         klu_defaults(&common);
         // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
@@ -94,6 +107,38 @@ ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std
                                                              mutable_data(matrix.row), &base->common);
     base->factorise();
     base_ = std::move(base);
+}
+
+ApproximateInverse ApproximateInverse::of_block(const sparse::Matrix<double>& matrix, std::vector<int> rows,
+                                                std::vector<int> columns) {
+    std::vector<int> place(static_cast<std::size_t>(matrix.rows), -1);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        place[static_cast<std::size_t>(rows[k])] = static_cast<int>(k);
+    }
+    sparse::Matrix<double> block;
+    block.rows = block.cols = static_cast<int>(rows.size());
+    block.start.push_back(0);
+    for (const int column : columns) {
+        const SparseVector entries = column_of(matrix, column);
+        for (std::size_t e = 0; e < entries.index.size(); ++e) {
+            const int row = place[static_cast<std::size_t>(entries.index[e])];
+            if (row >= 0) {
+                block.row.push_back(row);
+                block.value.push_back(entries.value[e]);
+            }
+        }
+        block.start.push_back(static_cast<int>(block.row.size()));
+    }
+    auto base = std::make_shared<Base>(block);
+    base->symbolic =
+        klu_analyze(block.rows, mutable_data(base->matrix.start), mutable_data(base->matrix.row), &base->common);
+    base->factorise();
+    base->matrix.rows = matrix.rows; // the size of right-hand sides
+    base->block_rows = std::move(rows);
+    base->block_columns = std::move(columns);
+    ApproximateInverse inverse;
+    inverse.base_ = std::move(base);
+    return inverse;
 }
 
 bool ApproximateInverse::valid() const {
@@ -157,7 +202,13 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {
         wanted[k] = rhs[static_cast<std::size_t>(exchanges_[k]->slot)];
     }
-    klu_tsolve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
+    if (base_->block_rows.empty()) {
+        klu_tsolve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
+    } else {
+        in_block(rhs, base_->block_columns, base_->block_rows, [&](std::vector<double>& x) {
+            klu_tsolve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);
+        });
+    }
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {
         const Exchange& exchange = *exchanges_[k];
         const double factor = (wanted[k] - exchange.row.dot(rhs)) / exchange.speed;
@@ -204,7 +255,13 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
         exchange.change.add_to(rhs, -power / exchange.speed);
     }
     klu_common common = base_->common;
-    klu_solve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
+    if (base_->block_rows.empty()) {
+        klu_solve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
+    } else {
+        in_block(rhs, base_->block_rows, base_->block_columns, [&](std::vector<double>& x) {
+            klu_solve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);
+        });
+    }
 }
 
 const std::vector<double>& ApproximateInverse::mechanism(int slot) const {

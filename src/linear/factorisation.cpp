@@ -4,7 +4,9 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace isostat {
@@ -99,7 +101,7 @@ struct Factorisation::Implementation {
     /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
     /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
     /// refinement and converges where that does not.
-    bool refined(Side side, std::span<double> rhs) {
+    bool refined(Side side, std::span<double> rhs, std::span<const double> guess = {}, double accuracy = 4 * u) {
         const std::size_t n = rhs.size();
         // By a power of two near 1, which changes no bit: squares neither under- nor overflow, whatever the units are.
         int exponent = 0;
@@ -111,6 +113,12 @@ struct Factorisation::Implementation {
         r.resize(n);
         std::transform(rhs.begin(), rhs.end(), r.begin(), [up](double c) { return c * up; });
         const double size_of_rhs = largest(r);
+        if (!guess.empty()) {
+            std::transform(guess.begin(), guess.end(), x.begin(), [up](double c) { return c * up; });
+            std::vector<double> carried(n);
+            multiply(side, x, carried);
+            std::transform(r.begin(), r.end(), carried.begin(), r.begin(), std::minus<>());
+        }
         const auto deliver = [&] {
             std::transform(x.begin(), x.end(), rhs.begin(), [down](double c) { return c * down; });
             return true;
@@ -148,9 +156,9 @@ struct Factorisation::Implementation {
                 return false;
             }
             // Linear convergence: the next change would be change^2 / previous.
-            if (change <= 4 * u * size || (k > 0 && change * change <= 4 * u * size * previous)) {
+            if (change <= accuracy * size || (k > 0 && change * change <= accuracy * size * previous)) {
                 // Small steps are also what a useless operator makes: the residual has to be small too.
-                if (!(largest(r) <= residual_left * (size + size_of_rhs))) {
+                if (!(largest(r) <= std::max(residual_left, 100 * accuracy) * (size + size_of_rhs))) {
                     return false;
                 }
                 return deliver();
@@ -189,12 +197,62 @@ template <int Dim>
 Factorisation::Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse)
     : implementation_(new Implementation{structure.shared_matrix(), std::move(inverse), false, 0, {}, {}}) {}
 
+template <int Dim>
+std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure<Dim>& structure, int slot) {
+    // Unknown velocities that are not structural zeros when only contact `slot` has one: the pattern of G.
+    const sparse::Matrix<double>& h = structure.matrix();
+    const auto n = static_cast<std::size_t>(h.rows);
+    std::vector<int> start(n + 1, 0);
+    for (const int row : h.row) {
+        ++start[static_cast<std::size_t>(row) + 1];
+    }
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<int> contact(h.row.size());
+    std::vector<int> next(start.begin(), start.end() - 1);
+    for (std::size_t l = 0; l < n; ++l) {
+        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+            contact[static_cast<std::size_t>(next[static_cast<std::size_t>(h.row[e])]++)] = static_cast<int>(l);
+        }
+    }
+    std::vector<int> matched(n); // degree of freedom matched to each contact
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        matched[static_cast<std::size_t>(structure.matching()[mu])] = static_cast<int>(mu);
+    }
+    const auto moves = sparse::structural_nonzeros(start, contact, matched, {&slot, 1});
+    std::vector<int> rows;
+    std::vector<int> columns;
+    for (std::size_t mu = 0; mu < n; ++mu) {
+        if (moves[mu] != 0) {
+            rows.push_back(static_cast<int>(mu));
+            columns.push_back(structure.matching()[mu]);
+        }
+    }
+    if (rows.size() > n / 4) {
+        return std::nullopt;
+    }
+    Factorisation block;
+    block.implementation_.reset(new Implementation{structure.shared_matrix(),
+                                                   ApproximateInverse::of_block(h, std::move(rows), std::move(columns)),
+                                                   true,
+                                                   0,
+                                                   {},
+                                                   {}});
+    return block;
+}
+
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;
 Factorisation& Factorisation::operator=(Factorisation&&) noexcept = default;
 
 void Factorisation::solve_forces(std::span<double> rhs, int count) const {
     implementation_->solve(Implementation::Side::forces, rhs, count);
+}
+
+void Factorisation::solve_forces_from(std::span<double> rhs, std::span<const double> guess, double accuracy) const {
+    Implementation& self = *implementation_;
+    if (self.fresh || !self.refined(Implementation::Side::forces, rhs, guess, accuracy)) {
+        self.solve(Implementation::Side::forces, rhs, 1);
+    }
 }
 
 void Factorisation::solve_velocities(std::span<double> rhs, int count) const {
@@ -215,5 +273,6 @@ int Factorisation::passes() const {
 
 template Factorisation::Factorisation(const IsostaticStructure<2>&);
 template Factorisation::Factorisation(const IsostaticStructure<2>&, ApproximateInverse);
+template std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure<2>&, int);
 
 } // namespace isostat

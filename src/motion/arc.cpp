@@ -1,3 +1,5 @@
+#include "motion/geometry.hpp"
+
 #include <isostat/contact/contact_set.hpp>
 #include <isostat/motion/arc.hpp>
 
@@ -112,16 +114,6 @@ template <int Dim> class Follower {
         }
     }
 
-    static double rate(const Packing<Dim>& at, const Contact& contact, const Vector& v) {
-        const GapGradient<Dim> g = gap_gradient(at, contact);
-        double sum = 0;
-        for (int k = 0; k < g.count; ++k) {
-            const auto e = static_cast<std::size_t>(k);
-            sum += g.value[e] * v[static_cast<std::size_t>(g.coordinate[e])];
-        }
-        return sum;
-    }
-
     double largest(const Vector& v) const {
         double value = 0;
         for (const double c : v) {
@@ -149,7 +141,7 @@ template <int Dim> class Follower {
         double previous = infinity;
         last_iterations_ = 0;
         for (int k = 0; k < 60; ++k) {
-            chord([&](const Contact& c) { return gap(at, c); }, [&](const Vector& v) { return row(at, v); },
+            chord([&](const Contact& c) { return quick_gap(at, c); }, [&](const Vector& v) { return row(at, v); },
                   target(at));
             const double size = largest(y_);
             if (!(size < infinity)) {
@@ -180,8 +172,8 @@ template <int Dim> class Follower {
 
     bool converge_to_event(Packing<Dim>& at, const Contact& closing) {
         const bool ok = converge(
-            at, [&](const Packing<Dim>& p, const Vector& v) { return rate(p, closing, v); },
-            [&](const Packing<Dim>& p) { return -gap(p, closing); });
+            at, [&](const Packing<Dim>& p, const Vector& v) { return gap_rate(p, closing, v); },
+            [&](const Packing<Dim>& p) { return -quick_gap(p, closing); });
         if (ok) {
             snap_to_grid(at);
         }
@@ -189,9 +181,12 @@ template <int Dim> class Follower {
     }
 
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
-    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
+    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy,
+                                     const sparse::Matrix<double>* known = nullptr) {
         const DofMap<Dim>& dofs = structure_->dofs();
-        const sparse::Matrix<double> h = contact_matrix(at, dofs, structure_->contacts());
+        std::optional<sparse::Matrix<double>> made;
+        const sparse::Matrix<double>& h =
+            known != nullptr ? *known : made.emplace(contact_matrix(at, dofs, structure_->contacts()));
         Vector t = tangent_;
         double previous = infinity;
         for (int k = 0; k < 40; ++k) {
@@ -387,12 +382,12 @@ template <int Dim> class Follower {
             if (!(d0 < 0) || active_[c] == except) {
                 continue;
             }
-            const double d1 = rate(at, active_[c], t);
+            const double d1 = gap_rate(at, active_[c], t);
             if (!(d1 > 0)) {
                 continue;
             }
             const double h0 = start_gap_[c];
-            const double h1 = gap(at, active_[c]);
+            const double h1 = quick_gap(at, active_[c]);
             const Dip dip = lowest_point(h0, d0, h1, d1, s);
             // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step); h is taken as 40 depths, far
             // above what a disk rolling through a step of a tenth of a radius has. It vanishes at the ends, where the
@@ -414,7 +409,7 @@ template <int Dim> class Follower {
             if (active_[c] == except) {
                 continue;
             }
-            const double h = gap(at, active_[c]);
+            const double h = quick_gap(at, active_[c]);
             if (h < -noise) {
                 const double bend = 2 * (h - start_gap_[c] - start_rate_[c] * s) / (s * s);
                 const double root = std::min(first_root(start_gap_[c], start_rate_[c], bend), s);
@@ -513,7 +508,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     bool moved = false;                // q_ is no longer the start
     if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
         choose_fastest();
-        if (auto t = tangent_at(q_, tangent_accuracy)) {
+        if (auto t = tangent_at(q_, end_tangent_accuracy, &structure_->matrix())) {
             tangent_ = std::move(*t);
         } else if (auto failure = renew()) {
             return *failure;
@@ -526,7 +521,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         }
         list_candidates();
         const bool at_start = !moved;
-        chord([&](const Contact& c) { return gap_curvature(q_, c, tangent_.data()); },
+        chord([&](const Contact& c) { return quick_curvature(q_, c, tangent_); },
               [&](const Vector& v) { return v[fastest_]; }, 0.0);
         curvature_ = y_;
         if (!(p_start < infinity)) {
@@ -538,10 +533,10 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         std::size_t event = 0;
         for (std::size_t c = 0; c < active_.size(); ++c) {
             const bool opening = at_start && leaves(active_[c]);
-            start_gap_[c] = opening ? 0.0 : gap(q_, active_[c]);
-            start_rate_[c] = rate(q_, active_[c], tangent_);
-            const double bend = rate(q_, active_[c], curvature_) + gap_curvature(q_, active_[c], tangent_.data());
-            double root = first_root(std::max(start_gap_[c], 0.0), start_rate_[c], bend);
+            const GapCourse course = gap_course(q_, active_[c], tangent_, curvature_);
+            start_gap_[c] = opening ? 0.0 : course.value;
+            start_rate_[c] = course.rate;
+            double root = first_root(std::max(start_gap_[c], 0.0), start_rate_[c], course.bend);
             if (start_gap_[c] <= 0 && !(start_rate_[c] > 0)) {
                 root = 0;
             }

@@ -19,10 +19,15 @@ template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coo
     return force;
 }
 
+/// Relative, of forces on the way: estimated, not bounded.
+constexpr double accuracy = 1e-12;
+
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
   public:
-    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const Load<Dim>& load)
+    /// `guess`: forces in the same slots.
+    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const Load<Dim>& load,
+                const std::vector<double>& guess)
         : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)),
           load_(load) {
         const DofMap<Dim>& dofs = structure.dofs();
@@ -36,7 +41,7 @@ template <int Dim> class PlainVertex {
         }
         const sparse::Matrix<double>& h = structure.matrix();
         backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
-        factorisation.solve_forces(force);
+        factorisation.solve_forces_from(force, guess, accuracy);
     }
 
     Packing<Dim> packing;
@@ -49,7 +54,7 @@ template <int Dim> class PlainVertex {
     [[nodiscard]] const std::vector<double>& infinitesimal() {
         if (infinitesimal_.empty()) {
             infinitesimal_ = on_dofs(load_.infinitesimal, structure.dofs());
-            factorisation.solve_forces(infinitesimal_);
+            factorisation.solve_forces_from(infinitesimal_, {}, accuracy);
         }
         return infinitesimal_;
     }
@@ -134,7 +139,7 @@ class Wear {
     void renew() { *this = {}; }
 
   private:
-    static constexpr double factorisation_in_passes = 60; ///< KLU: analysis and factorisation, n = 400 ... 4900
+    static constexpr double factorisation_in_passes = 90; ///< KLU: analysis and factorisation, n = 1936, 4900
     double last_ = 0;
     double sum_ = 0;
     int exchanges_ = 0;
@@ -182,9 +187,12 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
                               arc_options);
         };
         // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
-        const bool renew = opening.infinitesimal && !factorisation->is_fresh();
-        auto arc = renew ? attempt(Factorisation(*structure)) : attempt(*factorisation);
-        if ((!arc.ok() || arc.value().closed == record.opened) && !renew && !factorisation->is_fresh()) {
+        std::optional<Factorisation> block;
+        if (opening.infinitesimal) {
+            block = Factorisation::of_moving_block(*structure, static_cast<int>(opening.contact.index()));
+        }
+        auto arc = attempt(block ? *block : *factorisation);
+        if ((!arc.ok() || arc.value().closed == record.opened) && (block || !factorisation->is_fresh())) {
             arc = attempt(Factorisation(*structure));
         }
         if (!arc.ok()) {
@@ -218,9 +226,10 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         if (worn) {
             wear.renew();
         }
+        const std::vector<double> guess = here ? std::move(here->force) : std::vector<double>();
         here = std::make_unique<PlainVertex<Dim>>(std::move(path.end),
                                                   IsostaticStructure<Dim>::without_proof(std::move(*next)),
-                                                  std::move(approximate), load);
+                                                  std::move(approximate), load, guess);
         packing = &here->packing;
         structure = &here->structure;
         factorisation = &here->factorisation;

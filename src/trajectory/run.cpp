@@ -61,7 +61,9 @@ template <int Dim> class Run {
 
     /// Caches that belong to the last equilibrium only, so that a resumed run takes the same path.
     void fresh_caches(const Packing<Dim>& packing) {
-        candidates_ = find_candidates(packing, candidate_fraction);
+        if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // else it would be the same list
+            candidates_ = find_candidates(packing, candidate_fraction);
+        }
         bound_cache_ = {};
     }
 
@@ -173,10 +175,14 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         arc_options.leaving = departure.value().leaving;
         arc_options.resting = departure.value().resting;
     }
-    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their
+    // own block costs next to nothing.
     std::optional<Factorisation> fresh;
     if (opening.infinitesimal && !from.factorisation.is_fresh()) {
-        fresh.emplace(from.structure);
+        fresh = Factorisation::of_moving_block(from.structure, static_cast<int>(opening.contact.index()));
+        if (!fresh) {
+            fresh.emplace(from.structure);
+        }
     }
     // A second pass only when the proved gaps say that another candidate closed before.
     for (int pass = 0; pass < 8; ++pass) {
@@ -192,7 +198,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         };
         auto arc = attempt();
         // An arc that fails, or ends where it began, may only have been predicted badly by old factors.
-        if ((!arc.ok() || arc.value().closed == record.opened) && !fresh && !from.factorisation.is_fresh()) {
+        if ((!arc.ok() || arc.value().closed == record.opened) && (!fresh || opening.infinitesimal) &&
+            !from.factorisation.is_fresh()) {
             fresh.emplace(from.structure);
             arc = attempt();
         }
@@ -561,11 +568,11 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             return located(made.failure(), where);
         }
         std::unique_ptr<Vertex<Dim>> next = std::move(made.value());
-        if (auto failure = check_arc(*from, *next, opening, load, record)) {
-            return located(*failure, where);
-        }
-        if (arc_kind == "release" && record.power_turn && record.closed == record.opened && !descends_) {
-            // It turned back where it stood: no motion, no descent, and released once more it would do so for ever.
+        const auto unproved = check_arc(*from, *next, opening, load, record);
+        const bool turned_back = record.power_turn && record.closed == record.opened;
+        if (arc_kind == "release" && !descends_ && (turned_back || unproved)) {
+            // It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released
+            // once more it would do so for ever.
             resting.push_back(opening.contact);
             --counters_.steps;
             --arcs;
@@ -583,6 +590,9 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             opening = *again.value().opening;
             arc_kind = kind_of(*here, opening);
             continue;
+        }
+        if (unproved) {
+            return located(*unproved, where);
         }
         resting.clear();
         if (options_.certify == CertifyLevel::arcs) {
@@ -749,7 +759,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     EquilibriumRecord<Dim> record = described.value();
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
     const double allowance = 4 * vertex_->enclosure.distance();
-    const Admissibility admissible = certify_admissible(vertex_->packing, allowance);
+    const Admissibility admissible = certify_admissible(vertex_->packing, allowance, &candidates_);
     if (admissible.verdict != Verdict::proved) {
         return Failure{FailureKind::overlap,
                        fmt::format("equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),

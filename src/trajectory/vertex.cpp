@@ -15,14 +15,15 @@ namespace isostat {
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure),
-      inverse(bound_inverse(structure, factorisation, cache)), enclosure(enclose_vertex(packing, structure, inverse)),
+      inverse(bound_inverse(structure, factorisation, cache)),
+      enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
 
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
                     const InverseBound& bound, const Load<Dim>& load)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
-      enclosure(enclose_vertex(packing, structure, inverse)),
+      enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
 
 template <int Dim> double Vertex<Dim>::cost_of_solves() const {
@@ -31,7 +32,7 @@ template <int Dim> double Vertex<Dim>::cost_of_solves() const {
 }
 
 template <int Dim> bool Vertex<Dim>::factors_are_worn() const {
-    constexpr double factorisation_in_passes = 60; // KLU: analysis and factorisation, measured for n = 400 ... 4900
+    constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
     const int exchanges = factorisation.approximate().exchanges();
     const double here = cost_of_solves();
     return exchanges > 0 && here * (exchanges + 1) > factorisation_in_passes + cost_before_ + here;
@@ -66,7 +67,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
     std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, cache));
     if (vertex->inverse.verdict != Verdict::proved) { // small structures: with as many bits as it takes
         vertex->inverse = bound_inverse_multiprecision(vertex->packing, vertex->structure);
-        vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->inverse);
+        vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
     }
     if (auto failure = vertex->lacking()) {
         return *failure;

@@ -67,22 +67,21 @@ int main(int argc, char** argv) {
     constexpr int of_doubles = 15;
     using namespace families;
     const std::vector<::Family> list{{"two tractions within delta", of_double(tractions), all, 5},
-                                   {"two forces vanish within delta", of_double(limits), all, 5},
-                                   {"strut off collinear by delta", of_double(strut), all, 5},
-                                   {"notch, radii differ by delta", of_double(notch), of_doubles, 5},
-                                   {"the same, exact coordinates", exact_notch, all, 2},
-                                   {"grazing by delta", of_double(grazing), of_doubles, 5},
-                                   {"the same, exact coordinates", exact_grazing, all, 2},
-                                   {"two gaps close within delta (arc)", of_double(closings), of_doubles, 2},
-                                   {"the same, exact coordinates", exact_closings, all, 2},
-                                   {"end of three disks, R3 = R (1 + delta) (arc)", of_double(ends), of_doubles, 2},
-                                   {"end of two disks, exact coordinates", exact_ends, all, 2},
-                                   {"lattice of four, radii differ by delta, exact", exact_lattice, all, 2}};
+                                     {"two forces vanish within delta", of_double(limits), all, 5},
+                                     {"strut off collinear by delta", of_double(strut), all, 5},
+                                     {"notch, radii differ by delta", of_double(notch), of_doubles, 5},
+                                     {"notch, exact coordinates", exact_notch, all, 2},
+                                     {"grazing by delta", of_double(grazing), of_doubles, 5},
+                                     {"grazing, exact coordinates", exact_grazing, all, 2},
+                                     {"two gaps close within delta (arc)", of_double(closings), of_doubles, 2},
+                                     {"two gaps close, exact coordinates", exact_closings, all, 2},
+                                     {"end of three disks, R3 = R(1 + delta) (arc)", of_double(ends), of_doubles, 2},
+                                     {"end of two disks, exact coordinates", exact_ends, all, 2},
+                                     {"lattice, radii differ by delta, exact", exact_lattice, all, 2}};
     std::vector<int> decades;
     for (int decade = 1; decade <= all; decade += decade < 20 ? 1 : decade < 100 ? 10 : 25) {
         decades.push_back(decade);
     }
-    decades.push_back(all);
     bool right = true;
     std::vector<Line> lines;
     std::vector<std::size_t> family_of;
@@ -137,19 +136,34 @@ int main(int argc, char** argv) {
             data << "\n\n";
         }
         if (lines[k].decade > 0) {
-            data << fmt::format("{} {:.5f} {}\n", lines[k].decade, lines[k].milliseconds,
-                                lines[k].answer.rung == Rung::exact ? 5000 : lines[k].answer.bits);
+            data << fmt::format("{} {:.5f} {:.6g}\n", lines[k].decade, lines[k].milliseconds,
+                                1 / lines[k].answer.margin);
         }
     }
     data.close();
+    const auto curves = [&](const char* columns, bool titles, bool with_exact) {
+        std::string text;
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const bool exact = std::string(list[k].name).find("exact") != std::string::npos;
+            if (exact && !with_exact) {
+                continue;
+            }
+            text += fmt::format("{}  'degeneracy.dat' index {} using {} with linespoints pt {} ps 0.4 lc {}{} {}",
+                                text.empty() ? "plot \\\n" : ", \\\n", k, columns, exact ? 6 : 7, k + 1,
+                                exact ? " dt 2" : "",
+                                titles ? fmt::format("title '{}'", list[k].name) : std::string("notitle"));
+        }
+        return text + "\n";
+    };
     std::ofstream plot(folder / "degeneracy.gp");
-    plot << "set terminal svg size 760,480 font 'sans,13' background 'white'\nset output 'degeneracy.svg'\n"
-            "set logscale xy\nset xlabel '-log_{10} delta'\nset ylabel 'time of the decision, vertex included (ms)'\n"
-            "set key top left font ',10'\nset grid\nplot \\\n";
-    for (std::size_t k = 0; k < list.size(); ++k) {
-        plot << fmt::format("  'degeneracy.dat' index {} using 1:2 with linespoints pt 7 ps 0.5 title '{}'{}\n", k,
-                            list[k].name, k + 1 == list.size() ? "" : ", \\");
-    }
+    plot << "set terminal svg size 900,640 font 'sans,12' background 'white'\nset output 'degeneracy.svg'\n"
+            "set multiplot\nset logscale xy\nset xrange [1:300]\nset grid\nset lmargin at screen 0.09\n"
+            "set rmargin at screen 0.62\nset format y '10^{%T}'\nset key at screen 0.99, screen 0.95 font ',10'\n"
+            "set tmargin at screen 0.97\nset bmargin at screen 0.56\nset ylabel 'time, vertex or arc included (ms)'\n"
+         << curves("1:2", true, true)
+         << "set tmargin at screen 0.47\nset bmargin at screen 0.09\nset xlabel '-log_{10} delta'\n"
+            "set ylabel 'proved error / quantity'\nset label 'exact: 0' at graph 0.72, graph 0.9\n"
+         << curves("1:($3 > 0 ? $3 : NaN)", false, false) << "unset multiplot\n";
     plot.close();
     const auto here = std::filesystem::current_path();
     std::filesystem::current_path(folder);

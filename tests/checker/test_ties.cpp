@@ -10,6 +10,7 @@
 #include <boost/test/unit_test.hpp>
 
 #include <cstdlib>
+#include <set>
 
 using namespace isostat;
 namespace fs = std::filesystem;
@@ -49,7 +50,7 @@ void is_proved(const fs::path& folder) {
 }
 
 /// One change in a file; the replay must refute the run, with these words.
-void finds(const fs::path& folder, const std::string& file, const std::string& from, const std::string& to,
+bool finds(const fs::path& folder, const std::string& file, const std::string& from, const std::string& to,
            const std::string& said) {
     BOOST_TEST_CONTEXT(file << " " << from << " -> " << to) {
         const std::string original = scratch::read(folder / file);
@@ -60,7 +61,9 @@ void finds(const fs::path& folder, const std::string& file, const std::string& f
         BOOST_TEST((run.verdict == Verdict::refuted), (run.undecided.empty() ? "" : run.undecided[0]));
         BOOST_TEST((run.wrong.find(said) != std::string::npos), run.wrong);
         scratch::write(folder / file, original);
+        return run.verdict == Verdict::refuted;
     }
+    return false;
 }
 
 /// The text of the number or list after "name": in the first line that has it.
@@ -174,6 +177,8 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     is_proved(scratch_folder / "pair");
     int arcs = 0;
     int ties = 0;
+    int altered = 0;
+    std::set<std::string> kinds;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const fs::path folder = scratch_folder / ("lattice" + std::to_string(seed));
         play(crafted::triangular(3, 2), towards(+1, 3), TiePolicy::perturb, seed, folder);
@@ -184,12 +189,32 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
         BOOST_TEST(run.wrong == "");
         arcs += run.arcs_proved;
         ties += run.ties_checked;
+        // One first-order term of each kind of decision, changed.
+        const std::string events = scratch::read(folder / "events.jsonl");
+        for (const std::string kind : {"force", "opening", "limit", "zero all along", "gap", "step"}) {
+            const std::size_t entry = events.find("{\"decision\":\"" + kind + "\"");
+            if (entry == std::string::npos || !run.undecided.empty()) {
+                continue;
+            }
+            const std::string name = kind == "gap" ? "\"against_first_order\":[" : "\"first_order\":[";
+            const std::size_t begin = events.find(name, entry) + name.size();
+            const std::string term = events.substr(begin, events.find(',', begin) - begin);
+            altered += finds(folder, "events.jsonl", events.substr(entry, begin - entry) + term,
+                             events.substr(entry, begin - entry) + scaled(term, 1.001), "first-order")
+                           ? 1
+                           : 0;
+            kinds.insert(kind);
+        }
         for (const std::string& open : run.undecided) {
             BOOST_TEST_MESSAGE(open);
         }
     }
     BOOST_TEST(arcs > 0);
-    BOOST_TEST_MESSAGE(arcs << " arcs, " << ties << " first-order decisions");
+    BOOST_TEST(altered > 0);
+    BOOST_TEST(kinds.contains("force"));
+    BOOST_TEST(kinds.contains("step"));
+    BOOST_TEST_MESSAGE(arcs << " arcs, " << ties << " first-order decisions, " << altered << " altered, of "
+                            << kinds.size() << " kinds");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,4 +1,4 @@
-// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA. Prints the number of arcs.
+// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA [plain]. Prints the number of arcs.
 
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -18,7 +18,7 @@ void no_check_of_protected_intervals() {}
 }
 
 int main(int argc, char** argv) {
-    if (argc != 3) {
+    if (argc != 3 && argc != 4) {
         return 64;
     }
     using namespace isostat;
@@ -28,7 +28,9 @@ int main(int argc, char** argv) {
     RunCounters counters;
     Segment segment;
     segment.equilibria = std::atoi(argv[2]);
-    const auto outcome = run_segment<2>(state, segment, 0, RunOptions{}, counters, observer);
+    RunOptions options;
+    options.certify = argc == 4 ? CertifyLevel::plain : CertifyLevel::decisions;
+    const auto outcome = run_segment<2>(state, segment, 0, options, counters, observer);
     fmt::print("{}\n", counters.steps);
     return outcome.completed ? 0 : 1;
 }

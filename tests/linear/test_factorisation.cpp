@@ -12,7 +12,7 @@
 using namespace isostat;
 using namespace crafted;
 
-// Without a proved structure there is no factorisation, and no way to make a structure but `prove`.
+// Without a structure there is no factorisation, and none is made by accident: from a proof, or by a name that says so.
 static_assert(!std::is_default_constructible_v<IsostaticStructure<2>>);
 static_assert(!std::is_constructible_v<IsostaticStructure<2>, const sparse::Matrix<double>&>);
 static_assert(!std::is_constructible_v<IsostaticStructure<2>, const Packing<2>&, const std::vector<Contact>&>);
@@ -52,6 +52,67 @@ BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_othe
         for (const double r : residual) {
             BOOST_TEST(std::abs(r) < 1e-13);
         }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at_exactly_0) {
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
+    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    const IsostaticStructure<2>& structure = proved.value();
+    const Factorisation whole(structure);
+    int blocks = 0;
+    for (int slot = 0; slot < structure.size(); ++slot) {
+        const auto block = Factorisation::of_moving_block(structure, slot);
+        if (!block) {
+            continue;
+        }
+        ++blocks;
+        const std::vector<double>& quick = block->approximate().mechanism(slot);
+        const std::vector<double>& slow = whole.approximate().mechanism(slot);
+        double size = 0;
+        double off = 0;
+        for (std::size_t mu = 0; mu < quick.size(); ++mu) {
+            size = std::max(size, std::abs(slow[mu]));
+            off = std::max(off, std::abs(quick[mu] - slow[mu]));
+        }
+        BOOST_TEST(size > 0);
+        BOOST_TEST(off < 1e-11 * size);
+        const auto moving = std::count_if(quick.begin(), quick.end(), [](double c) { return c != 0; });
+        BOOST_TEST(moving <= static_cast<long>(quick.size() / 4));
+    }
+    BOOST_TEST(blocks > 20);                   // two contacts of each rattler at least
+    BOOST_TEST(blocks < structure.size() / 2); // the backbone moves as a whole
+}
+
+BOOST_AUTO_TEST_CASE(a_guess_changes_the_way_and_not_the_forces) {
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
+    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    sparse::Matrix<double> stale = proved.value().matrix();
+    for (std::size_t e = 0; e < stale.value.size(); ++e) {
+        stale.value[e] *= 1 + 1e-3 * std::sin(static_cast<double>(e));
+    }
+    const Factorisation fresh(proved.value());
+    const Factorisation taken_over(proved.value(), ApproximateInverse(stale));
+    const auto n = static_cast<std::size_t>(proved.value().size());
+    std::vector<double> f(n, 1.0);
+    fresh.solve_forces(f);
+    const double size = std::abs(*std::max_element(f.begin(), f.end()));
+    std::vector<double> guess = f;
+    for (std::size_t l = 0; l < n; ++l) {
+        guess[l] *= 1 + 1e-4 * std::cos(static_cast<double>(l));
+    }
+    std::vector<double> from_nothing(n, 1.0);
+    taken_over.solve_forces_from(from_nothing, {}, 1e-12);
+    const int without = taken_over.passes();
+    std::vector<double> from_guess(n, 1.0);
+    taken_over.solve_forces_from(from_guess, guess, 1e-12);
+    BOOST_TEST(!taken_over.is_fresh());
+    BOOST_TEST(taken_over.passes() - without < without);
+    for (std::size_t l = 0; l < n; ++l) {
+        BOOST_TEST(std::abs(from_nothing[l] - f[l]) < 1e-9 * size);
+        BOOST_TEST(std::abs(from_guess[l] - f[l]) < 1e-9 * size);
     }
 }
 

@@ -66,6 +66,35 @@ BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(plain_steering_claims_nothing_and_its_equilibria_are_proved) {
+    const State<2> start = prepared(50, 3);
+    RunOptions options;
+    options.certify = CertifyLevel::plain;
+    const Played proved = play(start, +1, 6);
+    const Played plain = play(start, +1, 6, {}, options);
+    BOOST_TEST_REQUIRE(plain.outcome.completed, plain.why());
+    BOOST_TEST_REQUIRE(plain.records.arcs.size() == proved.records.arcs.size());
+    BOOST_TEST(plain.records.arcs.size() > 6);
+    for (std::size_t k = 0; k < plain.records.arcs.size(); ++k) {
+        const ArcRecord<2>& arc = plain.records.arcs[k];
+        BOOST_TEST((arc.decided_by == Rung::none));
+        BOOST_TEST(std::isnan(arc.margin));
+        BOOST_TEST((arc.opened == proved.records.arcs[k].opened));
+        BOOST_TEST((arc.closed == proved.records.arcs[k].closed));
+        BOOST_TEST((proved.records.arcs[k].decided_by != Rung::none));
+    }
+    for (std::size_t k = 0; k < plain.records.equilibria.size(); ++k) {
+        const EquilibriumRecord<2>& e = plain.records.equilibria[k];
+        BOOST_TEST((e.verdict == Verdict::proved));
+        BOOST_TEST(e.sigma_min_bound > 0);
+        BOOST_TEST(e.margin > 1);
+        BOOST_TEST(std::abs(e.stress - proved.records.equilibria[k].stress) < 1e-10);
+    }
+    BOOST_TEST(plain.counters.tally.plain == static_cast<long>(plain.records.arcs.size()));
+    BOOST_TEST(proved.counters.tally.plain == 0);
+    BOOST_TEST(plain.counters.tally.by_kind[static_cast<std::size_t>(DecisionKind::opening)][1] == 0);
+}
+
 BOOST_AUTO_TEST_CASE(rattlers_are_certified_in_their_own_degrees_of_freedom) {
     int rattlers = 0;
     for (const std::uint64_t seed : {1U, 4U, 6U}) {

@@ -2,6 +2,7 @@
 #include "support/crafted.hpp"
 
 #include <isostat/contact/candidates.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/statics/statics.hpp>
 #include <isostat/verified/configuration.hpp>
@@ -227,10 +228,12 @@ BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {
     const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
     const Real root2 = sqrt(Real(2));
     const std::vector<Real> exact{1, 1, 1 + 2 * root2, 2, 3 + 2 * root2, 4};
-    for (const bool extended : {false, true}) {
+    for (const int way : {0, 1, 2}) {
+        const bool extended = way == 2;
         const VertexEnclosure vertex =
-            extended ? enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound)
-                     : enclose_vertex(state.packing, proved.value(), bound);
+            extended   ? enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound)
+            : way == 1 ? enclose_vertex(state.packing, proved.value(), factorisation, bound)
+                       : enclose_vertex(state.packing, proved.value(), bound);
         BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
         Real square = 0;
         for (std::size_t k = 0; k < exact.size(); ++k) {
@@ -239,9 +242,36 @@ BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {
             square += (at - exact[k]) * (at - exact[k]);
         }
         BOOST_TEST(sqrt(square) <= Real(vertex.radius));
-        BOOST_TEST(vertex.radius < (extended ? 1e-26 : 1e-13));
+        BOOST_TEST(vertex.radius < (extended ? 1e-26 : way == 1 ? 2e-15 : 1e-13));
         const Enclosure gap = gap_at_vertex(state.packing, vertex, left(1));
         BOOST_TEST(abs(Real(gap.value) - (2 * root2 - 1)) <= Real(gap.radius));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
+    // Against the vertex in double-double, after pushing every disk off it by far more than rounding.
+    State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    for (const double push : {0.0, 1e-13, 1e-10, 1e-7}) {
+        State<2> moved = state;
+        for (std::size_t k = 0; k < moved.packing.q.size(); ++k) {
+            moved.packing.q[k] += push * std::sin(7.0 * static_cast<double>(k));
+        }
+        auto proved = IsostaticStructure<2>::prove(moved.packing, moved.contacts);
+        BOOST_TEST_REQUIRE(proved.ok());
+        const Factorisation factorisation(proved.value());
+        InverseBoundCache cache;
+        const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
+        const VertexEnclosure step = enclose_vertex(moved.packing, proved.value(), factorisation, bound);
+        const VertexEnclosure fine = enclose_vertex_double_double(moved.packing, proved.value(), factorisation, bound);
+        BOOST_TEST_REQUIRE((step.verdict == Verdict::proved));
+        BOOST_TEST_REQUIRE((fine.rung == Rung::double_double));
+        double square = 0;
+        for (const double c : fine.correction) {
+            square += c * c;
+        }
+        BOOST_TEST(std::sqrt(square) <= step.radius + fine.radius);
+        BOOST_TEST(step.radius < 1.6 * std::sqrt(square));
+        BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, proved.value(), bound).radius);
     }
 }
 
@@ -281,6 +311,7 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {
     InverseBoundCache cache;
     const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
     BOOST_TEST((enclose_vertex(state.packing, proved.value(), bound).verdict == Verdict::undecided));
+    BOOST_TEST((enclose_vertex(state.packing, proved.value(), factorisation, bound).verdict == Verdict::undecided));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -46,10 +46,14 @@ struct Admissibility {
 /// error bound, rationals. So the verdict is `proved` or `refuted`, never `undecided`; exact tangency is
 /// admissible. \pre every coordinate and radius finite. It speaks of the stored packing, not of a true one near it.
 /// Cost: as `find_candidates`.
-template <int Dim> Admissibility certify_admissible(const Packing<Dim>& packing, double allowance);
+/// `known`: a list to use when it was made at this very configuration (and no disk is fixed: it leaves out pairs that
+/// cannot move); the search is then saved.
+template <int Dim>
+Admissibility certify_admissible(const Packing<Dim>& packing, double allowance,
+                                 const CandidateList<Dim>* known = nullptr);
 
 extern template struct CandidateList<2>;
 extern template CandidateList<2> find_candidates<2>(const Packing<2>&, double);
-extern template Admissibility certify_admissible<2>(const Packing<2>&, double);
+extern template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);
 
 } // namespace isostat

@@ -20,6 +20,13 @@ class ApproximateInverse {
     /// one. Cost: 1.6 ms at N = 3900, 8 ms at N = 9800, and 2 to 6 ms for the analysis.
     explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
 
+    /// Of a block that moves by itself: the square submatrix of the given rows (degrees of freedom) and columns
+    /// (contacts), where no other column has an entry in these rows. Velocities are those of right-hand sides that
+    /// vanish in the other contacts, and 0 outside the rows; forces are those of the block alone. Cost: that of the
+    /// block.
+    static ApproximateInverse of_block(const sparse::Matrix<double>& matrix, std::vector<int> rows,
+                                       std::vector<int> columns);
+
     /// The operator after column `slot` of H, equal to that of `before` up to motion, was replaced by that of `after`.
     /// Cost: one pass, which is free when `mechanism(slot)` was asked for before.
     [[nodiscard]] ApproximateInverse exchanged(int slot, const sparse::Matrix<double>& after) const;
@@ -39,6 +46,7 @@ class ApproximateInverse {
     [[nodiscard]] bool valid() const;
 
   private:
+    ApproximateInverse() = default;
     struct Base;
     struct Exchange;
     std::shared_ptr<const Base> base_;

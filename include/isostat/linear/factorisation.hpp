@@ -6,6 +6,7 @@
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace isostat {
@@ -22,12 +23,19 @@ class Factorisation {
     template <int Dim> explicit Factorisation(const IsostaticStructure<Dim>& structure);
     /// With an operator close to the inverse of the structure's matrix.
     template <int Dim> Factorisation(const IsostaticStructure<Dim>& structure, ApproximateInverse inverse);
+    /// Of the grains that move when contact `slot` opens, when these are few (rattlers): for such motions one pass is a
+    /// solve; forces are those of the block. Nothing when more than a quarter of the degrees of freedom move.
+    template <int Dim>
+    static std::optional<Factorisation> of_moving_block(const IsostaticStructure<Dim>& structure, int slot);
     ~Factorisation();
     Factorisation(Factorisation&&) noexcept;
     Factorisation& operator=(Factorisation&&) noexcept;
 
     /// Solves H f = F in place for `count` right-hand sides stored one after the other (size N_f each).
     void solve_forces(std::span<double> rhs, int count = 1) const;
+    /// The same for one right-hand side, from a guess of the solution, and to a relative accuracy that is estimated
+    /// from the rate of convergence: fewer passes with factors taken over.
+    void solve_forces_from(std::span<double> rhs, std::span<const double> guess, double accuracy) const;
     /// Solves G v = dV in place: velocities with given approach velocities.
     void solve_velocities(std::span<double> rhs, int count = 1) const;
 
@@ -39,11 +47,13 @@ class Factorisation {
     [[nodiscard]] int passes() const;
 
   private:
+    Factorisation() = default;
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
 
 extern template Factorisation::Factorisation(const IsostaticStructure<2>&);
 extern template Factorisation::Factorisation(const IsostaticStructure<2>&, ApproximateInverse);
+extern template std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStructure<2>&, int);
 
 } // namespace isostat

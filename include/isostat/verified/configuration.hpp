@@ -29,6 +29,13 @@ template <int Dim>
 VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                const InverseBound& inverse);
 
+/// The same with a much smaller radius: gaps without rounding to speak of, and the Newton step itself instead of its
+/// worst case (statement V4 (e)); the true vertex is then about as far as that step, some 1e-14 sqrt(N), whatever
+/// sigma_min is. Cost: 2 or 3 passes and O(N). `factorisation` makes guesses and is not trusted.
+template <int Dim>
+VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                               const Factorisation& factorisation, const InverseBound& inverse);
+
 /// Rung double_double: one or two corrections, gaps in double-double; radius about 1e-29 / sigma_min. Cost: two solves
 /// and O(N).
 template <int Dim>
@@ -50,6 +57,8 @@ Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<D
 extern template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
                                             const InverseBound&, const Contact&, const LadderOptions&);
 extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
+extern template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
+                                                  const InverseBound&);
 extern template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                                 const Factorisation&, const InverseBound&);
 extern template Enclosure gap_at_vertex<2>(const Packing<2>&, const VertexEnclosure&, const Contact&);

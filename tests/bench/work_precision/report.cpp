@@ -27,21 +27,26 @@ void Table::add(std::vector<std::string> row) {
     rows_.push_back(std::move(row));
 }
 
-void Table::write(const std::filesystem::path& folder) const {
+void Table::write_csv(const std::filesystem::path& folder) const {
     std::ofstream csv(folder / (name_ + ".csv"));
     csv << fmt::format("{}\n", fmt::join(heads_, ","));
+    for (std::vector<std::string> fields : rows_) {
+        for (std::string& f : fields) {
+            std::replace(f.begin(), f.end(), ',', ';');
+            f = f == "–" ? "nan" : f;
+        }
+        csv << fmt::format("{}\n", fmt::join(fields, ","));
+    }
+}
+
+void Table::write(const std::filesystem::path& folder) const {
+    write_csv(folder);
     std::string text = fmt::format("**{}.** {}\n\n| {} |\n|", name_, caption_, fmt::join(heads_, " | "));
     for (std::size_t k = 0; k < heads_.size(); ++k) {
         text += "---|";
     }
     text += "\n";
     for (const auto& row : rows_) {
-        std::vector<std::string> fields = row;
-        for (std::string& f : fields) {
-            std::replace(f.begin(), f.end(), ',', ';');
-            f = f == "–" ? "nan" : f;
-        }
-        csv << fmt::format("{}\n", fmt::join(fields, ","));
         text += fmt::format("| {} |\n", fmt::join(row, " | "));
     }
     std::ofstream(folder / "tables.md", std::ios::app) << text << "\n";

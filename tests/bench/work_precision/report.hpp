@@ -14,7 +14,7 @@ struct Settings {
     std::vector<int> sizes;           ///< disks
     std::vector<std::uint64_t> seeds; ///< of the soft grains; the other parts use the first
     int equilibria = 20;              ///< of the reference trajectory
-    int drift_equilibria = 60;        ///< of the trajectories with linear gaps
+    int drift_equilibria = 40;        ///< of the trajectories with linear gaps
     int soft_equilibria = 8;          ///< per sample
     std::vector<double> stiffness_ratios;
     int soft_disks_limit = 400; ///< larger packings are left out of the dynamics
@@ -29,8 +29,10 @@ class Table {
     Table(std::string name, std::string caption, std::vector<std::string> heads)
         : name_(std::move(name)), caption_(std::move(caption)), heads_(std::move(heads)) {}
     void add(std::vector<std::string> row);
-    /// NAME.csv in the folder, and the table in Markdown appended to `tables.md` and printed.
+    /// NAME.csv in the folder; the table in Markdown appended to `tables.md` and printed.
     void write(const std::filesystem::path& folder) const;
+    /// NAME.csv only: for figures.
+    void write_csv(const std::filesystem::path& folder) const;
 
   private:
     std::string name_;

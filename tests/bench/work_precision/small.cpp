@@ -50,20 +50,26 @@ bool small_displacements(const Settings& settings) {
     Table single("small_arcs",
                  "One arc from the exact vertex: event from constant velocities and linear gaps, against the exact "
                  "one, by length of "
-                 "the arc (largest displacement / smallest radius); solves only, the factors are shared",
+                 "the arc (largest displacement / smallest radius); all "
+                 "seeds; without factorisation and proofs, which both need",
                  {"n", "length of the arc", "arcs", "wrong next contact", "position median", "position largest",
                   "relative error of the length", "linear ms", "exact ms"});
     Table drift("small_drift",
                 "Whole trajectories with linear gaps, never corrected: *moved* takes new normals at every arc, "
                 "*frozen* keeps the "
-                "matrix of the start. Drift: largest true gap of a contact / smallest radius; divergence: first arc "
-                "with another contact",
+                "matrix of the start. Drift: largest true gap of a contact / smallest radius; first other "
+                "arc: that opens or closes another contact than the exact run",
                 {"n", "seed", "geometry", "arcs", "equilibria", "stopped", "first other arc", "its stress",
-                 "drift after 1 arc", "10", "100", "at the end", "position error before it diverges", "strain",
-                 "exact strain", "ms per arc", "exact ms per arc"});
-    Table growth("small_growth", "Drift against the number of arcs",
-                 {"n", "geometry", "arcs", "drift", "position error"});
+                 "position error before", "drift after 100 arcs", "at the end", "strain", "exact strain", "ms per arc",
+                 "exact ms per arc, proofs included"});
+    Table growth(
+        "small_growth",
+        "Drift against the number of arcs (seed 1); distance from the exact path while the contacts are the same",
+        {"n", "geometry", "arcs", "drift", "position error"});
     for (const int n : settings.sizes) {
+        std::vector<Compared> compared; // over all seeds
+        double linear_time[5] = {};
+        double exact_time[5] = {};
         for (const std::uint64_t seed : settings.seeds) {
             const State<2> start = prepared(n, seed);
             Recorder exact;
@@ -75,19 +81,27 @@ bool small_displacements(const Settings& settings) {
             (void)run_segment<2>(state, segment, 0, {}, counters, exact);
             const double run_time = cpu_seconds() - run_begin;
             // Exact ends of all arcs, and one linear step from every vertex.
-            std::vector<Compared> compared;
             std::vector<std::vector<double>> ends;
-            double linear_time[5] = {};
-            double exact_time[5] = {};
             Packing<2> here = start.packing;
             std::vector<Contact> contacts = start.contacts;
+            std::size_t equilibrium = 0;
+            bool skip = false;
             for (const ArcRecord<2>& record : exact.arcs) {
-                if (record.power_turn || record.opened.kind == ContactKind::held) {
-                    break;
+                ends.emplace_back(); // stays empty after a power turn, up to the next equilibrium
+                if (record.kind == "limit") {
+                    here = exact.states[equilibrium].packing;
+                    contacts = exact.states[equilibrium].contacts;
+                    ++equilibrium;
+                    skip = false;
+                }
+                skip = skip || record.power_turn;
+                if (skip) {
+                    continue;
                 }
                 const auto structure = IsostaticStructure<2>::prove(here, contacts);
                 if (!structure.ok()) {
-                    break;
+                    skip = true;
+                    continue;
                 }
                 const Factorisation factorisation(structure.value());
                 CandidateList<2> candidates = find_candidates(here, candidate_fraction);
@@ -107,7 +121,8 @@ bool small_displacements(const Settings& settings) {
                                                  candidates, options);
                 const double exactly = cpu_seconds() - begin;
                 if (!followed.ok() || !event.ok() || followed.value().closed != record.closed) {
-                    break;
+                    skip = true;
+                    continue;
                 }
                 const std::vector<double>& end = followed.value().end.q;
                 Compared c;
@@ -130,50 +145,29 @@ bool small_displacements(const Settings& settings) {
                 compared.push_back(c);
                 contacts[static_cast<std::size_t>(opened)] = record.closed;
                 here = followed.value().end;
-                ends.push_back(end);
-            }
-            if (seed == settings.seeds.front()) {
-                const char* names[] = {"below 1e-4", "1e-4 to 1e-3", "1e-3 to 1e-2", "1e-2 to 1e-1", "above 1e-1"};
-                for (std::size_t bin = 0; bin < 5; ++bin) {
-                    std::vector<double> position;
-                    std::vector<double> length;
-                    int arcs = 0;
-                    int wrong = 0;
-                    for (const Compared& c : compared) {
-                        if (static_cast<std::size_t>(std::clamp(4 + std::floor(std::log10(c.length)) + 1, 0.0, 4.0)) ==
-                            bin) {
-                            ++arcs;
-                            wrong += c.same ? 0 : 1;
-                            if (c.same) {
-                                position.push_back(c.position);
-                                length.push_back(c.relative_length);
-                            }
-                        }
-                    }
-                    if (arcs > 0) {
-                        single.add({std::to_string(n), names[bin], std::to_string(arcs), std::to_string(wrong),
-                                    number(median(position)), number(largest(position)), number(median(length)),
-                                    plain(1e3 * linear_time[bin] / arcs), plain(1e3 * exact_time[bin] / arcs)});
-                    }
-                }
+                ends.back() = end;
             }
             for (const LinearGeometry geometry : {LinearGeometry::moved, LinearGeometry::frozen}) {
                 const auto run = load_with_linear_gaps(start, geometry, settings.drift_equilibria,
                                                        static_cast<long>(2 * exact.arcs.size() + 50));
                 std::size_t first = 0;
                 double before = 0;
+                std::vector<double> away;
                 while (first < run.arcs.size() && first < exact.arcs.size() &&
                        run.arcs[first].opened == exact.arcs[first].opened &&
                        run.arcs[first].closed == exact.arcs[first].closed) {
-                    if (first < ends.size()) {
+                    away.push_back(std::numeric_limits<double>::quiet_NaN());
+                    if (!ends[first].empty()) {
                         before = largest_difference(run.coordinates[first], ends[first]) / start.packing.min_radius();
-                        const std::size_t k = first + 1;
-                        if (seed == settings.seeds.front() && (k < 10 || k % 10 == 0)) {
-                            growth.add({std::to_string(n), geometry == LinearGeometry::frozen ? "frozen" : "moved",
-                                        std::to_string(k), number(run.arcs[first].drift), number(before)});
-                        }
+                        away.back() = before;
                     }
                     ++first;
+                }
+                for (std::size_t k = 1; seed == settings.seeds.front() && k <= run.arcs.size();
+                     k = std::max(k + 1, k * 5 / 4)) {
+                    growth.add({std::to_string(n), geometry == LinearGeometry::frozen ? "frozen" : "moved",
+                                std::to_string(k), number(run.arcs[k - 1].drift),
+                                k <= away.size() ? number(away[k - 1]) : std::string("–")});
                 }
                 const auto at = [&](std::size_t k) {
                     return run.arcs.size() >= k ? number(run.arcs[k - 1].drift) : std::string("–");
@@ -187,17 +181,39 @@ bool small_displacements(const Settings& settings) {
                            std::to_string(run.equilibria.size() - 1),
                            run.stopped.empty() ? "no" : run.stopped.substr(0, 60),
                            diverged ? std::to_string(first + 1) : "none",
-                           diverged ? fmt::format("{:.5g}", run.arcs[first].stress) : "–", at(1), at(10), at(100),
+                           diverged ? fmt::format("{:.5g}", run.arcs[first].stress) : "–", number(before), at(100),
                            number(run.arcs.empty() ? std::numeric_limits<double>::quiet_NaN() : run.arcs.back().drift),
-                           number(before), fmt::format("{:.3e}", run.equilibria[same - 1].strain),
+                           fmt::format("{:.3e}", run.equilibria[same - 1].strain),
                            fmt::format("{:.3e}", exact.equilibria[same - 1].strain[1]), plain(1e3 * run.seconds / arcs),
                            plain(1e3 * run_time / static_cast<double>(exact.arcs.size()))});
+            }
+        }
+        const char* names[] = {"below 1e-4", "1e-4 to 1e-3", "1e-3 to 1e-2", "1e-2 to 1e-1", "above 1e-1"};
+        for (std::size_t bin = 0; bin < 5; ++bin) {
+            std::vector<double> position;
+            std::vector<double> length;
+            int arcs = 0;
+            int wrong = 0;
+            for (const Compared& c : compared) {
+                if (static_cast<std::size_t>(std::clamp(4 + std::floor(std::log10(c.length)) + 1, 0.0, 4.0)) == bin) {
+                    ++arcs;
+                    wrong += c.same ? 0 : 1;
+                    if (c.same) {
+                        position.push_back(c.position);
+                        length.push_back(c.relative_length);
+                    }
+                }
+            }
+            if (arcs > 0) {
+                single.add({std::to_string(n), names[bin], std::to_string(arcs), std::to_string(wrong),
+                            number(median(position)), number(largest(position)), number(median(length)),
+                            plain(1e3 * linear_time[bin] / arcs), plain(1e3 * exact_time[bin] / arcs)});
             }
         }
     }
     single.write(settings.folder);
     drift.write(settings.folder);
-    growth.write(settings.folder);
+    growth.write_csv(settings.folder);
     draw(settings.folder, "small",
          fmt::format(
              "set logscale xy\nset format '10^{{%T}}'\nset xlabel 'arcs'\nset ylabel 'largest gap of a contact / "

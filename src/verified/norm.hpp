@@ -25,10 +25,12 @@ inline double norm_above(const std::vector<double>& x) {
     }
     int exponent = 0;
     std::frexp(largest, &exponent);
+    exponent = std::max(exponent, -1000); // the scale stays finite, and no square of such small entries underflows
+    const double scale = std::ldexp(1.0, -exponent);
     double sum = 0;
     for (const double c : x) {
-        const double scaled = std::ldexp(c, -exponent);
-        sum += scaled * scaled; // what underflows here is below 2^-1022 n, the largest term at least 1/4
+        const double scaled = c * scale;
+        sum += scaled * scaled; // what underflows here is below 2^-1022 n, and the largest term then at least 1/4
     }
     return std::ldexp(std::sqrt(sum) * (1 + 1e-10), exponent) + underflow_unit;
 }

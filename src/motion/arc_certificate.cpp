@@ -79,7 +79,7 @@ template <int Dim> class Certifier {
     std::vector<Contact> active_;
     ArcCertificateOptions options_;
     std::unique_ptr<MovingPart<Dim>> part_;
-    std::unique_ptr<Centre<Dim>> end_centre_;
+    std::unique_ptr<ArcCentre<Dim>> end_centre_;
     GapWatch<Dim> watch_;
     const PowerLoad<Dim>& load_;
     PowerWatch<Dim>* power_ = nullptr;
@@ -234,7 +234,7 @@ template <int Dim> bool Certifier<Dim>::chain() {
     InverseBoundCache cache;
     // A released coordinate says in which direction the curve is followed: its row stays.
     double rate = opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0;
-    const auto with_fastest = [&](std::unique_ptr<Centre<Dim>>& vertex, double& forward) {
+    const auto with_fastest = [&](std::unique_ptr<ArcCentre<Dim>>& vertex, double& forward) {
         ++certificate_.factorisations;
         vertex = vertex ? part_->with_fastest(*vertex, forward, cache) : nullptr;
     };
@@ -255,7 +255,7 @@ template <int Dim> bool Certifier<Dim>::chain() {
     if (!prove_longest(*piece, piece->natural_reach())) {
         return refuse("no tube around the start");
     }
-    std::unique_ptr<Centre<Dim>> centre; // of the present piece, once it is a fresh one
+    std::unique_ptr<ArcCentre<Dim>> centre; // of the present piece, once it is a fresh one
     std::unique_ptr<Piece> last;
     const auto at_start = piece->locate(start_.packing.q, start_uncertainty_);
     if (!at_start) {
@@ -292,7 +292,7 @@ template <int Dim> bool Certifier<Dim>::chain() {
         }
         // A fresh centre ahead of the frontier, whose tube reaches back to it.
         std::unique_ptr<Piece> next;
-        std::unique_ptr<Centre<Dim>> next_centre;
+        std::unique_ptr<ArcCentre<Dim>> next_centre;
         std::optional<typename Piece::Place> place;
         const double floor = options_.smallest_step * start_.packing.min_radius();
         std::string why = "the curve was not followed";

@@ -14,13 +14,13 @@ constexpr double up = 1 + 1e-9;
 } // namespace
 
 template <int Dim>
-std::unique_ptr<Centre<Dim>> Centre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                               InverseBoundCache& cache) {
+std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                     InverseBoundCache& cache) {
     auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
     if (!structure.ok()) {
         return nullptr;
     }
-    auto centre = std::make_unique<Centre>();
+    auto centre = std::make_unique<ArcCentre>();
     centre->packing_ = std::move(packing);
     centre->own_ = std::make_unique<Own>(std::move(structure.value()));
     const InverseBound bound = bound_inverse(centre->own_->structure, centre->own_->factorisation, cache);
@@ -31,8 +31,8 @@ std::unique_ptr<Centre<Dim>> Centre<Dim>::make(Packing<Dim> packing, std::vector
     return centre;
 }
 
-template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::of(const ArcVertex<Dim>& vertex) {
-    auto centre = std::make_unique<Centre>();
+template <int Dim> std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::of(const ArcVertex<Dim>& vertex) {
+    auto centre = std::make_unique<ArcCentre>();
     centre->packing_ = vertex.packing;
     centre->structure_ = &vertex.structure;
     centre->factorisation_ = &vertex.factorisation;
@@ -155,24 +155,25 @@ template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
     }
 }
 
-template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
-    return whole_ ? Centre<Dim>::of(start_)
-                  : Centre<Dim>::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
+template <int Dim> std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::at_start(InverseBoundCache& cache) const {
+    return whole_ ? ArcCentre<Dim>::of(start_)
+                  : ArcCentre<Dim>::make(start_packing_, with_row(start_.structure.contacts()[slot_]), cache);
 }
 
-template <int Dim> std::unique_ptr<Centre<Dim>> MovingPart<Dim>::at_end(InverseBoundCache& cache) const {
-    return whole_ ? Centre<Dim>::of(end_)
-                  : Centre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
-}
-
-template <int Dim>
-std::unique_ptr<Centre<Dim>> MovingPart<Dim>::centre(Packing<Dim> packing, int held, InverseBoundCache& cache) const {
-    return Centre<Dim>::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
+template <int Dim> std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::at_end(InverseBoundCache& cache) const {
+    return whole_ ? ArcCentre<Dim>::of(end_)
+                  : ArcCentre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
 }
 
 template <int Dim>
-std::unique_ptr<Centre<Dim>> MovingPart<Dim>::with_fastest(const Centre<Dim>& vertex, double& rate,
-                                                           InverseBoundCache& cache) const {
+std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::centre(Packing<Dim> packing, int held,
+                                                        InverseBoundCache& cache) const {
+    return ArcCentre<Dim>::make(std::move(packing), with_row(Contact{ContactKind::held, held, 0}), cache);
+}
+
+template <int Dim>
+std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::with_fastest(const ArcCentre<Dim>& vertex, double& rate,
+                                                              InverseBoundCache& cache) const {
     std::vector<double> mechanism(static_cast<std::size_t>(vertex.structure().size()), 0.0);
     mechanism[curve_->slot] = -rate; // approach velocity
     vertex.factorisation().solve_velocities(mechanism);
@@ -234,7 +235,7 @@ bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const Can
     return true;
 }
 
-template class Centre<2>;
+template class ArcCentre<2>;
 template class MovingPart<2>;
 
 } // namespace isostat

@@ -13,12 +13,13 @@
 namespace isostat {
 
 /// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
-template <int Dim> class Centre {
+template <int Dim> class ArcCentre {
   public:
     /// Nothing when a step fails.
-    static std::unique_ptr<Centre> make(Packing<Dim> packing, std::vector<Contact> contacts, InverseBoundCache& cache);
+    static std::unique_ptr<ArcCentre> make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                           InverseBoundCache& cache);
     /// The vertex itself, nothing copied but the coordinates.
-    static std::unique_ptr<Centre> of(const ArcVertex<Dim>& vertex);
+    static std::unique_ptr<ArcCentre> of(const ArcVertex<Dim>& vertex);
 
     [[nodiscard]] const Packing<Dim>& packing() const { return packing_; }
     [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
@@ -48,14 +49,15 @@ template <int Dim> class MovingPart {
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
     [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
     /// The vertex at an end, with its own contact in the free row.
-    [[nodiscard]] std::unique_ptr<Centre<Dim>> at_start(InverseBoundCache& cache) const;
-    [[nodiscard]] std::unique_ptr<Centre<Dim>> at_end(InverseBoundCache& cache) const;
+    [[nodiscard]] std::unique_ptr<ArcCentre<Dim>> at_start(InverseBoundCache& cache) const;
+    [[nodiscard]] std::unique_ptr<ArcCentre<Dim>> at_end(InverseBoundCache& cache) const;
     /// The same place with the coordinate that is fastest there in the free row, `rate` (of the present free row) made
     /// the sign of that coordinate's rate.
-    [[nodiscard]] std::unique_ptr<Centre<Dim>> with_fastest(const Centre<Dim>& vertex, double& rate,
-                                                            InverseBoundCache& cache) const;
+    [[nodiscard]] std::unique_ptr<ArcCentre<Dim>> with_fastest(const ArcCentre<Dim>& vertex, double& rate,
+                                                               InverseBoundCache& cache) const;
     /// Fresh centre with coordinate `held` in the free row.
-    [[nodiscard]] std::unique_ptr<Centre<Dim>> centre(Packing<Dim> packing, int held, InverseBoundCache& cache) const;
+    [[nodiscard]] std::unique_ptr<ArcCentre<Dim>> centre(Packing<Dim> packing, int held,
+                                                         InverseBoundCache& cache) const;
     [[nodiscard]] bool whole() const { return whole_; }
 
     /// Candidates with a grain that moves and that are not kept; the opened contact is among them.
@@ -83,7 +85,7 @@ template <int Dim> class MovingPart {
     std::string trouble_;
 };
 
-extern template class Centre<2>;
+extern template class ArcCentre<2>;
 extern template class MovingPart<2>;
 
 } // namespace isostat

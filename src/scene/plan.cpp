@@ -72,9 +72,9 @@ void add_solvers(Plan& plan, const Scene& scene) {
                  : "every comparison that steers has a bound on both sides; its cost is that of the run");
     plan.add("proof", "states", runs && level >= CertifyLevel::states,
              asked(CertifyLevel::states) +
-                 "; the certificate of each equilibrium in certificates/; 10 to 15 factorisations each");
+                 "; the certificate of each equilibrium in certificates/; some 5 factorisations each");
     plan.add("proof", "arcs", runs && level >= CertifyLevel::arcs,
-             asked(CertifyLevel::arcs) + "; each arc enclosed between its events, no contact missed; 3 to 5 "
+             asked(CertifyLevel::arcs) + "; each arc enclosed between its events, no contact missed; 4 to 8 "
                                          "factorisations per arc, more for long ones");
     plan.add("solver", "multiprecision (MPFR), exact numbers", true,
              "only where double-double does not decide a sign or an order");

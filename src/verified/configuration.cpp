@@ -205,14 +205,14 @@ Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<D
         Real moved(64);
         mpfr_mul_d(moved.get(), vertex.radius.get(), 1.4142135623731, MPFR_RNDU);
         mpfr_add(radius.get(), radius.get(), moved.get(), MPFR_RNDU);
-        const Interval gap_there(h, radius, bits);
+        const PreciseInterval gap_there(h, radius, bits);
         if (gap_there.positive() || gap_there.negative()) {
             order.decided = true;
             order.sign = gap_there.positive() ? 1 : -1;
             order.margin = gap_there.margin();
             return order;
         }
-        const Interval absolute = magnitude(gap_there);
+        const PreciseInterval absolute = magnitude(gap_there);
         mpfr_log2(moved.get(), absolute.high.get(), MPFR_RNDU);
         order.exponent = moved.above();
         start = vertex.coordinate;

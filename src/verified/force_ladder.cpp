@@ -125,13 +125,13 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
     std::optional<RefinedSystem<Dim>> system;
     std::optional<ExactForces<Dim>> exact;
     /// By contact: the norm of the mechanism on the present rung.
-    mutable std::map<std::size_t, Interval> mechanism;
+    mutable std::map<std::size_t, PreciseInterval> mechanism;
     mutable std::map<std::size_t, mpq_class> mechanism_square;
 
     void bring(Part& part) const;
-    [[nodiscard]] Interval evaluate(const ForceExpression& e) const;
-    [[nodiscard]] Interval component(int part, std::size_t l) const;
-    [[nodiscard]] Interval mechanism_norm(std::size_t l) const;
+    [[nodiscard]] PreciseInterval evaluate(const ForceExpression& e) const;
+    [[nodiscard]] PreciseInterval component(int part, std::size_t l) const;
+    [[nodiscard]] PreciseInterval mechanism_norm(std::size_t l) const;
     /// A number with the sign of the expression, and the square of the expression: only on the rung exact.
     [[nodiscard]] mpq_class exact_value(const ForceExpression& e, mpq_class& square) const;
     bool open_exact();
@@ -307,18 +307,18 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
     s.bits = bits;
 }
 
-template <int Dim> Interval ForceLadder<Dim>::Implementation::component(int part, std::size_t l) const {
+template <int Dim> PreciseInterval ForceLadder<Dim>::Implementation::component(int part, std::size_t l) const {
     Part& p = parts[static_cast<std::size_t>(part)];
     bring(p);
     if (p.zero) {
-        return Interval(low_bits);
+        return PreciseInterval(low_bits);
     }
     if (rung == Rung::multiprecision) {
         return {p.refined.value[l], p.refined.bound, bits + 32};
     }
     Real value(low_bits);
     mpfr_set_d(value.get(), p.solution.value[l], MPFR_RNDN);
-    Interval result(value, Real(p.solution.bound, 53), low_bits);
+    PreciseInterval result(value, Real(p.solution.bound, 53), low_bits);
     if (!p.solution.low.empty()) {
         mpfr_add_d(result.low.get(), result.low.get(), p.solution.low[l], MPFR_RNDD);
         mpfr_add_d(result.high.get(), result.high.get(), p.solution.low[l], MPFR_RNDU);
@@ -326,14 +326,14 @@ template <int Dim> Interval ForceLadder<Dim>::Implementation::component(int part
     return result;
 }
 
-template <int Dim> Interval ForceLadder<Dim>::Implementation::mechanism_norm(std::size_t l) const {
+template <int Dim> PreciseInterval ForceLadder<Dim>::Implementation::mechanism_norm(std::size_t l) const {
     const auto known = mechanism.find(l);
     if (known != mechanism.end()) {
         return known->second;
     }
     // On the rungs below MPFR the system of the first MPFR rung is used: it contains them.
     const auto n = static_cast<std::size_t>(structure->size());
-    Interval norm(low_bits);
+    PreciseInterval norm(low_bits);
     mpfr_set_nan(norm.low.get());
     mpfr_set_nan(norm.high.get());
     if (inverse->verdict == Verdict::proved) {
@@ -352,9 +352,9 @@ template <int Dim> Interval ForceLadder<Dim>::Implementation::mechanism_norm(std
         mpfr_set_ui(unit[l].get(), 1, MPFR_RNDN);
         const RefinedVector v = use.solve(unit, std::vector<Real>(n, Real(53)), true);
         if (v.value.size() == n) {
-            norm = Interval(use.bits() + 32);
+            norm = PreciseInterval(use.bits() + 32);
             for (const Real& c : v.value) {
-                Interval point(use.bits() + 32);
+                PreciseInterval point(use.bits() + 32);
                 mpfr_set(point.low.get(), c.get(), MPFR_RNDD);
                 mpfr_set(point.high.get(), c.get(), MPFR_RNDU);
                 norm = norm + point * point;
@@ -369,11 +369,11 @@ template <int Dim> Interval ForceLadder<Dim>::Implementation::mechanism_norm(std
     return norm;
 }
 
-template <int Dim> Interval ForceLadder<Dim>::Implementation::evaluate(const ForceExpression& e) const {
+template <int Dim> PreciseInterval ForceLadder<Dim>::Implementation::evaluate(const ForceExpression& e) const {
     const std::size_t l = e.contact.index();
-    Interval value = component(e.part, l);
+    PreciseInterval value = component(e.part, l);
     if (e.slope_part >= 0 && (e.at != e.from || e.shift != nullptr)) {
-        Interval way = difference(e.at, e.from, value.bits());
+        PreciseInterval way = difference(e.at, e.from, value.bits());
         if (e.shift != nullptr) {
             way = way + e.shift->value(bits);
         }
@@ -383,7 +383,7 @@ template <int Dim> Interval ForceLadder<Dim>::Implementation::evaluate(const For
         value = -magnitude(value);
     }
     if (e.divisor != ForceExpression::Divisor::none) {
-        const Interval by =
+        const PreciseInterval by =
             e.divisor == ForceExpression::Divisor::part ? magnitude(component(e.divisor_part, l)) : mechanism_norm(l);
         if (!by.positive()) {
             mpfr_set_nan(value.low.get());
@@ -583,7 +583,7 @@ template <int Dim> int ForceLadder<Dim>::bits() const {
 
 namespace {
 
-Order order_of(const Interval& value, Rung rung, int bits) {
+Order order_of(const PreciseInterval& value, Rung rung, int bits) {
     Order order{false, 0, 0, rung, bits};
     if (value.positive() || value.negative()) {
         order.decided = true;
@@ -595,7 +595,7 @@ Order order_of(const Interval& value, Rung rung, int bits) {
         order.exponent = -std::numeric_limits<double>::infinity();
     } else {
         Real size(64);
-        const Interval absolute = magnitude(value);
+        const PreciseInterval absolute = magnitude(value);
         mpfr_log2(size.get(), absolute.high.get(), MPFR_RNDU);
         order.exponent = mpfr_nan_p(size.get()) != 0 ? std::numeric_limits<double>::infinity() : size.above();
     }
@@ -639,9 +639,9 @@ namespace {
 /// -(p + (at - from) s) / s from the solutions of a ladder that climbs when it must.
 template <int Dim> class ZeroOfForce final : public LoadShift {
   public:
-    using Value = std::function<Interval(int)>;
+    using Value = std::function<PreciseInterval(int)>;
     explicit ZeroOfForce(Value value) : value_(std::move(value)) {}
-    [[nodiscard]] Interval value(int bits) const override { return value_(bits); }
+    [[nodiscard]] PreciseInterval value(int bits) const override { return value_(bits); }
 
   private:
     Value value_;
@@ -672,14 +672,14 @@ template <int Dim> std::shared_ptr<const LoadShift> ForceLadder<Dim>::zero_of(co
             Part& slope = self.parts[static_cast<std::size_t>(force.slope_part)];
             self.bring(slope);
             ratio /= slope.unknown[l];
-            Interval result(std::max(bits + 32, 160));
+            PreciseInterval result(std::max(bits + 32, 160));
             mpfr_set_q(result.low.get(), mpq_class(-ratio).get_mpq_t(), MPFR_RNDD);
             mpfr_set_q(result.high.get(), mpq_class(-ratio).get_mpq_t(), MPFR_RNDU);
             return result;
         }
-        const Interval slope = self.component(force.slope_part, l);
-        const Interval p = self.evaluate(force);
-        const Interval quotient = p / magnitude(slope);
+        const PreciseInterval slope = self.component(force.slope_part, l);
+        const PreciseInterval p = self.evaluate(force);
+        const PreciseInterval quotient = p / magnitude(slope);
         return slope.positive() ? -quotient : quotient;
     };
     return std::make_shared<ZeroOfForce<Dim>>(value);

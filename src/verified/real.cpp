@@ -5,7 +5,7 @@
 
 namespace isostat {
 
-double Interval::margin() const {
+double PreciseInterval::margin() const {
     Real centre(64);
     Real radius(64);
     mpfr_add(centre.get(), low.get(), high.get(), MPFR_RNDN);
@@ -15,35 +15,35 @@ double Interval::margin() const {
     return centre.below();
 }
 
-Interval difference(double at, double from, mpfr_prec_t bits) {
+PreciseInterval difference(double at, double from, mpfr_prec_t bits) {
     const Real a(at, 53);
     const Real b(from, 53);
-    Interval result(bits);
+    PreciseInterval result(bits);
     mpfr_sub(result.low.get(), a.get(), b.get(), MPFR_RNDD);
     mpfr_sub(result.high.get(), a.get(), b.get(), MPFR_RNDU);
     return result;
 }
 
-Interval operator-(const Interval& a) {
-    Interval result(a.bits());
+PreciseInterval operator-(const PreciseInterval& a) {
+    PreciseInterval result(a.bits());
     mpfr_neg(result.low.get(), a.high.get(), MPFR_RNDD);
     mpfr_neg(result.high.get(), a.low.get(), MPFR_RNDU);
     return result;
 }
 
-Interval operator+(const Interval& a, const Interval& b) {
-    Interval result(std::max(a.bits(), b.bits()));
+PreciseInterval operator+(const PreciseInterval& a, const PreciseInterval& b) {
+    PreciseInterval result(std::max(a.bits(), b.bits()));
     mpfr_add(result.low.get(), a.low.get(), b.low.get(), MPFR_RNDD);
     mpfr_add(result.high.get(), a.high.get(), b.high.get(), MPFR_RNDU);
     return result;
 }
 
-Interval operator-(const Interval& a, const Interval& b) {
+PreciseInterval operator-(const PreciseInterval& a, const PreciseInterval& b) {
     return a + -b;
 }
 
-Interval operator*(const Interval& a, const Interval& b) {
-    Interval result(std::max(a.bits(), b.bits()));
+PreciseInterval operator*(const PreciseInterval& a, const PreciseInterval& b) {
+    PreciseInterval result(std::max(a.bits(), b.bits()));
     Real product(result.bits());
     bool first = true;
     for (const Real* x : {&a.low, &a.high}) {
@@ -66,21 +66,21 @@ Interval operator*(const Interval& a, const Interval& b) {
     return result;
 }
 
-Interval operator/(const Interval& a, const Interval& b) {
-    Interval result(std::max(a.bits(), b.bits()));
+PreciseInterval operator/(const PreciseInterval& a, const PreciseInterval& b) {
+    PreciseInterval result(std::max(a.bits(), b.bits()));
     mpfr_div(result.low.get(), a.low.get(), (a.low.sign() >= 0 ? b.high : b.low).get(), MPFR_RNDD);
     mpfr_div(result.high.get(), a.high.get(), (a.high.sign() >= 0 ? b.low : b.high).get(), MPFR_RNDU);
     return result;
 }
 
-Interval magnitude(const Interval& a) {
+PreciseInterval magnitude(const PreciseInterval& a) {
     if (a.low.sign() >= 0) {
         return a;
     }
     if (a.high.sign() <= 0) {
         return -a;
     }
-    Interval result = -a;
+    PreciseInterval result = -a;
     mpfr_max(result.high.get(), result.high.get(), a.high.get(), MPFR_RNDU);
     mpfr_set_zero(result.low.get(), 1);
     return result;

@@ -39,11 +39,11 @@ class Real {
 };
 
 /// A real number between low and high; all operations round outwards, with `bits` of the object. NaN: nothing is known.
-class Interval {
+class PreciseInterval {
   public:
-    explicit Interval(mpfr_prec_t bits) : low(bits), high(bits) {}
+    explicit PreciseInterval(mpfr_prec_t bits) : low(bits), high(bits) {}
     /// value +- radius, radius >= 0.
-    Interval(const Real& value, const Real& radius, mpfr_prec_t bits) : Interval(bits) {
+    PreciseInterval(const Real& value, const Real& radius, mpfr_prec_t bits) : PreciseInterval(bits) {
         mpfr_sub(low.get(), value.get(), radius.get(), MPFR_RNDD);
         mpfr_add(high.get(), value.get(), radius.get(), MPFR_RNDU);
     }
@@ -61,13 +61,13 @@ class Interval {
 };
 
 /// at - from.
-Interval difference(double at, double from, mpfr_prec_t bits);
-Interval operator-(const Interval& a);
-Interval operator+(const Interval& a, const Interval& b);
-Interval operator-(const Interval& a, const Interval& b);
-Interval operator*(const Interval& a, const Interval& b);
+PreciseInterval difference(double at, double from, mpfr_prec_t bits);
+PreciseInterval operator-(const PreciseInterval& a);
+PreciseInterval operator+(const PreciseInterval& a, const PreciseInterval& b);
+PreciseInterval operator-(const PreciseInterval& a, const PreciseInterval& b);
+PreciseInterval operator*(const PreciseInterval& a, const PreciseInterval& b);
 /// \pre b positive
-Interval operator/(const Interval& a, const Interval& b);
-Interval magnitude(const Interval& a);
+PreciseInterval operator/(const PreciseInterval& a, const PreciseInterval& b);
+PreciseInterval magnitude(const PreciseInterval& a);
 
 } // namespace isostat

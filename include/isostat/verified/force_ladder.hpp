@@ -13,14 +13,14 @@
 
 namespace isostat {
 
-class Interval;
+class PreciseInterval;
 
 /// What the stored stress lacks to the exact one, for a limit load: known to any number of bits.
 class LoadShift {
   public:
     virtual ~LoadShift() = default;
     /// An interval of about `bits` bits, as far as the ladder behind it goes.
-    [[nodiscard]] virtual Interval value(int bits) const = 0;
+    [[nodiscard]] virtual PreciseInterval value(int bits) const = 0;
 };
 
 /// A quantity by which contacts are ordered: p_l + (at - from) s_l with p, s the solutions of two right-hand sides,

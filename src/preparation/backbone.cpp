@@ -73,7 +73,8 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
     count_work(Work::linear_programmes);
     simplex.primal();
     if (simplex.status() == 2) {
-        return Failure{FailureKind::unbounded, "the contacts do not support the load"};
+        return Failure{FailureKind::undecided, "no support of the load by these contacts was found (a linear programme "
+                                               "in double precision, not a proof that there is none)"};
     }
     if (simplex.status() != 0) {
         return Failure{
@@ -87,11 +88,10 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
         }
     }
     if (kept.size() != columns) {
-        return Failure{
-            FailureKind::not_isostatic,
-            fmt::format("{} of {} contacts are needed by the perturbed packing, expected N_f = {}: there are "
-                        "mechanisms",
-                        kept.size(), contacts.size(), columns)};
+        return Failure{FailureKind::undecided,
+                       fmt::format("the linear programme of the perturbed start kept {} of {} contacts, expected N_f = "
+                                   "{}: no isostatic choice was found (there may be mechanisms)",
+                                   kept.size(), contacts.size(), columns)};
     }
     return kept;
 }

@@ -534,6 +534,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     const Vertex<Dim>* from = vertex_.get();
     std::string arc_kind = kind;
     int arcs = 0;
+    ContactId last_hold;
     std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located
     while (true) {
         if (options_.stop != nullptr && options_.stop->load()) {
@@ -622,6 +623,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
                   decision.value().perturbed);
             zeros_ = decision.value().zeros;
+            last_hold = fresh_hold;
             break;
         }
         opening = *decision.value().opening;
@@ -640,6 +642,10 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     if (!gaps.ok()) {
         return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
     }
+    if (gaps.value().negative) {
+        return Failure{FailureKind::overlap, fmt::format("equilibrium at sigma = {:.17g}: {} overlap", stress,
+                                                         to_string<Dim>(*gaps.value().negative))};
+    }
     if (perturbs()) {
         std::optional<Failure> failure = settle(limit, zeros_, stress);
         if (!failure) {
@@ -651,6 +657,15 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     }
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
+    if (!perturbs()) { // otherwise `still_equilibrium` insists on the answer
+        auto again = decide_opening(vertex_->statics, stress, options_.rule, last_hold, 0);
+        if (!again.ok() || again.value().opening) {
+            return Failure{
+                FailureKind::undecided,
+                fmt::format("equilibrium at sigma = {:.17g}: not found again with fresh factors and bounds{}", stress,
+                            again.ok() ? "" : ": " + again.failure().message)};
+        }
+    }
     // The questions that `start` asks after a resume: the statics then stand on the same rung.
     if (auto failure = still_equilibrium(stress)) {
         return failure;

@@ -133,6 +133,22 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     BOOST_TEST((!still || still->bound.sigma_min < sigma * 1.001));
 }
 
+BOOST_AUTO_TEST_CASE(a_structure_says_what_its_regularity_was_proved_with) {
+    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    BOOST_TEST((from.structure.evidence() == RegularityEvidence::elimination));
+    const auto next =
+        IsostaticStructure<2>::exchange(from.structure, from.state.packing, ContactId(5), from.structure.contacts()[5]);
+    BOOST_TEST_REQUIRE(next.has_value());
+    auto unproved = *next;
+    BOOST_TEST((IsostaticStructure<2>::without_proof(std::move(unproved)).evidence() == RegularityEvidence::none));
+    const auto proved = bound_exchanged(*next, from.factorisation.approximate(), from.cache);
+    BOOST_TEST_REQUIRE(proved.has_value());
+    auto contacts = *next;
+    // The proof is of the matrix of *next, which the copy shares.
+    BOOST_TEST((IsostaticStructure<2>::exchanged(std::move(contacts), proved->proof).evidence() ==
+                RegularityEvidence::singular_value));
+}
+
 BOOST_AUTO_TEST_CASE(no_proof_is_made_for_a_singular_exchange) {
     Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     // Two of the same contact: singular whatever the coordinates are.

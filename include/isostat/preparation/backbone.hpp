@@ -15,8 +15,8 @@ namespace isostat {
 /// (proofs/perturbation.md), maximise F.v with all first-order gaps >= 0, ties broken by the infinitesimal loads.
 /// Clp, double: a proposal, not a proof. What makes it right are the signs of all forces and of the first-order gaps of
 /// the other contacts, which the caller must prove. In the order of `contacts`.
-/// Failure: `not_isostatic` when the programme has no vertex with N_f contacts (mechanisms), `unbounded` when the
-/// contacts do not support the load, `not_converged`.
+/// Failure: `undecided` when Clp finds no support of the load or keeps another number of contacts than N_f (neither
+/// proves that there is none), `not_converged`.
 template <int Dim>
 Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
                                                   const std::vector<Contact>& contacts, const std::vector<double>& rho);

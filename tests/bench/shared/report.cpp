@@ -156,6 +156,10 @@ std::optional<int> Program::parse(int argc, char** argv) {
 void Program::show(const Table& table) {
     fmt::print("\n{}\n\n{}", table.caption_, table.markdown());
     std::fflush(stdout);
+    keep(table);
+}
+
+void Program::keep(const Table& table) {
     Json columns = Json::array();
     for (const Column& c : table.columns_) {
         columns.push_back({{"key", c.key}, {"heading", c.heading}, {"unit", c.unit}});

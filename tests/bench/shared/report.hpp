@@ -65,6 +65,8 @@ class Program {
 
     /// Prints the table, and keeps it.
     void show(const Table& table);
+    /// Keeps it for the file of `--json` only.
+    void keep(const Table& table);
     /// Writes the file of `--json`; 0 when everything held, else 1 (74 when the file cannot be written).
     [[nodiscard]] int finish(bool holds = true) const;
 

@@ -2,6 +2,7 @@
 #include "checker/replay.hpp"
 
 #include "checker/gaps.hpp"
+#include "checker/strut.hpp"
 
 #include <fmt/format.h>
 
@@ -450,7 +451,11 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             continue;
         }
         const bool most = rule == "most_negative";
-        const int sign = compare_keys(place, decision.kind != "rattler", other, opened);
+        int sign = compare_keys(place, decision.kind != "rattler", other, opened);
+        if (decision.kind != "rattler" && same_at_turn(place, opened, other)) {
+            // Finite forces tell only where the turn was rounded to.
+            sign = strut_order(place, other, opened).value_or(0);
+        }
         if (most ? sign < 0 : (rule == "least_negative" && sign > 0)) {
             return Objection{true, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),
                                                shown(chosen), rule, e.name(static_cast<std::size_t>(l)), shown(force))};

@@ -325,10 +325,9 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
     return {};
 }
 
-Objections check_turn(const Place& place, const EventRecord& event) {
+Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
     const Evidence& e = *place.evidence;
     const auto held = static_cast<std::size_t>(place.fresh);
-    const bool rattles = event.kind == "rattler";
     const std::vector<Range>& forces = rattles ? e.infinitesimal : e.forces;
     Rational largest = 0;
     for (const Range& force : forces) {

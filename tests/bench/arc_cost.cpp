@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
             row.proved.runs.push_back(bench::run_stretch(*begin_state, options));
         }
         row.rank_against_umfpack = parts(row.n, row.proved.front().last, parts_table);
-        const bool same = row.plain.front().events == row.proved.front().events;
+        const bool same = bench::same_events(row.plain.front(), row.proved.front());
         for (const bench::Stretches* level : {&row.plain, &row.proved}) {
             if (!level->front().failure.empty()) {
                 fmt::print(stderr, "{}: {}\n", source, level->front().failure);

@@ -37,7 +37,7 @@ class Watcher final : public RunObserver<2> {
   public:
     Watcher(const StretchOptions& options, Stretch& stretch) : options_(options), stretch_(stretch) {}
     void on_arc(const ArcRecord<2>& arc) override {
-        stretch_.events.emplace_back(arc.opened, arc.closed);
+        stretch_.arcs.push_back(arc);
         if (options_.arcs > 0 && arc.step >= options_.arcs) {
             stop = true;
         }
@@ -95,6 +95,11 @@ Stretch run_stretch(const State<2>& from, const StretchOptions& options) {
         out.failure = outcome.failure->message;
     }
     return out;
+}
+
+bool same_events(const Stretch& a, const Stretch& b) {
+    return std::equal(a.arcs.begin(), a.arcs.end(), b.arcs.begin(), b.arcs.end(),
+                      [](const auto& x, const auto& y) { return x.opened == y.opened && x.closed == y.closed; });
 }
 
 Sample Stretches::per_arc() const {

@@ -9,7 +9,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace bench {
@@ -29,12 +28,15 @@ struct StretchOptions {
 
 struct Stretch {
     isostat::RunCounters counters;
-    std::vector<std::pair<isostat::Contact, isostat::Contact>> events; ///< opened, closed
+    std::vector<isostat::ArcRecord<2>> arcs;
     isostat::State<2> last;          ///< last equilibrium where the units were measured
     double milliseconds_per_arc = 0; ///< all of the run, equilibria included, shared out among its arcs
     double klu = 0, umfpack = 0;     ///< medians over the equilibria: one analysis + factorisation, milliseconds
     std::string failure;             ///< empty: completed
 };
+
+/// Whether the same contacts open and close, in the same order.
+bool same_events(const Stretch& a, const Stretch& b);
 
 /// CPU time of this thread; the time that the units and `visit` take is not counted.
 Stretch run_stretch(const isostat::State<2>& from, const StretchOptions& options);

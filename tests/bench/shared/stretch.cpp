@@ -17,11 +17,14 @@ using namespace isostat;
 namespace bench {
 
 std::optional<State<2>> start(const std::string& source) {
-    if (source.find_first_not_of("0123456789") != std::string::npos) {
+    if (source.find_first_not_of("0123456789:") != std::string::npos) {
         return read_state<2>(source).state;
     }
     PreparationOptions options;
     options.disks = std::atoi(source.c_str());
+    if (const std::size_t colon = source.find(':'); colon != std::string::npos) {
+        options.seed = std::strtoull(source.c_str() + colon + 1, nullptr, 10);
+    }
     PreparationReport<2> report;
     auto prepared = prepare(options, report);
     if (!prepared.ok()) {

@@ -13,8 +13,8 @@
 
 namespace bench {
 
-/// What a word of the command line names: a number of disks (prepared with seed 1), or a state file. Says why when
-/// there is nothing.
+/// What a word of the command line names: a number of disks, prepared with seed 1 ("400") or another ("400:7"), or a
+/// state file. Says why when there is nothing.
 std::optional<isostat::State<2>> start(const std::string& source);
 
 struct StretchOptions {

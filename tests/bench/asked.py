@@ -4,8 +4,8 @@
     /usr/bin/python3 tests/bench/asked.py FOLDER [--json FILE]
     /usr/bin/python3 tests/bench/asked.py --peak FILE COMMAND...      runs a command, writes its peak memory to FILE
 
-FOLDER: arc_cost.json, growth.json (the same program, with 20 000 disks), exact_rank.json, linear_programmes.json, memory.json, as `bash tests/bench/run`
-makes them; what is not there is left out. Exit status 1 when a figure is not met.
+FOLDER: arc_cost.json, growth.json (the same program, with 20 000 disks), exact_rank.json, linear_programmes.json and
+memory.json, as `bash tests/bench/run` makes them; what is not there is left out. Exit status 1 when a figure is not met.
 """
 import argparse
 import json
@@ -21,8 +21,10 @@ ASKED = [
     ("an arc, plain / one KLU, n = 4900", "arc_cost", "arc_cost", 4900, "plain_klu", 0.30, "KLU"),
     ("growth of an arc, plain, n = 400 to 20 000", "growth", "growth", (400, 20000), "plain", 1.15, "exponent"),
     ("growth of an arc, decisions, n = 400 to 20 000", "growth", "growth", (400, 20000), "decisions", 1.15, "exponent"),
-    ("exact rank / one UMFPACK factorisation, n = 4900", "exact_rank", "exact_rank", 4900, "umfpack_factorisation", 0.5, "UMFPACK"),
-    ("linear programmes / HiGHS chain, n = 1936", "linear_programmes", "linear_programmes", 1936, "ratio", 0.2, "HiGHS"),
+    ("exact rank / one UMFPACK factorisation, n = 4900", "exact_rank", "exact_rank", 4900,
+     "umfpack_factorisation", 0.5, "UMFPACK"),
+    ("linear programmes / HiGHS chain, n = 1936", "linear_programmes", "linear_programmes", 1936, "ratio", 0.2,
+     "HiGHS"),
     ("peak memory, figure-2 run, n = 4900", "memory", "memory", 4900, "megabytes", 400, "MB"),
 ]
 
@@ -44,7 +46,8 @@ def peak(file, command):
     kilobytes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     with open(file, "w") as stream:
         json.dump({"program": "asked.py", "arguments": command, "tables": [
-            {"name": "memory", "caption": "Peak memory:", "columns": [{"key": "megabytes", "heading": "MB", "unit": "MB"}],
+            {"name": "memory", "caption": "Peak memory:",
+             "columns": [{"key": "megabytes", "heading": "MB", "unit": "MB"}],
              "rows": [{"n": 4900, "megabytes": kilobytes / 1024, "status": status}]}]}, stream, indent=1)
     return status
 
@@ -67,7 +70,8 @@ def main():
                      "met": sample["median"] <= most})
     print("| figure | asked | median (range) | |\n|---|---|---|---|")
     for r in rows:
-        print(f"| {r['figure']} | <= {r['asked']:g} {r['unit']} | {r['median']:.3g} ({r['low']:.3g}-{r['high']:.3g}) | {'met' if r['met'] else 'NOT met'} |")
+        found = f"{r['median']:.3g} ({r['low']:.3g}-{r['high']:.3g})"
+        print(f"| {r['figure']} | <= {r['asked']:g} {r['unit']} | {found} | {'met' if r['met'] else 'NOT met'} |")
     if arguments.json:
         with open(arguments.json, "w") as stream:
             json.dump({"program": "asked.py", "tables": [{"name": "asked", "rows": rows}]}, stream, indent=1)

@@ -3,21 +3,22 @@
 
     apt-get install python3-scipy
     cmake --preset bench && cmake --build --preset bench --target bench_linear_programmes
-    /usr/bin/python3 tests/bench/highs_chain.py build/bench/bench/bench_linear_programmes [--sizes 400 1936] [--seeds 1] [--runs 3]
-        [--methods highs-ds highs-ipm] [--limit 120] [--json FILE]
+    /usr/bin/python3 tests/bench/highs_chain.py build/bench/bench/bench_linear_programmes [--sizes 400 1936]
+        [--seeds 1] [--runs 3] [--methods highs-ds highs-ipm] [--limit 120] [--json FILE]
 
-Both start from the relaxed soft packing of `isostat prepare` and solve the same programmes (linearised gaps of all pairs within reach,
-trust bounds, overlaps kept in the first one, eps g on every disk). HiGHS gets each as a sparse matrix, with its own settings (tolerances of 1e-7;
-a basis is found by crossover), without a starting basis (linprog has no way to give one), until a programme ends with the N_f contacts of the
-one before. Newton then puts all their gaps to zero, and the end must be that of Isostat: same contacts, coordinates within 1e-9 mean
-radii. Exit status 1 if not.
+Both start from the relaxed soft packing of `isostat prepare` and solve the same programmes (linearised gaps of all
+pairs within reach, trust bounds, overlaps kept in the first one, eps g on every disk). HiGHS gets each as a sparse
+matrix, with its own settings (tolerances of 1e-7; a basis is found by crossover), without a starting basis (linprog
+has no way to give one), until a programme ends with the N_f contacts of the one before. Newton then puts all their
+gaps to zero, and the end must be that of Isostat: same contacts, coordinates within 1e-9 mean radii. Exit status 1 if
+not.
 
-Timed for HiGHS: the calls of linprog only. Timed for Isostat: everything from the start to the proved vertex (candidates, programmes, Newton,
-proofs). Processor time of one thread. A chain that needs more than --limit seconds is given up, and not tried again for this start. The unit is
-the fastest method that ended.
+Timed for HiGHS: the calls of linprog only. Timed for Isostat: everything from the start to the proved vertex
+(candidates, programmes, Newton, proofs). Processor time of one thread. A chain that needs more than --limit seconds is
+given up, and not tried again for this start. The unit is the fastest method that ended.
 
-Why not tighter tolerances: with 1e-9, that of Isostat's programmes, HiGHS gives up on some programmes at n = 1936; and with 1e-7 the last steps stay near
-1e-7 mean radii, so that steps are no criterion for the end.
+Why not tighter tolerances: with 1e-9, that of Isostat's programmes, HiGHS gives up on some programmes at n = 1936; and
+with 1e-7 the last steps stay near 1e-7 mean radii, so that steps are no criterion for the end.
 """
 import argparse
 import json
@@ -111,7 +112,7 @@ def gaps_of(names, radius, x, length):
             d = x[j] - x[i]
             distance = math.hypot(*d)
             gap[k] = distance - radius[i] - radius[j]
-            entries = [(2 * i + a, -d[a] / distance) for a in (0, 1)] + [(2 * j + a, d[a] / distance) for a in (0, 1)]
+            entries = [(2 * k_ + a, sign * d[a] / distance) for k_, sign in ((i, -1), (j, 1)) for a in (0, 1)]
         else:
             a = 0 if second in ("left", "right") else 1
             if second in ("left", "bottom"):
@@ -187,6 +188,12 @@ def spread(s):
     return "–" if s is None else f"{s['median']:.3g} ({s['low']:.3g}-{s['high']:.3g})"
 
 
+def shown(value):
+    if isinstance(value, bool):
+        return "yes" if value else "NO"
+    return spread(value) if value is None or isinstance(value, dict) else str(value)
+
+
 COLUMNS = [("n", "n", ""), ("seed", "seed", ""), ("isostat", "Isostat, s", "s"), ("method", "fastest HiGHS", ""),
            ("highs", "HiGHS chain, s", "s"), ("ratio", "Isostat / HiGHS", "HiGHS"), ("programmes", "programmes", ""),
            ("iterations", "pivots / iterations", ""), ("same", "same vertex", ""), ("others", "other methods", "")]
@@ -198,14 +205,16 @@ def compare(program, n, seed, methods, runs, limit):
         subprocess.run([program, "start", str(n), str(seed), start], check=True)
         ours, theirs, given_up, same = [], {}, {}, True
         for _ in range(runs):
-            own = json.loads(subprocess.run([program, "solve", start], check=True, capture_output=True, text=True).stdout)
+            solved = subprocess.run([program, "solve", start], check=True, capture_output=True, text=True)
+            own = json.loads(solved.stdout)
             ours += own["seconds"]
             for method in methods:
                 if method in given_up:
                     continue
                 other = chain(start, method, limit)
                 if "failed" in other:
-                    given_up[method] = f"{method}: given up after {other['seconds']:.0f} s in {other['failed'].split('.')[0]}"
+                    why = other["failed"].split(".")[0]
+                    given_up[method] = f"{method}: given up after {other['seconds']:.0f} s in {why}"
                     theirs.pop(method, None)
                     continue
                 same = bool(same and distance(own, other) < SAME)
@@ -239,19 +248,19 @@ def main():
         for seed in arguments.seeds:
             rows.append(compare(arguments.program, n, seed, arguments.methods, arguments.runs, arguments.limit))
             print(f"n = {n}, seed {seed}: {spread(rows[-1]['ratio'])}", file=sys.stderr, flush=True)
-    caption = f"Sequential linear programming from one start to one vertex, scipy {scipy.__version__}, median (range) of {arguments.runs}:"
+    caption = (f"Sequential linear programming from one start to one vertex, scipy {scipy.__version__}, "
+               f"median (range) of {arguments.runs}:")
     print(f"\n{caption}\n\n| " + " | ".join(heading for _, heading, _ in COLUMNS) + " |\n|" + "---|" * len(COLUMNS))
     for row in rows:
-        print("| " + " | ".join("yes" if row[k] is True else "NO" if row[k] is False else spread(row[k])
-                                if row[k] is None or isinstance(row[k], dict) else str(row[k]) for k, _, _ in COLUMNS) + " |")
+        print("| " + " | ".join(shown(row[key]) for key, _, _ in COLUMNS) + " |")
     good = all(row["same"] for row in rows)
     if arguments.json:
         with open(arguments.json, "w") as file:
-            json.dump({"program": "highs_chain.py", "arguments": sys.argv[1:], "scipy": scipy.__version__, "processors": os.cpu_count(),
-                       "clock": "CPU time of one thread", "holds": good,
+            json.dump({"program": "highs_chain.py", "arguments": sys.argv[1:], "scipy": scipy.__version__,
+                       "processors": os.cpu_count(), "clock": "CPU time of one thread", "holds": good,
                        "tables": [{"name": "linear_programmes", "caption": caption,
-                                   "columns": [{"key": k, "heading": h, "unit": u} for k, h, u in COLUMNS], "rows": rows}]},
-                      file, indent=1)
+                                   "columns": [{"key": k, "heading": h, "unit": u} for k, h, u in COLUMNS],
+                                   "rows": rows}]}, file, indent=1)
     return 0 if good else 1
 
 

@@ -12,28 +12,33 @@ trap 'rm -rf "$work"' EXIT
 
 # "count name" of the functions that spend most, themselves: the file, the arguments and nameless namespaces are left out.
 functions() {
-  callgrind_annotate --auto=no --show-percs=no --threshold=99 "$1" | sed -n 's/^ *\([0-9,]*\)  *[^ :]*:\(.*\)$/\1 \2/p' |
+  callgrind_annotate --auto=no --show-percs=no --threshold=99 "$1" |
+    sed -n 's/^ *\([0-9,]*\)  *[^ :]*:\(.*\)$/\1 \2/p' |
     sed 's/(anonymous namespace):://g; s/ \[[^]]*\]$//; s/(.*$//' |
-    awk '{ n = $1; gsub(",", "", n); $1 = ""; sub(/^ /, ""); sum[$0] += n } END { for (f in sum) printf "%d %s\n", sum[f], f }' | sort -rn | sed -n '1,60p'
+    awk '{ n = $1; gsub(",", "", n); $1 = ""; sub(/^ /, ""); sum[$0] += n }
+         END { for (f in sum) printf "%d %s\n", sum[f], f }' | sort -rn | sed -n '1,60p'
 }
 
-# Recorded and present shares of the functions that grew most.
+# Recorded and present shares of the functions that grew most: grown SCENE RECORDED PRESENT FUNCTIONS.
 grown() {
+  printf '    %12s %12s %6s   %12s %6s   %s\n' more recorded % now % 'function, itself (recorded 0: not among the first 60)'
   awk -v scene="$1" -v then="$2" -v now="$3" '
     NR == FNR { if ($1 == scene) { n = $2; $1 = $2 = ""; sub(/^  /, ""); was[$0] = n } next }
     { n = $1; $1 = ""; sub(/^ /, ""); is[$0] = n }
-    END { for (f in is) printf "%d %d %.1f %d %.1f %s\n", is[f] - was[f], was[f], 100 * was[f] / then, is[f], 100 * is[f] / now, f }' \
-    "$here/recorded-functions.txt" "$4" | sort -rn | sed -n '1,12p' |
-    awk 'BEGIN { printf "    %12s %12s %6s   %12s %6s   %s\n", "more", "recorded", "%", "now", "%", "function, itself (recorded: 0 = not among the first 60)" }
-      { d = $1; a = $2; p = $3; b = $4; q = $5; $1 = $2 = $3 = $4 = $5 = ""; sub(/^ +/, ""); printf "    %+12d %12d %5.1f%%   %12d %5.1f%%   %s\n", d, a, p, b, q, substr($0, 1, 100) }'
+    END {
+      for (f in is) {
+        printf "    %+12d %12d %5.1f%%   %12d %5.1f%%   %s\n", is[f] - was[f], was[f], 100 * was[f] / then, is[f],
+          100 * is[f] / now, substr(f, 1, 100)
+      }
+    }' "$here/recorded-functions.txt" "$4" | sort -k1,1nr | sed -n '1,12p'
 }
 
 status=0
 : >"$work/new-functions"
 while read -r vertex equilibria level recorded; do
   case $vertex in '' | '#'*) echo "$vertex $equilibria $level $recorded" >>"$work/new"; continue ;; esac
-  arcs=$(valgrind --tool=callgrind --callgrind-out-file="$work/out" "$program" "$here/../data/$vertex" "$equilibria" "$level" 2>"$work/log") ||
-    { cat "$work/log" >&2; exit 1; }
+  arcs=$(valgrind --tool=callgrind --callgrind-out-file="$work/out" \
+    "$program" "$here/../data/$vertex" "$equilibria" "$level" 2>"$work/log") || { cat "$work/log" >&2; exit 1; }
   count=$(sed -n 's/^totals: //p' "$work/out")
   echo "$vertex $equilibria $level $count" >>"$work/new"
   functions "$work/out" >"$work/functions"

@@ -18,8 +18,14 @@ namespace preparation {
 
 namespace {
 
-/// Pressure / stiffness of the compression and of the first relaxation; then it falls by ten.
+/// Pressure / stiffness of the compression and of the first relaxation; then it falls by ten. Large packings are
+/// pressed harder first: far above the threshold of rigidity they settle within 10 000 steps whatever their size, and
+/// little rearranges as the pressure falls again (solid fraction at the end 0.841 instead of 0.839 at n = 10 000).
 constexpr double first_pressure = 1e-3;
+constexpr double first_pressure_large = 1e-2;
+/// The dynamics of large packings ends at this many times `relaxation`: 10 costs twice the linear programmes, 1
+/// twice the steps.
+constexpr double relaxation_large = 3;
 constexpr double pressure_divisor = 10;
 /// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
 /// diameter.
@@ -105,9 +111,12 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     scale.to_internal(internal);
     Packing<Dim> packing = scatter<Dim>(std::move(internal), options.loose_fraction, options.aspect,
                                         derived_seed(options.seed, Stream::positions));
+    const bool large = packing.disk_count() > options.large_above;
+    const double relaxation = options.relaxation * (large ? relaxation_large : 1.0);
+    const double pressed = large ? first_pressure_large : first_pressure;
     const auto run = [&](const std::string& name, const auto& work) {
         Stage stage(name, options);
-        SoftDynamics<Dim> dynamics(packing, options.stop, [&](double fraction) {
+        SoftDynamics<Dim> dynamics(packing, large, options.stop, [&](double fraction) {
             stage.progress(fraction, fmt::format("solid fraction {:.4f}", packing.solid_fraction()));
         });
         const SoftMeasures measures = work(dynamics);
@@ -133,12 +142,12 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     if (!run("separation", [&](auto& d) { return d.separate(start_overlap, options.max_steps); })) {
         return interrupted();
     }
-    if (!run("compression", [&](auto& d) { return d.compress(first_pressure, compression_rate, options.max_steps); })) {
+    if (!run("compression", [&](auto& d) { return d.compress(pressed, compression_rate, options.max_steps); })) {
         return interrupted();
     }
-    for (double pressure = first_pressure;; pressure = std::max(pressure / pressure_divisor, options.softness)) {
+    for (double pressure = pressed;; pressure = std::max(pressure / pressure_divisor, options.softness)) {
         if (!run(fmt::format("relaxation at {:.0e}", pressure),
-                 [&](auto& d) { return d.relax(pressure, options.relaxation, options.max_steps); })) {
+                 [&](auto& d) { return d.relax(pressure, relaxation, options.max_steps); })) {
             return interrupted();
         }
         if (pressure <= options.softness) {

@@ -2,6 +2,7 @@
 #include "checker/replay.hpp"
 
 #include "checker/gaps.hpp"
+#include "checker/strut.hpp"
 
 #include <fmt/format.h>
 
@@ -324,10 +325,9 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
     return {};
 }
 
-Objections check_turn(const Place& place, const EventRecord& event) {
+Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
     const Evidence& e = *place.evidence;
     const auto held = static_cast<std::size_t>(place.fresh);
-    const bool rattles = event.kind == "rattler";
     const std::vector<Range>& forces = rattles ? e.infinitesimal : e.forces;
     Rational largest = 0;
     for (const Range& force : forces) {
@@ -450,7 +450,11 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             continue;
         }
         const bool most = rule == "most_negative";
-        const int sign = compare_keys(place, decision.kind != "rattler", other, opened);
+        int sign = compare_keys(place, decision.kind != "rattler", other, opened);
+        if (decision.kind != "rattler" && same_at_turn(place, opened, other)) {
+            // Finite forces tell only where the turn was rounded to.
+            sign = strut_order(place, other, opened).value_or(0);
+        }
         if (most ? sign < 0 : (rule == "least_negative" && sign > 0)) {
             return Objection{true, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),
                                                shown(chosen), rule, e.name(static_cast<std::size_t>(l)), shown(force))};

@@ -71,7 +71,8 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule);
 
 /// No overlap at the end of an arc, the potential fell along it, and the record's strain, work and power are those.
-Objections check_end(const Place& from, const Place& to, const EventRecord& event);
+/// `rattles`: grains that carry no finite load moved, under the infinitesimal ones.
+Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles);
 
 /// The pairs that touch at the start of an arc: those that close again on a way of length O(eps) end it there.
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction);
@@ -79,7 +80,7 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
 Objections check_ties(const Place& from, const Place& to, const EventRecord& event, std::size_t opened, int direction);
 
 /// At a power turn: the multiplier of the coordinate held is 0 up to the accuracy of its place, and it is the fastest.
-Objections check_turn(const Place& place, const EventRecord& event);
+Objections check_turn(const Place& place, const EventRecord& event, bool rattles);
 
 /// A row of equilibria.csv against the vertex that was reached.
 Objections check_equilibrium(const Place& place, const EquilibriumLine& line);

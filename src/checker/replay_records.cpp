@@ -147,7 +147,7 @@ Objections check_load_end(const Place& place, const EquilibriumLine& line, bool 
 
 } // namespace
 
-Objections check_end(const Place& from, const Place& to, const EventRecord& event) {
+Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     const Load<2>& load = to.state->load;
     const auto axis = static_cast<std::size_t>(load.loaded_axis);
     const Rational reference(load.reference_length[axis]);
@@ -195,8 +195,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     }
     // Rattlers move without any work of the finite load: then the infinitesimal one decides.
     double unused = 0;
-    const Range decides =
-        event.kind == "rattler" ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused) : done;
+    const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused) : done;
     if (!decides.positive()) {
         return Objection{decides.negative(),
                          fmt::format("the potential does not decrease: work in {}", shown(decides))};

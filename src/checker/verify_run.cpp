@@ -161,8 +161,12 @@ class Replay {
         if (stopped()) {
             return false;
         }
-        const int direction =
-            opened->kind == ContactKind::held && here_.evidence->forces[position].positive() ? -1 : +1;
+        // A coordinate of a rattler is let go by the infinitesimal loads, as its contacts are.
+        const Evidence& evidence = *here_.evidence;
+        const bool held = opened->kind == ContactKind::held;
+        const bool rattles = event.kind == "rattler" || (held && evidence.forces[position].has_zero());
+        const Range& multiplier = (rattles ? evidence.infinitesimal : evidence.forces)[position];
+        const int direction = held && multiplier.positive() ? -1 : +1;
         if (here_.first && !judged(check_step(here_, event, position, direction), event.where)) {
             return false;
         }
@@ -178,8 +182,7 @@ class Replay {
             motion.displacement = event.displacement;
             Load<2> under = here_.state->load;
             under.stress[static_cast<std::size_t>(under.loaded_axis)] = event.stress;
-            motion.power_load =
-                event.kind == "rattler" ? under.infinitesimal : under.external_force(here_.state->packing);
+            motion.power_load = rattles ? under.infinitesimal : under.external_force(here_.state->packing);
             motion.power_load.resize(state.packing.q.size(), 0.0);
             for (const Gap& gap : here_.touching) {
                 motion.touching.push_back(gap.pair);
@@ -201,8 +204,8 @@ class Replay {
         Place next;
         if (!judged(make_place(std::move(state), next, load, event.power_turn ? static_cast<int>(position) : -1),
                     event.where) ||
-            !judged(check_end(here_, next, event), event.where) ||
-            (event.power_turn && !judged(check_turn(next, event), event.where)) ||
+            !judged(check_end(here_, next, event, rattles), event.where) ||
+            (event.power_turn && !judged(check_turn(next, event, rattles), event.where)) ||
             (next.first && !judged(check_ties(here_, next, event, position, direction), event.where)) ||
             !expect(next.first != nullptr || event.ties.empty(), event.where,
                     "first-order decisions in a run without a direction of the radii")) {

@@ -201,6 +201,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         Arc<Dim>& path = arc.value();
         record.closed = path.closed;
         record.power_turn = path.kind == ArcEnd::power_turn;
+        record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
@@ -242,10 +243,12 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         if (auto stop = calls.end(record, *packing)) {
             return *stop;
         }
-        const ContactId fresh_hold = record.power_turn ? opening.contact : ContactId();
-        const auto chosen = here->choose(options.rule, fresh_hold, calls.random_bits());
+        if (record.power_turn) { // the ends of a straight strut carry one force there: only a proof orders them
+            return PlainEnd<Dim>{here->packing, structure->contacts(), opening.contact};
+        }
+        const auto chosen = here->choose(options.rule, ContactId(), calls.random_bits());
         if (!chosen) {
-            return PlainEnd<Dim>{here->packing, structure->contacts(), fresh_hold};
+            return PlainEnd<Dim>{here->packing, structure->contacts(), ContactId()};
         }
         opening = *chosen;
         arc_kind = structure->contacts()[opening.contact.index()].kind == ContactKind::held ? "release"

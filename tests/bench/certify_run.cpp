@@ -1,76 +1,48 @@
 // Certifies every equilibrium of the programmes of scenes: how many, in which arithmetic, which not and why, and the
-// cost of a full certificate in units of one UMFPACK analysis + factorisation of the same matrix (CPU time, medians,
-// same run). Usage:
-//   bench_certify_run [--first K] [scene.toml | state ...]
+// cost of a full certificate in units of one UMFPACK and one KLU analysis + factorisation of the same matrix (CPU time,
+// in turn, median and range). Usage:
+//   bench_certify_run [--json FILE] [--first K] [--repeats R] [scene.toml | n | state ...]
 //     a scene: prepared and run as its programme says; --first K stops after K equilibria of each segment
-//     a state file or vertex text: certified as it is (cost only)
+//     a number of disks, a state file or vertex text: certified as it is (cost only)
+// default: 100 400 1936 4900, 9 repeats
+#include "bench/shared/references.hpp"
+#include "bench/shared/report.hpp"
+#include "bench/shared/stretch.hpp"
+
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
-#include <umfpack.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <ctime>
 #include <map>
 #include <string>
 #include <vector>
 
 using namespace isostat;
+using bench::Sample;
 
 namespace {
 
-double cpu_milliseconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-template <class Work> double milliseconds(Work work) {
-    const double begin = cpu_milliseconds();
-    work();
-    return cpu_milliseconds() - begin;
-}
-
-template <class Work> double median_milliseconds(Work work, int repeats) {
-    std::vector<double> times;
-    for (int k = 0; k < repeats; ++k) {
-        times.push_back(milliseconds(work));
-    }
-    std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
-    return times[static_cast<std::size_t>(repeats / 2)];
-}
-
-double umfpack_milliseconds(const State<2>& state) {
-    const sparse::Matrix<double> h = contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts);
-    return median_milliseconds(
-        [&] {
-            void* symbolic = nullptr;
-            void* numeric = nullptr;
-            umfpack_di_symbolic(h.rows, h.cols, h.start.data(), h.row.data(), h.value.data(), &symbolic, nullptr,
-                                nullptr);
-            umfpack_di_numeric(h.start.data(), h.row.data(), h.value.data(), symbolic, &numeric, nullptr, nullptr);
-            umfpack_di_free_numeric(&numeric);
-            umfpack_di_free_symbolic(&symbolic);
-        },
-        9);
-}
-
-void cost(const std::string& name, const State<2>& state) {
-    const double umfpack = umfpack_milliseconds(state);
+bool cost(const std::string& name, const State<2>& state, int repeats, bench::Table& table) {
+    const auto matrix = bench::matrix_of(state);
     Certification c;
-    const double full = median_milliseconds([&] { c = certify(state); }, 9);
+    const auto full = [&] { c = certify(state); };
     CertifyOptions in_double;
     in_double.highest = Rung::double_bound;
-    const double cheap = median_milliseconds([&] { (void)certify(state, in_double); }, 9);
-    fmt::print("{:<24} N = {:>5}: certificate {:.2f} ms ({}), double only {:.2f} ms, UMFPACK {:.2f} ms: ratio {:.2f}\n",
-               name, state.contacts.size(), full, to_string(c.verdict), cheap, umfpack, full / umfpack);
+    const bench::Pair to_umfpack = bench::in_turn(
+        full, [&] { bench::umfpack(matrix); }, repeats);
+    const bench::Pair to_klu = bench::in_turn(
+        full, [&] { bench::klu(matrix); }, repeats);
+    table.add({name, static_cast<long>(state.packing.disk_count()), static_cast<long>(state.contacts.size()),
+               to_umfpack.first, bench::milliseconds([&] { (void)certify(state, in_double); }, repeats),
+               to_umfpack.second, to_umfpack.ratio(), to_klu.ratio(), std::string(to_string(c.verdict))});
     for (const std::string& reason : c.claims.undecided) {
-        fmt::print("    {}\n", reason);
+        fmt::print(stderr, "{}: {}\n", name, reason);
     }
+    return c.verdict == Verdict::proved;
 }
 
 /// Certifies what it is handed; the state is printed with 17 digits and read back first, as a user's would be.
@@ -80,10 +52,10 @@ class Certifier final : public RunObserver<2> {
                         const std::vector<double>&) override {
         const State<2> stored = parse_state<2>(state_text(state), "state").state;
         Certification c;
-        const double time = milliseconds([&] { c = certify(stored); });
+        const Sample spent = bench::milliseconds([&] { c = certify(stored); }, 1);
         ++count;
-        total += time;
-        slowest = std::max(slowest, time);
+        total += spent.median();
+        time.add(spent.median());
         proved += c.verdict == Verdict::proved ? 1 : 0;
         const CertificateClaims& claims = c.claims;
         if (claims.vertex) {
@@ -103,13 +75,14 @@ class Certifier final : public RunObserver<2> {
         }
         smallest_sigma = std::min(smallest_sigma, c.smallest_sigma);
         for (const std::string& reason : claims.undecided) {
-            fmt::print("    equilibrium {}: {}\n", record.number, reason);
+            fmt::print(stderr, "equilibrium {}: {}\n", record.number, reason);
         }
         keep[record.number] = state;
     }
 
     int count = 0, proved = 0, agree = 0;
-    double total = 0, slowest = 0, widest_radius = 0, smallest_sigma = 1e300;
+    double total = 0, widest_radius = 0, smallest_sigma = 1e300;
+    Sample time;
     std::map<Rung, int> vertex, forces, gaps, interval;
     std::map<int, State<2>> keep;
 };
@@ -122,17 +95,17 @@ std::string tally(const std::map<Rung, int>& counts) {
     return text;
 }
 
-int play(const std::string& file, std::optional<int> first) {
+bool play(const std::string& file, int first, int repeats, bench::Table& costs, bench::Table& runs) {
     const Scene scene = read_scene(file);
     PreparationReport<2> report;
     auto prepared = prepare<2>(scene.preparation, report);
     if (!prepared.ok()) {
-        fmt::print("{}: not prepared: {}\n", file, prepared.failure().message);
-        return 1;
+        fmt::print(stderr, "{}: not prepared: {}\n", file, prepared.failure().message);
+        return false;
     }
     State<2> state = prepared.value();
-    fmt::print("{}: n = {}\n", file, state.packing.disk_count());
-    cost("    start", state);
+    const std::string name = file.substr(file.find_last_of('/') + 1);
+    bool good = cost(name + ", start", state, repeats, costs);
     Certifier certifier;
     RunCounters counters;
     int number = 0;
@@ -146,46 +119,76 @@ int play(const std::string& file, std::optional<int> first) {
             state = start->second;
         }
         Segment segment = segment_of(step, state.load.stress[0], state.load.stress[1], file);
-        if (first) {
-            segment.equilibria = std::min(*first, segment.equilibria.value_or(*first));
+        if (first > 0) {
+            segment.equilibria = std::min(first, segment.equilibria.value_or(first));
         }
         const double before = certifier.total;
         SegmentOutcome outcome;
-        run_time +=
-            milliseconds([&] { outcome = run_segment<2>(state, segment, number++, scene.run, counters, certifier); });
-        run_time -= certifier.total - before;
+        const double begin = bench::cpu_milliseconds();
+        outcome = run_segment<2>(state, segment, number++, scene.run, counters, certifier);
+        run_time += bench::cpu_milliseconds() - begin - (certifier.total - before);
         if (!outcome.completed) {
-            fmt::print("    segment {}: {}\n", number - 1, outcome.failure->message);
+            fmt::print(stderr, "{}, segment {}: {}\n", name, number - 1, outcome.failure->message);
+            good = false;
         }
     }
-    fmt::print("    {} equilibria, {} certified, {} with the opening contacts of the run; radius <= {:.2g}, sigma_min "
-               ">= {:.2g}\n",
-               certifier.count, certifier.proved, certifier.agree, certifier.widest_radius, certifier.smallest_sigma);
-    fmt::print("    vertex: {}; forces: {}; gaps: {}; load interval: {}\n", tally(certifier.vertex),
-               tally(certifier.forces), tally(certifier.gaps), tally(certifier.interval));
-    fmt::print("    certificates: mean {:.2f} ms, slowest {:.2f} ms; all {:.2f} s, the run itself {:.2f} s\n",
-               certifier.total / std::max(1, certifier.count), certifier.slowest, 1e-3 * certifier.total,
-               1e-3 * run_time);
-    std::fflush(stdout);
-    return certifier.proved == certifier.count ? 0 : 2;
+    runs.add({name, static_cast<long>(state.packing.disk_count()), static_cast<long>(certifier.count),
+              static_cast<long>(certifier.proved), static_cast<long>(certifier.agree), tally(certifier.vertex),
+              tally(certifier.forces), tally(certifier.gaps), tally(certifier.interval), certifier.widest_radius,
+              certifier.smallest_sigma, certifier.time, 1e-3 * certifier.total, 1e-3 * run_time});
+    return good && certifier.proved == certifier.count;
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    std::vector<std::string> inputs(argv + 1, argv + argc);
-    std::optional<int> first;
-    if (inputs.size() > 1 && inputs[0] == "--first") {
-        first = std::atoi(inputs[1].c_str());
-        inputs.erase(inputs.begin(), inputs.begin() + 2);
+    std::vector<std::string> inputs{"100", "400", "1936", "4900"};
+    int first = 0;
+    int repeats = 9;
+    bench::Program program("bench_certify_run", "certificates of whole programmes / one UMFPACK or KLU");
+    program.option("--first", first, "equilibria of each segment (0: all)");
+    program.option("--repeats", repeats, "of each cost");
+    program.words("inputs", inputs, "scenes, numbers of disks, or state files");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
     }
-    int status = 0;
+    bench::Table costs("certificate_cost", "One certificate, median (range):",
+                       {{"state", "state", ""},
+                        {"n", "n", ""},
+                        {"size", "N", ""},
+                        {"certificate", "certificate, ms", "ms", "{:.2f}"},
+                        {"in_double", "double only, ms", "ms", "{:.2f}"},
+                        {"umfpack_ms", "UMFPACK analysis + factorisation, ms", "ms", "{:.2f}"},
+                        {"umfpack", "certificate / UMFPACK", "UMFPACK", "{:.2f}"},
+                        {"klu", "certificate / KLU", "KLU", "{:.2f}"},
+                        {"verdict", "verdict", ""}});
+    bench::Table runs("certified_runs", "All equilibria of a programme:",
+                      {{"scene", "scene", ""},
+                       {"n", "n", ""},
+                       {"equilibria", "equilibria", ""},
+                       {"certified", "certified", ""},
+                       {"agree", "with the opening contacts of the run", ""},
+                       {"vertex", "vertex", ""},
+                       {"forces", "forces", ""},
+                       {"gaps", "gaps", ""},
+                       {"interval", "load interval", ""},
+                       {"radius", "vertex known within", "", "{:.1e}"},
+                       {"sigma_min", "σ_min at least", "", "{:.1e}"},
+                       {"certificate", "certificate, ms", "ms", "{:.2f}"},
+                       {"certificates_s", "all certificates, s", "s", "{:.2f}"},
+                       {"run_s", "the run itself, s", "s", "{:.2f}"}});
+    bool good = true;
     for (const std::string& input : inputs) {
         if (input.ends_with(".toml")) {
-            status = std::max(status, play(input, first));
+            good = play(input, first, repeats, costs, runs) && good;
         } else {
-            cost(input.substr(input.find_last_of('/') + 1), read_state<2>(input).state);
+            const auto state = bench::start(input);
+            good = state && cost(input.substr(input.find_last_of('/') + 1), *state, repeats, costs) && good;
         }
     }
-    return status;
+    program.show(costs);
+    if (!runs.empty()) {
+        program.show(runs);
+    }
+    return program.finish(good);
 }

@@ -1,12 +1,15 @@
 // Seconds of `inspect` for triangular lattices in their box, coordinates in Q(sqrt 3), and of `plateau` for the same
-// lattices with radii of 2 % polydispersity, as another program would store them: bench_crafted [m ...].
+// lattices with radii of 2 % polydispersity, as another program would store them. CPU time, median and range; m by m
+// disks. Usage:
+//   bench_crafted [--json FILE] [--repeats R] [m ...]       default: 3 repeats, 10 30 70 100
+
+#include "bench/shared/report.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <random>
@@ -30,38 +33,45 @@ ExactPacking triangular(int m) {
     return out;
 }
 
-template <class Work> double seconds(Work work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
-    std::vector<int> sizes;
-    for (int k = 1; k < argc; ++k) {
-        sizes.push_back(std::atoi(argv[k]));
+    std::vector<std::string> sizes{"10", "30", "70", "100"};
+    int repeats = 3;
+    bench::Program program("bench_crafted", "cost of inspect and plateau for lattices");
+    program.option("--repeats", repeats, "of each measurement");
+    program.words("sizes", sizes, "rows of the lattices");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
     }
-    if (sizes.empty()) {
-        sizes = {10, 30, 70, 100};
-    }
-    fmt::print("{:>5} {:>7} | {:>7} {:>7} {:>6} {:>9} | {:>10} {:>7} {:>9}\n", "m", "n", "N", "rank", "h", "inspect s",
-               "candidates", "ranks", "plateau s");
-    for (const int m : sizes) {
+    bench::Table table("crafted", "Triangular lattices in a box, CPU seconds, median (range):",
+                       {{"m", "m", ""},
+                        {"n", "n", ""},
+                        {"contacts", "N", ""},
+                        {"rank", "rank", ""},
+                        {"hyperstaticity", "h", ""},
+                        {"inspect", "inspect, s", "s", "{:.3f}"},
+                        {"candidates", "candidates", ""},
+                        {"ranks", "ranks", ""},
+                        {"plateau", "plateau, s", "s", "{:.3f}"}});
+    for (const std::string& word : sizes) {
+        const int m = std::atoi(word.c_str());
         const ExactPacking packing = triangular(m);
         Inspection inspection;
-        const double inspecting = seconds([&] { inspection = inspect(packing).value(); });
+        const bench::Sample inspecting =
+            bench::milliseconds([&] { inspection = inspect(packing).value(); }, repeats).over(1e3);
         isostat::Packing<2> stored = approximate(packing);
         std::mt19937_64 random(1);
         for (double& r : stored.radius) {
             r *= 1 - 0.02 * static_cast<double>(random() >> 11) * 0x1p-53;
         }
         Plateau counts;
-        const double counting = seconds([&] { counts = plateau(stored, -0.1, 0.1, 20); });
-        fmt::print("{:>5} {:>7} | {:>7} {:>7} {:>6} {:>9.2f} | {:>10} {:>7} {:>9.2f}\n", m, m * m,
-                   inspection.contacts.size(), inspection.rank, inspection.hyperstaticity, inspecting,
-                   counts.candidates, counts.ranks_computed, counting);
+        const bench::Sample counting =
+            bench::milliseconds([&] { counts = plateau(stored, -0.1, 0.1, 20); }, repeats).over(1e3);
+        table.add({static_cast<long>(m), static_cast<long>(m * m), static_cast<long>(inspection.contacts.size()),
+                   static_cast<long>(inspection.rank), static_cast<long>(inspection.hyperstaticity), inspecting,
+                   static_cast<long>(counts.candidates), static_cast<long>(counts.ranks_computed), counting});
     }
-    return 0;
+    program.show(table);
+    return program.finish();
 }

@@ -1,17 +1,16 @@
 // Families that approach a degeneracy, delta = 1e-1 ... 1e-300 and 0: the answer for either sign of delta, the rung
-// that gave it, the proved relative error of what was compared, and the time. Prints a table (Markdown); writes
-// degeneracy.csv and, with gnuplot, degeneracy.svg. The status is 1 when an answer is wrong, or when the tie at 0 is
-// not one. Usage:
-//   bench_degeneracy [folder]
+// that gave it, the proved relative error of what was compared, and the CPU time (median and range). Writes
+// degeneracy.csv and, with gnuplot, degeneracy.svg into the folder. The status is 1 when an answer is wrong, or when
+// the tie at 0 is not one. Usage:
+//   bench_degeneracy [--json FILE] [folder]
 
+#include "bench/shared/report.hpp"
 #include "support/families.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -38,18 +37,8 @@ struct Line {
     std::string family;
     int decade; ///< 0: delta = 0
     Answer answer;
-    double milliseconds;
+    bench::Sample milliseconds;
 };
-
-double milliseconds(int repeats, const std::function<void()>& work) {
-    std::vector<double> times;
-    for (int k = 0; k < repeats; ++k) {
-        const auto begin = std::chrono::steady_clock::now();
-        work();
-        times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    }
-    return *std::min_element(times.begin(), times.end());
-}
 
 std::string rung_text(const Answer& a) {
     return a.rung == Rung::multiprecision ? fmt::format("mpfr {}", a.bits) : std::string(to_string(a.rung));
@@ -62,7 +51,13 @@ std::string text_of(int decade) {
 } // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
+    std::string where = ".";
+    bench::Program program("bench_degeneracy", "families that approach a degeneracy: answer, rung, time");
+    program.option("folder", where, "for degeneracy.csv and the figure");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
+    }
+    const std::filesystem::path folder = where;
     constexpr int all = 300;
     constexpr int of_doubles = 15;
     using namespace families;
@@ -93,7 +88,7 @@ int main(int argc, char** argv) {
             right = false;
         }
         const auto time = [&](int decade) {
-            return milliseconds(family.repeats, [&] { (void)family.ask(+1, decade); });
+            return bench::milliseconds([&] { (void)family.ask(+1, decade); }, family.repeats);
         };
         for (const int decade : decades) {
             if (decade > family.last) {
@@ -117,18 +112,24 @@ int main(int argc, char** argv) {
         lines.push_back({family.name, 0, zero, time(0)});
         family_of.push_back(f);
     }
-    fmt::print("| family | delta | decided by | error / quantity | time (ms) |\n|---|---|---|---|---|\n");
+    bench::Table table("degeneracy", "Families that approach a degeneracy:",
+                       {{"family", "family", ""},
+                        {"delta", "δ", ""},
+                        {"rung", "decided by", ""},
+                        {"error", "error / quantity", "", "{:.1e}"},
+                        {"time", "time, ms", "ms", "{:.3f}"}});
     std::filesystem::create_directories(folder);
     std::ofstream csv(folder / "degeneracy.csv");
     csv << "family,delta,sign,rung,bits,error,milliseconds\n";
     for (const Line& l : lines) {
         const bool tie = l.answer.sign == 0;
-        fmt::print("| {} | {} | {}{} | {} | {:.3f} |\n", l.family, text_of(l.decade), tie ? "tie: " : "",
-                   rung_text(l.answer), tie ? std::string("-") : fmt::format("{:.1e}", 1 / l.answer.margin),
-                   l.milliseconds);
+        const double error = tie ? 0.0 : 1 / l.answer.margin;
+        table.add({l.family, text_of(l.decade), (tie ? "tie: " : "") + rung_text(l.answer),
+                   tie ? bench::Cell() : bench::Cell(error), l.milliseconds});
         csv << fmt::format("\"{}\",{},{},{},{},{:.6g},{:.5f}\n", l.family, text_of(l.decade), l.answer.sign,
-                           to_string(l.answer.rung), l.answer.bits, tie ? 0.0 : 1 / l.answer.margin, l.milliseconds);
+                           to_string(l.answer.rung), l.answer.bits, error, l.milliseconds.median());
     }
+    program.show(table);
     csv.close();
     std::ofstream data(folder / "degeneracy.dat");
     for (std::size_t k = 0; k < lines.size(); ++k) {
@@ -136,7 +137,7 @@ int main(int argc, char** argv) {
             data << "\n\n";
         }
         if (lines[k].decade > 0) {
-            data << fmt::format("{} {:.5f} {:.6g}\n", lines[k].decade, lines[k].milliseconds,
+            data << fmt::format("{} {:.5f} {:.6g}\n", lines[k].decade, lines[k].milliseconds.median(),
                                 1 / lines[k].answer.margin);
         }
     }
@@ -155,21 +156,17 @@ int main(int argc, char** argv) {
         }
         return text + "\n";
     };
-    std::ofstream plot(folder / "degeneracy.gp");
-    plot << "set terminal svg size 900,640 font 'sans,12' background 'white'\nset output 'degeneracy.svg'\n"
+    bench::draw(
+        folder, "degeneracy",
+        std::string(
+            "set terminal svg size 900,640 font 'sans,12' background 'white'\nset output 'degeneracy.svg'\n"
             "set multiplot\nset logscale xy\nset xrange [1:300]\nset grid\nset lmargin at screen 0.09\n"
             "set rmargin at screen 0.62\nset format y '10^{%T}'\nset key at screen 0.99, screen 0.95 font ',10'\n"
-            "set tmargin at screen 0.97\nset bmargin at screen 0.56\nset ylabel 'time, vertex or arc included (ms)'\n"
-         << curves("1:2", true, true)
-         << "set tmargin at screen 0.47\nset bmargin at screen 0.09\nset xlabel '-log_{10} delta'\n"
-            "set ylabel 'proved error / quantity'\nset label 'exact: 0' at graph 0.72, graph 0.9\n"
-         << curves("1:($3 > 0 ? $3 : NaN)", false, false) << "unset multiplot\n";
-    plot.close();
-    const auto here = std::filesystem::current_path();
-    std::filesystem::current_path(folder);
-    if (std::system("gnuplot degeneracy.gp") != 0) {
-        fmt::print(stderr, "no figure: gnuplot failed\n");
-    }
-    std::filesystem::current_path(here);
-    return right ? 0 : 1;
+            "set tmargin at screen 0.97\nset bmargin at screen 0.56\nset ylabel 'time, vertex or arc included "
+            "(ms)'\n") +
+            curves("1:2", true, true) +
+            "set tmargin at screen 0.47\nset bmargin at screen 0.09\nset xlabel '-log_{10} delta'\n"
+            "set ylabel 'proved error / quantity'\nset label 'exact: 0' at graph 0.72, graph 0.9\n" +
+            curves("1:($3 > 0 ? $3 : NaN)", false, false) + "unset multiplot\n");
+    return program.finish(right);
 }

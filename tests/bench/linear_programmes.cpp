@@ -1,7 +1,8 @@
 // Sequential linear programming from a given start to the proved vertex, timed; the start as a file for other programs.
 //
 //   bench_linear_programmes start N SEED FILE    the relaxed soft packing that `prepare` hands to the programmes
-//   bench_linear_programmes solve FILE [RUNS]    JSON: processor seconds of each run, programmes, pivots, contacts
+//   bench_linear_programmes solve FILE [RUNS]    JSON: processor seconds of each run, programmes, pivots, contacts,
+//                                                coordinates
 //
 // tests/bench/highs_chain.py runs both and compares with scipy's HiGHS on the same programmes.
 
@@ -91,8 +92,10 @@ int solve(const std::string& file, int runs) {
             for (const Contact& contact : vertex.value().contacts) {
                 contacts.push_back(fmt::format("\"{}\"", to_string<2>(contact)));
             }
-            fmt::print("{{\"disks\": {}, \"seconds\": [{}], \"programmes\": {}, \"pivots\": {}, \"contacts\": [{}]}}\n",
-                       disks, fmt::join(seconds, ", "), report.programmes, report.pivots, fmt::join(contacts, ", "));
+            fmt::print("{{\"disks\": {}, \"seconds\": [{}], \"programmes\": {}, \"pivots\": {}, \"contacts\": [{}], "
+                       "\"coordinates\": [{:.17g}]}}\n",
+                       disks, fmt::join(seconds, ", "), report.programmes, report.pivots, fmt::join(contacts, ", "),
+                       fmt::join(vertex.value().packing.q, ", "));
         }
     }
     return 0;

@@ -1,9 +1,11 @@
 // Error against run time: contact forces on every rung of the ladder, n = 100 to 5000, condition 1e3 to 1e12. Error
 // against a reference of 1400 bits that is made apart from the library (UMFPACK and GMP floats), the proved bound, CPU
-// milliseconds. Prints a table (Markdown); writes error-time.csv, error-time.json and, with gnuplot, error-time.svg.
-// The status is 1 when a bound is below an error. Usage:
-//   bench_precision [folder [n ...]]        default: . 100 400 1936 4900
+// time (median and range; also in units of one KLU analysis + factorisation). Writes error-time.csv and, with gnuplot,
+// error-time.svg into the folder. The status is 1 when a bound is below an error. Usage:
+//   bench_precision [--json FILE] [--repeats R] [folder [n ...]]        default: . 100 400 1936 4900, 3 repeats
 
+#include "bench/shared/references.hpp"
+#include "bench/shared/report.hpp"
 #include "oracle/reference.hpp"
 #include "oracle/structures.hpp"
 
@@ -15,7 +17,6 @@
 #include <mpfr.h>
 
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -27,12 +28,6 @@ namespace {
 
 constexpr unsigned reference_bits = 1400;
 
-double cpu_milliseconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
 struct Line {
     std::string family;
     int disks;
@@ -40,9 +35,10 @@ struct Line {
     double condition;
     std::string rung;
     int bits;
-    double milliseconds; ///< from the factors on, lower rungs included
-    double error;        ///< log10 of max |f - exact| / max |f|
-    double bound;        ///< log10 of the proved bound / max |f|
+    bench::Sample milliseconds; ///< from the factors on, lower rungs included
+    double klu;                 ///< one analysis + factorisation, milliseconds
+    double error;               ///< log10 of max |f - exact| / max |f|
+    double bound;               ///< log10 of the proved bound / max |f|
 };
 
 mpf_class read(const std::string& hexadecimal) {
@@ -64,7 +60,7 @@ double log10_of(const mpf_class& x) {
 
 /// All rungs of one structure; returns false when a bound is below an error.
 bool measure(const std::string& family, const Packing<2>& packing, const std::vector<Contact>& contacts,
-             const std::vector<double>& force, std::vector<Line>& lines) {
+             const std::vector<double>& force, int repeats, std::vector<Line>& lines) {
     const auto proved = IsostaticStructure<2>::prove(packing, contacts);
     if (!proved.ok()) {
         fmt::print("{}: {}\n", family, proved.failure().message);
@@ -80,28 +76,24 @@ bool measure(const std::string& family, const Packing<2>& packing, const std::ve
         largest = std::max(largest, mpf_class(abs(f)));
     }
     const double scale = log10_of(largest);
-    const double before = cpu_milliseconds();
+    const double before = bench::cpu_milliseconds();
     const Factorisation factorisation(proved.value());
-    const double factor_time = cpu_milliseconds() - before;
+    const double factor_time = bench::cpu_milliseconds() - before;
     InverseBoundCache cache;
     InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
     if (inverse.verdict != Verdict::proved) {
         inverse = bound_inverse_multiprecision(packing, proved.value());
     }
-    const double inverse_time = cpu_milliseconds() - before - factor_time;
+    const double inverse_time = bench::cpu_milliseconds() - before - factor_time;
     fmt::print("<!-- {}, N = {}: LU {:.2f} ms, bound of the inverse {:.1f} ms ({}) -->\n", family, contacts.size(),
                factor_time, inverse_time, inverse.verdict == Verdict::proved ? "proved" : "none");
     LadderOptions options;
     options.max_bits = 1024;
     options.exact_size = 1000;
-    ForceLadder<2> ladder(packing, proved.value(), factorisation, inverse, options);
-    const int part = ladder.add(force);
-    double spent = 0;
+    const double klu = bench::milliseconds([&] { bench::klu(proved.value().matrix()); }).median();
+    const std::size_t first = lines.size();
     bool holds = true;
-    while (true) {
-        double begin = cpu_milliseconds();
-        (void)ladder.solution(part);
-        spent += cpu_milliseconds() - begin;
+    const auto line = [&](const ForceLadder<2>& ladder, int part) {
         mpf_class worst(0, reference_bits);
         for (std::size_t l = 0; l < reference.size(); ++l) {
             const mpf_class f = read(ladder.digits(part, ContactId(l), static_cast<int>(reference_bits)));
@@ -118,15 +110,33 @@ bool measure(const std::string& family, const Packing<2>& packing, const std::ve
                        to_string(ladder.rung()), ladder.bits(), error, bound);
             holds = false;
         }
-        lines.push_back({family, static_cast<int>(packing.radius.size()), static_cast<int>(contacts.size()),
-                         2 / inverse.sigma_min, std::string(to_string(ladder.rung())), ladder.bits(), spent, error,
-                         bound});
-        begin = cpu_milliseconds();
-        if (!ladder.climb()) {
-            return holds;
+        return Line{family,
+                    static_cast<int>(packing.radius.size()),
+                    static_cast<int>(contacts.size()),
+                    2 / inverse.sigma_min,
+                    std::string(to_string(ladder.rung())),
+                    ladder.bits(),
+                    {},
+                    klu,
+                    error,
+                    bound};
+    };
+    for (int repeat = 0; repeat < repeats; ++repeat) {
+        ForceLadder<2> ladder(packing, proved.value(), factorisation, inverse, options);
+        const int part = ladder.add(force);
+        double spent = 0;
+        std::size_t rung = first;
+        bool higher = true;
+        while (higher) {
+            spent += bench::milliseconds([&] { (void)ladder.solution(part); }, 1).median();
+            if (repeat == 0) {
+                lines.push_back(line(ladder, part));
+            }
+            lines[rung++].milliseconds.add(spent);
+            spent += bench::milliseconds([&] { higher = ladder.climb(); }, 1).median();
         }
-        spent += cpu_milliseconds() - begin;
     }
+    return holds;
 }
 
 std::string power(double log10) {
@@ -136,22 +146,12 @@ std::string power(double log10) {
 void write(const std::filesystem::path& folder, const std::vector<Line>& lines) {
     std::filesystem::create_directories(folder);
     std::ofstream csv(folder / "error-time.csv");
-    std::ofstream json(folder / "error-time.json");
     csv << "family,disks,size,condition,rung,bits,milliseconds,log10_error,log10_bound\n";
-    json << "[";
-    bool first = true;
     for (const Line& l : lines) {
         const auto number = [](double x) { return std::isfinite(x) ? fmt::format("{:.4f}", x) : std::string("null"); };
         csv << fmt::format("{},{},{},{:.3e},{},{},{:.4f},{},{}\n", l.family, l.disks, l.size, l.condition, l.rung,
-                           l.bits, l.milliseconds, number(l.error), number(l.bound));
-        json << fmt::format(
-            "{}\n {{\"family\": \"{}\", \"disks\": {}, \"size\": {}, \"condition\": {:.3e}, \"rung\": "
-            "\"{}\", \"bits\": {}, \"milliseconds\": {:.4f}, \"log10_error\": {}, \"log10_bound\": {}}}",
-            first ? "" : ",", l.family, l.disks, l.size, l.condition, l.rung, l.bits, l.milliseconds, number(l.error),
-            number(l.bound));
-        first = false;
+                           l.bits, l.milliseconds.median(), number(l.error), number(l.bound));
     }
-    json << "\n]\n";
     // One curve per structure, correct digits: proved (line) and true (points) against time; the packings and the worst
     // conditioned rows of every size.
     std::ofstream data(folder / "error-time.dat");
@@ -169,42 +169,40 @@ void write(const std::filesystem::path& folder, const std::vector<Line>& lines) 
             titles.push_back(
                 fmt::format("{}, n = {}, cond {:.0e}", packing ? "packing" : "flat rows", l.disks, l.condition));
         }
-        data << fmt::format("{:.4f} {:.4f} {:.4f}\n", l.milliseconds, -l.error, -l.bound);
+        data << fmt::format("{:.4f} {:.4f} {:.4f}\n", l.milliseconds.median(), -l.error, -l.bound);
     }
     data.close();
-    std::ofstream plot(folder / "error-time.gp");
-    plot << "set terminal svg size 760,520 font 'sans,13' background 'white'\nset output 'error-time.svg'\n"
-            "set logscale xy\nset xlabel 'CPU time from the LU factors on (ms)'\n"
-            "set ylabel 'correct digits of the forces: proved (lines) and true (points)'\nset yrange [0.9:500]\n"
-            "set key bottom right font ',10'\nset grid\nplot \\\n";
+    std::string plot =
+        "set terminal svg size 760,520 font 'sans,13' background 'white'\nset output 'error-time.svg'\n"
+        "set logscale xy\nset xlabel 'CPU time from the LU factors on (ms)'\n"
+        "set ylabel 'correct digits of the forces: proved (lines) and true (points)'\nset yrange [0.9:500]\n"
+        "set key bottom right font ',10'\nset grid\nplot \\\n";
     for (std::size_t k = 0; k < titles.size(); ++k) {
-        plot << fmt::format("  'error-time.dat' index {0} using 1:3 with lines lw 1.5 dt {3} lc {1} title '{2}', \\\n"
+        plot += fmt::format("  'error-time.dat' index {0} using 1:3 with lines lw 1.5 dt {3} lc {1} title '{2}', \\\n"
                             "  '' index {0} using 1:2 with points pt 7 ps 0.5 lc {1} notitle{4}\n",
                             k, k / 2 + 1, titles[k], k % 2 + 1, k + 1 == titles.size() ? "" : ", \\");
     }
-    plot.close();
-    const auto here = std::filesystem::current_path();
-    std::filesystem::current_path(folder);
-    if (std::system("gnuplot error-time.gp") != 0) {
-        fmt::print(stderr, "no figure: gnuplot failed\n");
-    }
-    std::filesystem::current_path(here);
+    bench::draw(folder, "error-time", plot);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path folder = argc > 1 ? argv[1] : ".";
-    std::vector<int> sizes;
-    for (int k = 2; k < argc; ++k) {
-        sizes.push_back(std::atoi(argv[k]));
+    std::string where = ".";
+    std::vector<std::string> sizes{"100", "400", "1936", "4900"};
+    int repeats = 3;
+    bench::Program program("bench_precision", "error, bound and time of the forces on every rung");
+    program.option("--repeats", repeats, "of each time");
+    program.option("folder", where, "for error-time.csv and the figure");
+    program.words("sizes", sizes, "numbers of disks");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
     }
-    if (sizes.empty()) {
-        sizes = {100, 400, 1936, 4900};
-    }
+    const std::filesystem::path folder = where;
     std::vector<Line> lines;
     bool holds = true;
-    for (const int n : sizes) {
+    for (const std::string& word : sizes) {
+        const int n = std::atoi(word.c_str());
         PreparationOptions options;
         options.disks = n;
         PreparationReport<2> report;
@@ -221,7 +219,7 @@ int main(int argc, char** argv) {
             for (std::size_t i = 1; i + 2 < force.size(); i += 2) {
                 force[i] -= 1e-3;
             }
-            holds = measure("compressed packing", packing, state.value().contacts, force, lines) && holds;
+            holds = measure("compressed packing", packing, state.value().contacts, force, repeats, lines) && holds;
         }
         for (const double height : {1e-2, 1e-5, 1e-8, 1e-10}) {
             oracle::Random random(3);
@@ -231,16 +229,25 @@ int main(int argc, char** argv) {
             for (std::size_t i = 0; i < s.contacts.size(); ++i) {
                 force.push_back(i % 2 == 0 ? random.real(-0.1, 0.1) : -1);
             }
-            holds = measure(fmt::format("rows at {:g}", height), s.packing, s.contacts, force, lines) && holds;
+            holds = measure(fmt::format("rows at {:g}", height), s.packing, s.contacts, force, repeats, lines) && holds;
         }
     }
-    fmt::print("| structure | n | N | cond <= | rung | time (ms) | error | proved bound "
-               "|\n|---|---|---|---|---|---|---|---|\n");
+    bench::Table table("precision", "Forces from the LU factors on, lower rungs included:",
+                       {{"structure", "structure", ""},
+                        {"n", "n", ""},
+                        {"size", "N", ""},
+                        {"condition", "cond <=", "", "{:.0e}"},
+                        {"rung", "rung", ""},
+                        {"time", "time, ms", "ms", "{:.2f}"},
+                        {"klu", "time / KLU analysis + factorisation", "KLU", "{:.2f}"},
+                        {"error", "error", ""},
+                        {"bound", "proved bound", ""}});
     for (const Line& l : lines) {
-        fmt::print("| {} | {} | {} | {:.0e} | {} | {:.2f} | {} | {} |\n", l.family, l.disks, l.size, l.condition,
-                   l.rung == "mpfr" ? fmt::format("mpfr {}", l.bits) : l.rung, l.milliseconds, power(l.error),
-                   power(l.bound));
+        table.add({l.family, static_cast<long>(l.disks), static_cast<long>(l.size), l.condition,
+                   l.rung == "mpfr" ? fmt::format("mpfr {}", l.bits) : l.rung, l.milliseconds,
+                   l.milliseconds.over(l.klu), power(l.error), power(l.bound)});
     }
+    program.show(table);
     write(folder, lines);
-    return holds ? 0 : 1;
+    return program.finish(holds);
 }

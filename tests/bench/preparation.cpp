@@ -1,41 +1,127 @@
-// Seconds by stage of the preparation, with what it made: bench_preparation [n ...]. Default sizes 100, 400, 1936.
+// CPU and wall-clock time by stage of the preparation, with what it made, and the growth of the whole with n. The whole
+// in units of one KLU analysis + factorisation of the matrix it ends with. The status is 1 when a vertex was not
+// proved. Usage:
+//   bench_preparation [--json FILE] [--repeats R] [--seed S] [n ...]        default: 3 repeats, 100 400 1936
+#include "bench/shared/references.hpp"
+#include "bench/shared/report.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
+#include <ctime>
+#include <string>
+#include <vector>
+
+using namespace isostat;
+using bench::Sample;
+
+namespace {
+
+struct Stage {
+    Sample wall, cpu;
+    PreparationStage last;
+};
+
+/// CPU seconds of all threads: the preparation may use both cores.
+double process_seconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+} // namespace
 
 int main(int argc, char** argv) {
-    std::vector<int> sizes;
-    for (int k = 1; k < argc; ++k) {
-        sizes.push_back(std::atoi(argv[k]));
+    std::vector<std::string> sizes{"100", "400", "1936"};
+    int repeats = 3;
+    int seed = 1;
+    bench::Program program("bench_preparation", "seconds of the preparation, stage by stage");
+    program.option("--repeats", repeats, "preparations of each size");
+    program.option("--seed", seed, "of radii and positions");
+    program.words("sizes", sizes, "numbers of disks");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
     }
-    if (sizes.empty()) {
-        sizes = {100, 400, 1936};
-    }
-    int failures = 0;
-    for (const int n : sizes) {
-        isostat::PreparationOptions options;
+    bench::Table stages("stages", "Stages, median (range):",
+                        {{"n", "n", ""},
+                         {"stage", "stage", ""},
+                         {"wall", "wall, s", "s wall", "{:.3f}"},
+                         {"cpu", "CPU, s", "s, all threads", "{:.3f}"},
+                         {"iterations", "iterations", ""},
+                         {"solid_fraction", "φ", "", "{:.4f}"},
+                         {"contacts", "contacts", ""},
+                         {"residual", "residual", "", "{:.1e}"},
+                         {"completed", "completed", ""}});
+    bench::Table table("preparation", "From random disks to the proved vertex, median (range):",
+                       {{"n", "n", ""},
+                        {"wall", "wall, s", "s wall", "{:.2f}"},
+                        {"cpu", "CPU, s", "s, all threads", "{:.2f}"},
+                        {"per_disk", "CPU per disk, ms", "ms", "{:.3f}"},
+                        {"klu", "CPU / KLU analysis + factorisation", "KLU", "{:.0f}"},
+                        {"exponent", "CPU grows as n to the power of", "", "{:.2f}"},
+                        {"programmes", "linear programmes", ""},
+                        {"pivots", "pivots", ""},
+                        {"solid_fraction", "φ", "", "{:.4f}"},
+                        {"rattlers", "rattlers, %", "%", "{:.1f}"},
+                        {"min_force", "smallest force", "", "{:.1e}"},
+                        {"min_gap", "smallest gap", "", "{:.1e}"},
+                        {"sigma_min", "σ_min at least", "", "{:.1e}"}});
+    bool good = true;
+    double before = 0;
+    int size_before = 0;
+    for (const std::string& word : sizes) {
+        const int n = std::atoi(word.c_str());
+        PreparationOptions options;
         options.disks = n;
-        isostat::PreparationReport<2> report;
-        const auto result = isostat::prepare<2>(options, report);
-        fmt::print("n = {}: {}\n", n, result.ok() ? "proved vertex" : result.failure().message);
-        double total = 0;
-        fmt::print("  {:<22}{:>9}{:>9}{:>11}{:>9}{:>10}{:>10}\n", "stage", "wall s", "cpu s", "iterations", "phi",
-                   "contacts", "residual");
-        for (const isostat::PreparationStage& stage : report.stages) {
-            fmt::print("  {:<22}{:>9.3f}{:>9.3f}{:>11}{:>9.4f}{:>10}{:>10.1e}{}\n", stage.name, stage.seconds,
-                       stage.cpu_seconds, stage.iterations, stage.solid_fraction, stage.contacts, stage.residual,
-                       stage.completed ? "" : "  (not completed)");
-            total += stage.seconds;
+        options.seed = static_cast<std::uint64_t>(seed);
+        PreparationReport<2> report;
+        std::vector<Stage> seen;
+        Sample wall;
+        Sample cpu;
+        double klu = 0;
+        for (int repeat = 0; repeat < repeats; ++repeat) {
+            report = {};
+            const double wall_begin = wall_seconds();
+            const double begin = process_seconds();
+            const auto result = prepare<2>(options, report);
+            cpu.add(process_seconds() - begin);
+            wall.add(wall_seconds() - wall_begin);
+            if (!result.ok()) {
+                fmt::print(stderr, "{} disks: {}\n", n, result.failure().message);
+                good = false;
+            } else if (repeat == 0) {
+                const auto matrix = bench::matrix_of(result.value());
+                klu = bench::milliseconds([&] { bench::klu(matrix); }).median();
+            }
+            seen.resize(report.stages.size());
+            for (std::size_t k = 0; k < seen.size(); ++k) {
+                seen[k].wall.add(report.stages[k].seconds);
+                seen[k].cpu.add(report.stages[k].cpu_seconds);
+                seen[k].last = report.stages[k];
+            }
         }
-        fmt::print("  total {:.2f} s; {} programmes, {} pivots; phi {:.4f}, rattlers {} ({:.1f} %), smallest force "
-                   "{:.2e}, smallest gap {:.2e}, "
-                   "sigma_min >= {:.1e}\n",
-                   total, report.programmes, report.pivots, report.solid_fraction, report.rattlers,
-                   100.0 * report.rattlers / n, report.min_force, report.min_gap, report.sigma_min_bound);
-        failures += result.ok() ? 0 : 1;
+        for (const Stage& stage : seen) {
+            stages.add({static_cast<long>(n), stage.last.name, stage.wall, stage.cpu, stage.last.iterations,
+                        stage.last.solid_fraction, static_cast<long>(stage.last.contacts), stage.last.residual,
+                        stage.last.completed});
+        }
+        bench::Cell exponent;
+        if (size_before > 0) {
+            exponent = std::log(cpu.median() / before) / std::log(static_cast<double>(n) / size_before);
+        }
+        before = cpu.median();
+        size_before = n;
+        table.add({static_cast<long>(n), wall, cpu, cpu.over(1e-3 * n), cpu.over(1e-3 * klu), exponent,
+                   static_cast<long>(report.programmes), report.pivots, report.solid_fraction,
+                   100.0 * report.rattlers / n, report.min_force, report.min_gap, report.sigma_min_bound});
     }
-    return failures == 0 ? 0 : 1;
+    program.show(stages);
+    program.show(table);
+    return program.finish(good);
 }

@@ -2,9 +2,12 @@
 // anew: what refinement of stale factors loses. Forces: of the matrix of one equilibrium, with factors of an
 // equilibrium some arcs earlier, corrected for the contacts exchanged in between, against forces in double-double.
 // Positions: distance of the stored vertices of a run from the true ones, level by level. CPU time of one thread.
-// Usage:
-//   bench_stale_factors [--json FILE] [--equilibria E] STATE_FILE         E: 10
-#include <isostat/io/state_file.hpp>
+// Units: one KLU, one UMFPACK analysis + factorisation of the same matrix. Usage:
+//   bench_stale_factors [--json FILE] [--equilibria E] [--repeats R] [n | STATE_FILE]        1936, E: 10, R: 9
+#include "bench/shared/references.hpp"
+#include "bench/shared/report.hpp"
+#include "bench/shared/stretch.hpp"
+
 #include <isostat/statics/statics.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 #include <isostat/verified/configuration.hpp>
@@ -13,9 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
@@ -24,28 +24,6 @@
 using namespace isostat;
 
 namespace {
-
-/// CPU milliseconds of this thread.
-double now() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
-}
-
-/// Median, smallest and largest of several calls.
-struct Spread {
-    double median, low, high;
-};
-template <class Work> Spread milliseconds(Work work) {
-    std::vector<double> times;
-    for (int k = 0; k < 9; ++k) {
-        const double begin = now();
-        work();
-        times.push_back(now() - begin);
-    }
-    std::sort(times.begin(), times.end());
-    return {times[4], times.front(), times.back()};
-}
 
 struct Recorder : RunObserver<2> {
     std::vector<State<2>> states;
@@ -67,7 +45,7 @@ Recorder run(const State<2>& start, CertifyLevel level, int equilibria) {
     options.certify = level;
     const auto outcome = run_segment<2>(state, segment, 0, options, counters, recorder);
     if (!outcome.completed) {
-        fmt::print("{}: {}\n", to_string(level), outcome.failure->message);
+        fmt::print(stderr, "{}: {}\n", to_string(level), outcome.failure->message);
     }
     return recorder;
 }
@@ -115,53 +93,55 @@ std::unique_ptr<Reference> reference(const State<2>& state) {
 } // namespace
 
 int main(int argc, char** argv) {
-    std::string json;
-    std::string source;
+    std::string source = "1936";
     int equilibria = 10;
-    for (int k = 1; k < argc; ++k) {
-        const std::string word = argv[k];
-        if (k + 1 < argc && word == "--json") {
-            json = argv[++k];
-        } else if (k + 1 < argc && word == "--equilibria") {
-            equilibria = std::atoi(argv[++k]);
-        } else {
-            source = word;
-        }
+    int repeats = 9;
+    bench::Program program("bench_stale_factors", "what refinement of factors taken over loses, against its cost");
+    program.option("--equilibria", equilibria, "equilibria of the runs");
+    program.option("--repeats", repeats, "of each time");
+    program.option("start", source, "number of disks or state file");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
     }
-    if (source.empty()) {
-        return 64;
+    const auto start = bench::start(source);
+    if (!start) {
+        return 1;
     }
-    const State<2> start = read_state<2>(source).state;
-    const Recorder plain = run(start, CertifyLevel::plain, equilibria);
-    const Recorder proved = run(start, CertifyLevel::decisions, equilibria);
-    std::string rows;
-    const auto row = [&rows](const std::string& text) { rows += (rows.empty() ? "" : ", ") + text; };
-
+    const Recorder plain = run(*start, CertifyLevel::plain, equilibria);
+    const Recorder proved = run(*start, CertifyLevel::decisions, equilibria);
     const State<2>& last = plain.states.back();
     const auto end = reference(last);
-    const double klu = milliseconds([&] { const ApproximateInverse anew(end->structure.matrix()); }).median;
-    fmt::print(
-        "| factors from | contacts exchanged since | asked | passes | time / KLU analysis + factorisation | error of "
-        "the forces |\n|---|---|---|---|---|---|\n");
-    const auto line = [&](int arcs, int exchanged, const std::string& asked, int passes, Spread time, double error) {
-        fmt::print("| {} | {} | {} | {} | {:.3f} ({:.3f}-{:.3f}) | {:.1e} |\n",
-                   arcs == 0 ? "this vertex" : fmt::format("{} arcs before", arcs), exchanged, asked, passes,
-                   time.median / klu, time.low / klu, time.high / klu, error);
-        row(fmt::format(
-            "{{\"arcs\": {}, \"exchanged\": {}, \"asked\": \"{}\", \"passes\": {}, \"time\": [{:.5g}, {:.5g}, "
-            "{:.5g}], \"error\": {:.5g}}}",
-            arcs, exchanged, asked, passes, time.median / klu, time.low / klu, time.high / klu, error));
-    };
-    {
-        std::vector<double> f = end->load;
-        end->factorisation.solve_forces(f);
-        std::vector<double> again;
-        const Spread time = milliseconds([&] {
-            again = end->load;
-            end->factorisation.solve_forces(again);
-        });
-        line(0, 0, "one pass", 1, time, end->error(f));
+    if (!end) {
+        return 1;
     }
+    bench::Table forces("stale_factors",
+                        fmt::format("Forces at equilibrium {} of {} disks; error of the reference at most {:.1e}:",
+                                    plain.states.size() - 1, last.packing.disk_count(), end->bound / end->size),
+                        {{"arcs", "factors from how many arcs before", ""},
+                         {"exchanged", "contacts exchanged since", ""},
+                         {"asked", "accuracy asked", "", "{:.0e}"},
+                         {"passes", "passes", ""},
+                         {"klu", "time / KLU analysis + factorisation", "KLU", "{:.3f}"},
+                         {"umfpack", "time / UMFPACK", "UMFPACK", "{:.3f}"},
+                         {"error", "error of the forces", "", "{:.1e}"},
+                         {"refactorised", "given up, factorised", ""}});
+    const auto line = [&](int arcs, int exchanged, bench::Cell asked, int passes, bool given_up, double error,
+                          auto work) {
+        const auto& matrix = end->structure.matrix();
+        const bench::Pair to_klu = bench::in_turn(
+            work, [&] { bench::klu(matrix); }, repeats);
+        const bench::Pair to_umfpack = bench::in_turn(
+            work, [&] { bench::umfpack(matrix); }, repeats);
+        forces.add({static_cast<long>(arcs), static_cast<long>(exchanged), std::move(asked), static_cast<long>(passes),
+                    to_klu.ratio(), to_umfpack.ratio(), error, given_up});
+    };
+    std::vector<double> f = end->load;
+    end->factorisation.solve_forces(f);
+    std::vector<double> again;
+    line(0, 0, std::monostate(), 1, false, end->error(f), [&] {
+        again = end->load;
+        end->factorisation.solve_forces(again);
+    });
     int arcs = 0;
     for (std::size_t back = plain.states.size() - 1; back-- > 0;) {
         arcs += plain.arcs[back + 1];
@@ -178,42 +158,33 @@ int main(int argc, char** argv) {
             }
         }
         for (const double accuracy : {1e-6, 1e-9, 1e-12, 0x1p-51}) {
-            const Factorisation taken_over(end->structure, inverse);
-            std::vector<double> f = end->load;
-            taken_over.solve_forces_from(f, {}, accuracy);
-            const int passes = taken_over.passes();
-            if (taken_over.is_fresh()) { // it did not converge: the price of new factors besides the passes in vain
-                line(arcs, exchanged, fmt::format("{:.0e}: given up, factorised", accuracy), passes, {klu, klu, klu},
-                     end->error(f));
-                continue;
-            }
-            std::vector<double> again;
-            const Spread time = milliseconds([&] {
-                again = end->load;
-                taken_over.solve_forces_from(again, {}, accuracy);
-            });
-            line(arcs, exchanged, fmt::format("{:.0e}", accuracy), passes, time, end->error(f));
+            int passes = 0;
+            bool given_up = false;
+            // A new object each time: one that gave up keeps its new factors.
+            const auto solve = [&] {
+                const Factorisation taken_over(end->structure, inverse);
+                f = end->load;
+                taken_over.solve_forces_from(f, {}, accuracy);
+                passes = taken_over.passes();
+                given_up = taken_over.is_fresh();
+            };
+            solve();
+            line(arcs, exchanged, accuracy, passes, given_up, end->error(f), solve);
         }
     }
-    fmt::print(
-        "\nerror of the reference: at most {:.1e}\n\n| level | equilibria | largest distance of a stored coordinate "
-        "from the true vertex |\n|---|---|---|\n",
-        end->bound / end->size);
-    std::string levels;
+    bench::Table levels("levels", "Distance of the stored vertices of a run from the true ones:",
+                        {{"level", "level", ""},
+                         {"equilibria", "equilibria", ""},
+                         {"distance", "largest distance of a coordinate", "", "{:.1e}"}});
     for (const auto& [name, recorder] : {std::pair{"plain", &plain}, std::pair{"decisions", &proved}}) {
         double distance = 0;
         for (const State<2>& state : recorder->states) {
             const auto at = reference(state);
             distance = std::max(distance, at ? at->distance : std::numeric_limits<double>::infinity());
         }
-        fmt::print("| {} | {} | {:.1e} |\n", name, recorder->states.size(), distance);
-        levels +=
-            fmt::format("{}{{\"level\": \"{}\", \"distance\": {:.5g}}}", levels.empty() ? "" : ", ", name, distance);
+        levels.add({std::string(name), static_cast<long>(recorder->states.size()), distance});
     }
-    if (!json.empty()) {
-        std::ofstream(json) << fmt::format(
-            "{{\"table\": \"stale_factors\", \"reference\": {:.5g}, \"rows\": [{}], \"levels\": [{}]}}\n",
-            end->bound / end->size, rows, levels);
-    }
-    return 0;
+    program.show(forces);
+    program.show(levels);
+    return program.finish();
 }

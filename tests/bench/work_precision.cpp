@@ -2,7 +2,8 @@
 // certified reference of 320 bits. Static forces by rung of precision: bench_precision. Prints tables (Markdown);
 // writes tables.md, one CSV per table and, with gnuplot, figures. The status is 1 when an error is above its proved
 // bound.
-//   bench_work_precision [--quick] [--part events|soft|small] [folder]      --quick: seconds, n = 36 and 64
+//   bench_work_precision [--json FILE] [--quick] [--part events|soft|small] [folder]      --quick: seconds, n = 36 and
+//   64
 
 #include "bench/work_precision/report.hpp"
 
@@ -14,19 +15,16 @@
 int main(int argc, char** argv) {
     work_precision::Settings settings;
     std::string part;
-    for (int k = 1; k < argc; ++k) {
-        const std::string argument = argv[k];
-        if (argument == "--quick") {
-            settings.quick = true;
-        } else if (argument == "--part" && k + 1 < argc) {
-            part = argv[++k];
-        } else if (argument.starts_with("-")) {
-            fmt::print(stderr, "usage: bench_work_precision [--quick] [--part events|soft|small] [folder]\n");
-            return 64;
-        } else {
-            settings.folder = argument;
-        }
+    std::string folder = ".";
+    bench::Program program("bench_work_precision", "error against run time of events, stresses and usual shortcuts");
+    program.flag("--quick", settings.quick, "seconds, n = 36 and 64");
+    program.option("--part", part, "events, soft or small: only that part");
+    program.option("folder", folder, "for tables and figures");
+    if (const auto status = program.parse(argc, argv)) {
+        return *status;
     }
+    settings.program = &program;
+    settings.folder = folder;
     if (settings.quick) {
         settings.sizes = {36, 64};
         settings.seeds = {1};
@@ -49,7 +47,7 @@ int main(int argc, char** argv) {
         holds = (!wanted("events") || work_precision::events_and_stresses(settings)) && holds;
         holds = (!wanted("small") || work_precision::small_displacements(settings)) && holds;
         holds = (!wanted("soft") || work_precision::soft_grains(settings)) && holds;
-        return holds ? 0 : 1;
+        return program.finish(holds);
     } catch (const std::exception& error) {
         fmt::print(stderr, "{}\n", error.what());
         return 1;

@@ -1,4 +1,5 @@
-// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA [plain]. Prints the number of arcs.
+// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA plain|decisions. Prints the number of
+// arcs.
 
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
+#include <string>
 
 // CGAL refuses to start where the rounding mode cannot be changed, as under valgrind. This program is for counting
 // only: in place of that check it does nothing (the filters of the predicates are then wrong in principle, and no
@@ -18,10 +20,11 @@ void no_check_of_protected_intervals() {}
 }
 
 int main(int argc, char** argv) {
-    if (argc != 3 && argc != 4) {
+    using namespace isostat;
+    const std::string level = argc == 4 ? argv[3] : "";
+    if (level != "plain" && level != "decisions") {
         return 64;
     }
-    using namespace isostat;
     struct : RunObserver<2> {
     } observer;
     State<2> state = read_state<2>(argv[1]).state;
@@ -29,7 +32,7 @@ int main(int argc, char** argv) {
     Segment segment;
     segment.equilibria = std::atoi(argv[2]);
     RunOptions options;
-    options.certify = argc == 4 ? CertifyLevel::plain : CertifyLevel::decisions;
+    options.certify = level == "plain" ? CertifyLevel::plain : CertifyLevel::decisions;
     const auto outcome = run_segment<2>(state, segment, 0, options, counters, observer);
     fmt::print("{}\n", counters.steps);
     return outcome.completed ? 0 : 1;

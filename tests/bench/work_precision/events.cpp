@@ -499,7 +499,7 @@ bool events_and_stresses(const Settings& settings) {
         holds = stresses(path, n, stress) && holds;
     }
     for (const Table* table : {&reference, &newton, &steps, &integrated, &stress}) {
-        table->write(settings.folder);
+        table->write(settings);
     }
     const int n = settings.sizes.back();
     draw(

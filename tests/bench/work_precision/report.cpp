@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
@@ -15,9 +14,7 @@
 namespace work_precision {
 
 double cpu_seconds() {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+    return 1e-3 * bench::cpu_milliseconds();
 }
 
 void Table::add(std::vector<std::string> row) {
@@ -39,8 +36,22 @@ void Table::write_csv(const std::filesystem::path& folder) const {
     }
 }
 
-void Table::write(const std::filesystem::path& folder) const {
-    write_csv(folder);
+namespace {
+
+/// Numbers as numbers, "–" as nothing.
+bench::Cell cell(const std::string& field) {
+    char* end = nullptr;
+    const double x = std::strtod(field.c_str(), &end);
+    if (field == "–") {
+        return {};
+    }
+    return field.empty() || *end != '\0' ? bench::Cell(field) : bench::Cell(x);
+}
+
+} // namespace
+
+void Table::write(const Settings& settings) const {
+    write_csv(settings.folder);
     std::string text = fmt::format("**{}.** {}\n\n| {} |\n|", name_, caption_, fmt::join(heads_, " | "));
     for (std::size_t k = 0; k < heads_.size(); ++k) {
         text += "---|";
@@ -49,16 +60,25 @@ void Table::write(const std::filesystem::path& folder) const {
     for (const auto& row : rows_) {
         text += fmt::format("| {} |\n", fmt::join(row, " | "));
     }
-    std::ofstream(folder / "tables.md", std::ios::app) << text << "\n";
+    std::ofstream(settings.folder / "tables.md", std::ios::app) << text << "\n";
     fmt::print("{}\n", text);
+    std::vector<bench::Column> columns;
+    for (const std::string& head : heads_) {
+        columns.push_back({head, head, ""});
+    }
+    bench::Table kept(name_, caption_, columns);
+    for (const auto& row : rows_) {
+        std::vector<bench::Cell> cells;
+        for (const std::string& field : row) {
+            cells.push_back(cell(field));
+        }
+        kept.add(cells);
+    }
+    settings.program->keep(kept);
 }
 
 double median(std::vector<double> x) {
-    if (x.empty()) {
-        return std::numeric_limits<double>::quiet_NaN();
-    }
-    std::sort(x.begin(), x.end());
-    return x.size() % 2 == 1 ? x[x.size() / 2] : 0.5 * (x[x.size() / 2 - 1] + x[x.size() / 2]);
+    return bench::Sample(std::move(x)).median();
 }
 
 double largest(const std::vector<double>& x) {
@@ -94,16 +114,10 @@ isostat::State<2> prepared(int disks, std::uint64_t seed) {
 }
 
 void draw(const std::filesystem::path& folder, const std::string& name, const std::string& script) {
-    std::ofstream(folder / (name + ".gp")) << "set datafile separator ','\nset terminal svg size 760,520 font "
-                                              "'sans,13' background 'white'\nset grid\nset output '"
-                                           << name << ".svg'\n"
-                                           << script;
-    const auto here = std::filesystem::current_path();
-    std::filesystem::current_path(folder);
-    if (std::system(("gnuplot " + name + ".gp").c_str()) != 0) {
-        fmt::print(stderr, "no figure {}: gnuplot failed\n", name);
-    }
-    std::filesystem::current_path(here);
+    bench::draw(folder, name,
+                "set datafile separator ','\nset terminal svg size 760,520 font 'sans,13' background 'white'\nset "
+                "grid\nset output '" +
+                    name + ".svg'\n" + script);
 }
 
 } // namespace work_precision

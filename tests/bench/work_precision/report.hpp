@@ -1,6 +1,8 @@
 #pragma once
 // What the parts of bench_work_precision share: settings, tables in Markdown and CSV, statistics of a few numbers.
 
+#include "bench/shared/report.hpp"
+
 #include <isostat/contact/state.hpp>
 
 #include <filesystem>
@@ -10,6 +12,7 @@
 namespace work_precision {
 
 struct Settings {
+    bench::Program* program = nullptr; ///< gets every table that is written
     std::filesystem::path folder = ".";
     std::vector<int> sizes;           ///< disks
     std::vector<std::uint64_t> seeds; ///< of the soft grains; the other parts use the first
@@ -29,8 +32,8 @@ class Table {
     Table(std::string name, std::string caption, std::vector<std::string> heads)
         : name_(std::move(name)), caption_(std::move(caption)), heads_(std::move(heads)) {}
     void add(std::vector<std::string> row);
-    /// NAME.csv in the folder; the table in Markdown appended to `tables.md` and printed.
-    void write(const std::filesystem::path& folder) const;
+    /// NAME.csv in the folder; the table in Markdown appended to `tables.md` and printed; handed to the program.
+    void write(const Settings& settings) const;
     /// NAME.csv only: for figures.
     void write_csv(const std::filesystem::path& folder) const;
 

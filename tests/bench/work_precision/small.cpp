@@ -211,8 +211,8 @@ bool small_displacements(const Settings& settings) {
             }
         }
     }
-    single.write(settings.folder);
-    drift.write(settings.folder);
+    single.write(settings);
+    drift.write(settings);
     growth.write_csv(settings.folder);
     draw(settings.folder, "small",
          fmt::format(

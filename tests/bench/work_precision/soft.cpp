@@ -214,7 +214,7 @@ bool soft_grains(const Settings& settings) {
         fmt::print("n = {}: the exact run takes {:.3g} CPU s per equilibrium, all proofs included\n", n,
                    exact_time / std::max(1, exact_states));
     }
-    table.write(settings.folder);
+    table.write(settings);
     draw(
         settings.folder, "soft",
         "set logscale xy\nset format '10^{%T}'\nset xlabel 'CPU s per state'\nset ylabel 'median error of the "

@@ -1,0 +1,21 @@
+#pragma once
+/// \file
+/// Ends of a straight strut at a power turn (statement S4, proofs/stability.md).
+
+#include "checker/replay.hpp"
+
+#include <optional>
+
+namespace isostat::checker {
+
+/// Whether two forces may be the same at the power turn itself, where the multiplier of the coordinate held there is 0:
+/// by the balance of the disks between them the ends of a strut differ by no more than that multiplier, wherever the
+/// turn was rounded to. False without a coordinate held just now.
+bool same_at_turn(const Place& place, std::size_t a, std::size_t b);
+
+/// Order of the forces of two contacts that alone hold a group of free disks, as the infinitesimal loads on the group
+/// make it: -1 when that of `a` is smaller. 0: these loads stand across the strut, up to its bend and
+/// `turn_tolerance`. Nothing: the two do not cut off such a group.
+std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b);
+
+} // namespace isostat::checker

@@ -1,0 +1,43 @@
+#pragma once
+// The units of the tables: what other codes take for the same matrix.
+
+#include <isostat/contact/state.hpp>
+#include <isostat/sparse/pattern.hpp>
+
+namespace bench {
+
+/// One analysis and one factorisation of the matrix, factors thrown away.
+void klu(const isostat::sparse::Matrix<double>& matrix);
+void umfpack(const isostat::sparse::Matrix<double>& matrix);
+
+/// The analysis alone, and the factorisation with an analysis at hand.
+class KluAnalysis {
+  public:
+    explicit KluAnalysis(const isostat::sparse::Matrix<double>& matrix);
+    ~KluAnalysis();
+    KluAnalysis(const KluAnalysis&) = delete;
+    KluAnalysis& operator=(const KluAnalysis&) = delete;
+    /// Entries of L and U; 0 when the matrix was found singular.
+    int factorise() const;
+
+  private:
+    const isostat::sparse::Matrix<double>& matrix_;
+    void* symbolic_;
+};
+class UmfpackAnalysis {
+  public:
+    explicit UmfpackAnalysis(const isostat::sparse::Matrix<double>& matrix);
+    ~UmfpackAnalysis();
+    UmfpackAnalysis(const UmfpackAnalysis&) = delete;
+    UmfpackAnalysis& operator=(const UmfpackAnalysis&) = delete;
+    void factorise() const;
+
+  private:
+    const isostat::sparse::Matrix<double>& matrix_;
+    void* symbolic_ = nullptr;
+};
+
+/// Of the contacts of a state.
+isostat::sparse::Matrix<double> matrix_of(const isostat::State<2>& state);
+
+} // namespace bench

@@ -1,0 +1,115 @@
+#include "bench/shared/stretch.hpp"
+
+#include "bench/shared/references.hpp"
+
+#include <isostat/io/state_file.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+
+using namespace isostat;
+
+namespace bench {
+
+std::optional<State<2>> start(const std::string& source) {
+    if (source.find_first_not_of("0123456789") != std::string::npos) {
+        return read_state<2>(source).state;
+    }
+    PreparationOptions options;
+    options.disks = std::atoi(source.c_str());
+    PreparationReport<2> report;
+    auto prepared = prepare(options, report);
+    if (!prepared.ok()) {
+        fmt::print(stderr, "{}: not prepared: {}\n", source, prepared.failure().message);
+        return std::nullopt;
+    }
+    return prepared.value();
+}
+
+namespace {
+
+class Watcher final : public RunObserver<2> {
+  public:
+    Watcher(const StretchOptions& options, Stretch& stretch) : options_(options), stretch_(stretch) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        stretch_.arcs.push_back(arc);
+        if (options_.arcs > 0 && arc.step >= options_.arcs) {
+            stop = true;
+        }
+    }
+    void on_equilibrium(const EquilibriumRecord<2>&, const State<2>& state, const std::vector<double>&) override {
+        const double begin = cpu_milliseconds();
+        if (seen_++ % options_.reference_every == 0) {
+            const auto matrix = matrix_of(state);
+            klu.add(milliseconds([&] { bench::klu(matrix); }).median());
+            umfpack.add(milliseconds([&] { bench::umfpack(matrix); }).median());
+            stretch_.last = state;
+        }
+        if (options_.visit) {
+            options_.visit(state);
+        }
+        lost += cpu_milliseconds() - begin;
+    }
+
+    Sample klu, umfpack;
+    double lost = 0;
+    std::atomic<bool> stop = false;
+
+  private:
+    const StretchOptions& options_;
+    Stretch& stretch_;
+    int seen_ = 0;
+};
+
+template <class Number> Sample collect(const std::vector<Stretch>& runs, Number Stretch::*member) {
+    Sample out;
+    for (const Stretch& run : runs) {
+        out.add(run.*member);
+    }
+    return out;
+}
+
+} // namespace
+
+Stretch run_stretch(const State<2>& from, const StretchOptions& options) {
+    Stretch out;
+    Watcher watcher(options, out);
+    State<2> state = from;
+    Segment segment;
+    segment.equilibria = options.equilibria;
+    RunOptions run;
+    run.certify = options.level;
+    run.stop = &watcher.stop;
+    const double begin = cpu_milliseconds();
+    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, run, out.counters, watcher);
+    const double total = cpu_milliseconds() - begin - watcher.lost;
+    out.milliseconds_per_arc = total / static_cast<double>(std::max(1L, out.counters.steps));
+    out.klu = watcher.klu.median();
+    out.umfpack = watcher.umfpack.median();
+    if (outcome.failure && outcome.failure->kind != FailureKind::interrupted) {
+        out.failure = outcome.failure->message;
+    }
+    return out;
+}
+
+bool same_events(const Stretch& a, const Stretch& b) {
+    return std::equal(a.arcs.begin(), a.arcs.end(), b.arcs.begin(), b.arcs.end(),
+                      [](const auto& x, const auto& y) { return x.opened == y.opened && x.closed == y.closed; });
+}
+
+Sample Stretches::per_arc() const {
+    return collect(runs, &Stretch::milliseconds_per_arc);
+}
+Sample Stretches::klu() const {
+    return collect(runs, &Stretch::klu);
+}
+Sample Stretches::umfpack() const {
+    return collect(runs, &Stretch::umfpack);
+}
+
+} // namespace bench

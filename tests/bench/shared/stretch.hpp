@@ -1,0 +1,53 @@
+#pragma once
+// A stretch of trajectory, timed, with the units of the tables measured on its own matrices on the way.
+
+#include "bench/shared/sample.hpp"
+
+#include <isostat/contact/state.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace bench {
+
+/// What a word of the command line names: a number of disks (prepared with seed 1), or a state file. Says why when
+/// there is nothing.
+std::optional<isostat::State<2>> start(const std::string& source);
+
+struct StretchOptions {
+    isostat::CertifyLevel level = isostat::CertifyLevel::decisions;
+    int equilibria = 30;
+    long arcs = 0;            ///< ends after this many arcs, wherever that is; 0: at the last equilibrium
+    int reference_every = 10; ///< equilibria from one measurement of the units to the next
+    /// Called at every equilibrium; its time is not the run's.
+    std::function<void(const isostat::State<2>&)> visit;
+};
+
+struct Stretch {
+    isostat::RunCounters counters;
+    std::vector<isostat::ArcRecord<2>> arcs;
+    isostat::State<2> last;          ///< last equilibrium where the units were measured
+    double milliseconds_per_arc = 0; ///< all of the run, equilibria included, shared out among its arcs
+    double klu = 0, umfpack = 0;     ///< medians over the equilibria: one analysis + factorisation, milliseconds
+    std::string failure;             ///< empty: completed
+};
+
+/// Whether the same contacts open and close, in the same order.
+bool same_events(const Stretch& a, const Stretch& b);
+
+/// CPU time of this thread; the time that the units and `visit` take is not counted.
+Stretch run_stretch(const isostat::State<2>& from, const StretchOptions& options);
+
+/// Repeats of the same stretch.
+struct Stretches {
+    std::vector<Stretch> runs;
+    [[nodiscard]] const Stretch& front() const { return runs.front(); }
+    [[nodiscard]] Sample per_arc() const;
+    [[nodiscard]] Sample klu() const;
+    [[nodiscard]] Sample umfpack() const;
+};
+
+} // namespace bench

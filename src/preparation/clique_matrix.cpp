@@ -14,8 +14,9 @@ struct CliqueMatrix::Factor {
         common.final_ll = 1;
         common.print = 0;
         common.quick_return_if_not_posdef = 1;
-        common.nmethods = 1;
+        common.nmethods = 2; // the one with less fill: nested dissection from some thousand disks on
         common.method[0].ordering = CHOLMOD_AMD;
+        common.method[1].ordering = CHOLMOD_NESDIS;
     }
     Factor(const Factor&) = delete;
     Factor& operator=(const Factor&) = delete;

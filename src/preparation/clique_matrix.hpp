@@ -9,7 +9,7 @@
 namespace isostat::preparation {
 
 /// Sum over l of blocks on the columns column[start[l]] ... column[start[l + 1] - 1], plus a diagonal. Pattern and
-/// fill-in order once (AMD), numbers and factor as often as asked. CHOLMOD without BLAS, so that the bits do not depend
+/// fill-in order once (AMD or nested dissection), numbers and factor as often as asked. CHOLMOD without BLAS, so that the bits do not depend
 /// on a library's kernels. Cost of a factor: O(n^1.5) for planar contact graphs, O(n log n) memory.
 class CliqueMatrix {
   public:

@@ -20,8 +20,8 @@ namespace isostat {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Relative accuracy of forces on the way that decides nearly every sign and order.
-constexpr double enough_to_decide = 1e-8;
+/// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
+constexpr double enough_to_decide = 1e-10;
 
 /// The same choice for the same step of a run, also after a resume (splitmix64 finaliser).
 std::uint64_t bits_for(std::uint64_t seed, long step) {

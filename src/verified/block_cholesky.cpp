@@ -76,37 +76,59 @@ void BlockCholesky::set(const sparse::Matrix<double>& h, FillOrder& order) {
     }
 }
 
-/// The entries of each contact by blocks (rows are sorted: those of one block follow each other), and by block.
+/// The entries of each contact by blocks (rows are sorted: those of one block follow each other), and the blocks of
+/// H H^T that they make.
 void BlockCholesky::arrange(const std::vector<int>& order) {
     position_.resize(blocks_);
     for (std::size_t k = 0; k < blocks_; ++k) {
         position_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     }
+    diagonal_.assign(blocks_, Block{});
+    if (h_->rows % 2 != 0) { // the last row is not there: coupled to nothing
+        diagonal_[static_cast<std::size_t>(position_[blocks_ - 1])].value[3] = 1;
+    }
+    pairs_.clear();
+    column_start_.assign(blocks_ + 1, 0);
+    row_start_.assign(blocks_ + 1, 0);
     const auto contacts = static_cast<std::size_t>(h_->cols);
-    met_start_.assign(blocks_ + 1, 0);
-    part_start_.resize(contacts + 1);
-    parts_.clear();
-    parts_.reserve(h_->row.size());
     for (std::size_t l = 0; l < contacts; ++l) {
-        part_start_[l] = static_cast<int>(parts_.size());
+        std::array<Part, 8> parts{};
+        std::size_t count = 0;
         int last = -1;
         for (auto e = static_cast<std::size_t>(h_->start[l]); e < static_cast<std::size_t>(h_->start[l + 1]); ++e) {
             const int block = h_->row[e] / 2;
             if (block != last) {
-                const int place = position_[static_cast<std::size_t>(block)];
-                parts_.push_back({static_cast<int>(l), place, {0, 0}});
-                ++met_start_[static_cast<std::size_t>(place) + 1];
+                parts[count++].place = position_[static_cast<std::size_t>(block)];
                 last = block;
             }
-            parts_.back().value[static_cast<std::size_t>(h_->row[e] % 2)] = h_->value[e];
+            parts[count - 1].value[static_cast<std::size_t>(h_->row[e] % 2)] = h_->value[e];
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::array<double, 2>& v = parts[k].value;
+            std::array<double, 4>& d = diagonal_[static_cast<std::size_t>(parts[k].place)].value;
+            d[0] += v[0] * v[0];
+            d[1] += v[1] * v[0];
+            d[2] += v[0] * v[1];
+            d[3] += v[1] * v[1];
+            for (std::size_t m = k + 1; m < count; ++m) {
+                const bool later = parts[m].place > parts[k].place;
+                pairs_.push_back({later ? parts[k] : parts[m], later ? parts[m] : parts[k]});
+                ++column_start_[static_cast<std::size_t>(pairs_.back().column.place) + 1];
+                ++row_start_[static_cast<std::size_t>(pairs_.back().row.place) + 1];
+            }
         }
     }
-    part_start_[contacts] = static_cast<int>(parts_.size());
-    std::partial_sum(met_start_.begin(), met_start_.end(), met_start_.begin());
-    met_.resize(parts_.size());
-    next_.assign(met_start_.begin(), met_start_.end() - 1);
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-        met_[static_cast<std::size_t>(next_[static_cast<std::size_t>(parts_[p].place)]++)] = static_cast<int>(p);
+    std::partial_sum(column_start_.begin(), column_start_.end(), column_start_.begin());
+    std::partial_sum(row_start_.begin(), row_start_.end(), row_start_.begin());
+    by_column_.resize(pairs_.size());
+    by_row_.resize(pairs_.size());
+    next_.assign(column_start_.begin(), column_start_.end() - 1);
+    next_row_.assign(row_start_.begin(), row_start_.end() - 1);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const Pair& pair = pairs_[p];
+        by_column_[static_cast<std::size_t>(next_[static_cast<std::size_t>(pair.column.place)]++)] =
+            static_cast<int>(p);
+        by_row_[static_cast<std::size_t>(next_row_[static_cast<std::size_t>(pair.row.place)]++)] = pair.column.place;
     }
     analyse();
 }
@@ -131,8 +153,6 @@ void BlockCholesky::analyse() {
     std::vector<Column> columns(blocks_);
     across_start_.resize(blocks_ + 1);
     std::size_t entries = 0;
-    const Part* const parts = parts_.data();
-    const int* const part_start = part_start_.data();
     for (std::size_t i = 0; i < blocks_; ++i) {
         const int row = static_cast<int>(i);
         across_start_[i] = static_cast<int>(entries);
@@ -141,18 +161,15 @@ void BlockCholesky::analyse() {
             column_.resize(2 * entries + 8 * blocks_);
         }
         int* const found = column_.data();
-        for (auto m = static_cast<std::size_t>(met_start_[i]); m < static_cast<std::size_t>(met_start_[i + 1]); ++m) {
-            const auto contact = static_cast<std::size_t>(parts[met_[m]].contact);
-            for (int p = part_start[contact]; p < part_start[contact + 1]; ++p) {
-                int j = parts[p].place;
-                while (j < row && columns[static_cast<std::size_t>(j)].seen != row) {
-                    Column& column = columns[static_cast<std::size_t>(j)];
-                    column.seen = row;
-                    ++column.count;
-                    found[entries++] = j;
-                    column.parent = column.parent == none ? row : column.parent;
-                    j = column.parent;
-                }
+        for (int p = row_start_[i]; p < row_start_[i + 1]; ++p) {
+            int j = by_row_[static_cast<std::size_t>(p)];
+            while (columns[static_cast<std::size_t>(j)].seen != row) {
+                Column& column = columns[static_cast<std::size_t>(j)];
+                column.seen = row;
+                ++column.count;
+                found[entries++] = j;
+                column.parent = column.parent == none ? row : column.parent;
+                j = column.parent;
             }
         }
     }
@@ -194,7 +211,6 @@ bool BlockCholesky::factorise(double shift) {
     const int* const row = row_.data();
     const int* const column = column_.data();
     const int* const across = across_.data();
-    const int absent = 2 * static_cast<int>(blocks_) - h_->rows; // 1: the last row is not there, coupled to nothing
     for (std::size_t j = 0; j < blocks_; ++j) {
         const auto begin = static_cast<std::size_t>(start[j]);
         const auto count = static_cast<std::size_t>(start[j + 1]) - begin;
@@ -203,28 +219,19 @@ bool BlockCholesky::factorise(double shift) {
         for (std::size_t k = 0; k < count; ++k) {
             place[static_cast<std::size_t>(row[begin + k])] = static_cast<int>(k) + 1;
         }
-        for (auto m = static_cast<std::size_t>(met_start_[j]); m < static_cast<std::size_t>(met_start_[j + 1]); ++m) {
-            const Part& own = parts_[static_cast<std::size_t>(met_[m])];
-            const auto contact = static_cast<std::size_t>(own.contact);
-            for (auto p = static_cast<std::size_t>(part_start_[contact]);
-                 p < static_cast<std::size_t>(part_start_[contact + 1]); ++p) {
-                const Part& other = parts_[p];
-                if (other.place < static_cast<int>(j)) {
-                    continue;
-                }
-                std::array<double, 4>& w =
-                    work[static_cast<std::size_t>(place[static_cast<std::size_t>(other.place)])].value;
-                w[0] += other.value[0] * own.value[0];
-                w[1] += other.value[1] * own.value[0];
-                w[2] += other.value[0] * own.value[1];
-                w[3] += other.value[1] * own.value[1];
-            }
-        }
-        if (absent != 0 && static_cast<int>(j) == position_[blocks_ - 1]) {
-            work[0].value[3] = 1;
-        }
+        work[0] = diagonal_[j];
         work[0].value[0] -= shift;
         work[0].value[3] -= shift;
+        for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) {
+            const Pair& pair = pairs_[static_cast<std::size_t>(by_column_[static_cast<std::size_t>(p)])];
+            std::array<double, 4>& w = work[place[pair.row.place]].value;
+            const std::array<double, 2>& own = pair.column.value;
+            const std::array<double, 2>& other = pair.row.value;
+            w[0] += other[0] * own[0];
+            w[1] += other[1] * own[0];
+            w[2] += other[0] * own[1];
+            w[3] += other[1] * own[1];
+        }
         // work -= m l^T for the columns of this row, in the order of the scalar operations: the bits do not depend on
         // the width. Two columns at a time when one is the parent of the other and has as many rows left: it has the
         // same rows then.

@@ -32,9 +32,12 @@ class BlockCholesky {
     };
     /// What a contact has in one block.
     struct Part {
-        int contact;
-        int place;                   ///< of the block in the order
-        std::array<double, 2> value; ///< 0 where nothing is stored
+        int place = 0;                 ///< of the block in the order
+        std::array<double, 2> value{}; ///< 0 where nothing is stored
+    };
+    /// Two blocks that share a contact.
+    struct Pair {
+        Part column, row; ///< column.place < row.place
     };
 
     void arrange(const std::vector<int>& order);
@@ -42,15 +45,16 @@ class BlockCholesky {
 
     const sparse::Matrix<double>* h_ = nullptr;
     std::size_t blocks_ = 0;
-    std::vector<int> position_;        ///< of each block in the order
-    std::vector<int> part_start_;      ///< by contact
-    std::vector<Part> parts_;          ///< by contacts
-    std::vector<int> met_start_, met_; ///< by place: parts in that block
-    std::vector<int> start_, row_;     ///< L without its diagonal, by columns, rows ascending
-    std::vector<int> across_start_;    ///< by row of L:
-    std::vector<int> column_, across_; ///< columns of its entries, and their places in `row_`
+    std::vector<int> position_;                 ///< of each block in the order
+    std::vector<Block> diagonal_;               ///< of H H^T, in the order
+    std::vector<Pair> pairs_;                   ///< by contacts
+    std::vector<int> column_start_, by_column_; ///< pairs by column
+    std::vector<int> row_start_, by_row_;       ///< columns of the pairs by row
+    std::vector<int> start_, row_;              ///< L without its diagonal, by columns, rows ascending
+    std::vector<int> across_start_;             ///< by row of L:
+    std::vector<int> column_, across_;          ///< columns of its entries, and their places in `row_`
     std::vector<Block> value_, work_;
-    std::vector<int> place_, next_;
+    std::vector<int> place_, next_, next_row_;
 };
 
 } // namespace isostat

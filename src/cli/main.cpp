@@ -3,6 +3,7 @@
 #include "cli/interrupt.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/memory.hpp>
 #include <isostat/core/threads.hpp>
 
 #include <CLI/CLI.hpp>
@@ -370,6 +371,7 @@ struct Program {
 } // namespace
 
 int main(int argc, char** argv) {
+    isostat::keep_freed_memory();
     try {
         Program program(quoted(argc, argv));
         try {

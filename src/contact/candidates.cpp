@@ -57,6 +57,19 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, 
     }
     // 1e-14 covers the rounding of the differences and of the norm; a NaN gives false.
     const double limit = (0.5 * reach - radius) * (1 - 1e-14);
+    if (limit > 0x1p-450 && limit < 0x1p500) { // no square that matters under- or overflows
+        const double square_limit = limit * limit;
+        bool within = true;
+        for (std::size_t k = 0; k < reference.size(); k += Dim) {
+            double square = 0;
+            for (std::size_t a = 0; a < Dim; ++a) {
+                const double d = packing.q[k + a] - reference[k + a];
+                square += d * d;
+            }
+            within = within && square < square_limit;
+        }
+        return within;
+    }
     for (std::size_t k = 0; k < reference.size(); k += Dim) {
         double farthest = 0;
         for (std::size_t a = 0; a < Dim; ++a) {

@@ -89,6 +89,22 @@ template <int Dim> double gap(const Packing<Dim>& packing, const Contact& contac
 
 template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, const Contact& contact) {
     GapGradient<Dim> g;
+    if (contact.kind == ContactKind::disk_disk) {
+        const std::array<double, Dim> d = centre_line(packing, contact);
+        const double length = plain_norm<Dim>(d);
+        if (in_range(length)) {
+            for (int a = 0; a < Dim; ++a) {
+                const auto k = static_cast<std::size_t>(a);
+                const double normal = d[k] / length;
+                g.coordinate[k] = Dim * contact.i + a;
+                g.coordinate[Dim + k] = Dim * contact.j + a;
+                g.value[k] = -normal;
+                g.value[Dim + k] = normal;
+            }
+            g.count = 2 * Dim;
+            return g;
+        }
+    }
     const auto add = [&g](int coordinate, double value) {
         g.coordinate[static_cast<std::size_t>(g.count)] = coordinate;
         g.value[static_cast<std::size_t>(g.count)] = value;
@@ -97,11 +113,8 @@ template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, co
     switch (contact.kind) {
     case ContactKind::disk_disk: {
         std::array<double, Dim> d = centre_line(packing, contact);
-        double length = plain_norm<Dim>(d);
-        if (!in_range(length)) {
-            normalise<Dim>(d);
-            length = plain_norm<Dim>(d);
-        }
+        normalise<Dim>(d); // squares under- or overflow
+        const double length = plain_norm<Dim>(d);
         for (int a = 0; a < Dim; ++a) {
             add(Dim * contact.i + a, -d[static_cast<std::size_t>(a)] / length);
         }

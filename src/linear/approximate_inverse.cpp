@@ -1,3 +1,5 @@
+#include "linear/solve_schedule.hpp"
+
 #include <isostat/core/work.hpp>
 #include <isostat/linear/approximate_inverse.hpp>
 
@@ -6,6 +8,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace isostat {
 
@@ -64,8 +67,11 @@ struct ApproximateInverse::Base {
     klu_numeric* numeric = nullptr;
     sparse::Matrix<double> matrix;
     std::vector<int> block_rows, block_columns; ///< empty: the whole matrix
+    std::vector<int> row_order, column_order;   ///< of the last full analysis, exchanged columns last
+    int entries_then = 0;                       ///< of the factors made with it first
     explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
         klu_defaults(&common);
+        common.ordering = sparse::fill_reducing_order(matrix.rows);
         // Unit columns need no scaling, and without it nothing depends on the size of the numbers.
         common.scale = 0;
         // A regular matrix may still underflow to a zero pivot: keep going, the residual bounds of the users will tell.
@@ -77,6 +83,7 @@ struct ApproximateInverse::Base {
                                  symbolic, &common);
         }
     }
+    [[nodiscard]] int entries() const { return numeric != nullptr ? numeric->lnz + numeric->unz : 0; }
     Base(const Base&) = delete;
     Base& operator=(const Base&) = delete;
     ~Base() {
@@ -106,7 +113,48 @@ ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std
                                                : klu_analyze(matrix.rows, mutable_data(matrix.start),
                                                              mutable_data(matrix.row), &base->common);
     base->factorise();
+    if (base->symbolic != nullptr) {
+        base->row_order.assign(base->symbolic->P, base->symbolic->P + matrix.rows);
+        base->column_order.assign(base->symbolic->Q, base->symbolic->Q + matrix.rows);
+        base->entries_then = base->entries();
+    }
     base_ = std::move(base);
+}
+
+ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& matrix) const {
+    if (!valid() || base_->column_order.size() != static_cast<std::size_t>(matrix.rows) ||
+        base_->entries() > base_->entries_then + base_->entries_then / 5) {
+        return ApproximateInverse(matrix);
+    }
+    count_work(Work::factorisations);
+    auto base = std::make_shared<Base>(matrix);
+    base->row_order = base_->row_order;
+    base->column_order = base_->column_order;
+    base->entries_then = base_->entries_then;
+    // A column that was exchanged goes to the end, with its row: there it fills little, whatever it connects. Its
+    // pivot need not be an entry of the matrix.
+    std::vector<unsigned char> last(base->column_order.size(), 0);
+    for (const auto& exchange : exchanges_) {
+        last[static_cast<std::size_t>(exchange->slot)] = 1;
+    }
+    std::vector<int> position(last.size());
+    std::iota(position.begin(), position.end(), 0);
+    std::stable_partition(position.begin(), position.end(), [&](int k) {
+        return last[static_cast<std::size_t>(base_->column_order[static_cast<std::size_t>(k)])] == 0;
+    });
+    for (std::size_t k = 0; k < position.size(); ++k) {
+        base->row_order[k] = base_->row_order[static_cast<std::size_t>(position[k])];
+        base->column_order[k] = base_->column_order[static_cast<std::size_t>(position[k])];
+    }
+    base->symbolic = klu_analyze_given(matrix.rows, mutable_data(base->matrix.start), mutable_data(base->matrix.row),
+                                       base->row_order.data(), base->column_order.data(), &base->common);
+    base->factorise();
+    if (base->common.numerical_rank < matrix.rows && base->common.numerical_rank >= 0) {
+        return ApproximateInverse(matrix); // a block was left without pivot
+    }
+    ApproximateInverse inverse;
+    inverse.base_ = std::move(base);
+    return inverse;
 }
 
 ApproximateInverse ApproximateInverse::of_block(const sparse::Matrix<double>& matrix, std::vector<int> rows,
@@ -184,6 +232,9 @@ ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<
     }
     ApproximateInverse next(*this);
     next.exchanges_.push_back(std::move(exchange));
+    if (next.schedule_ == nullptr && valid() && base_->block_rows.empty()) {
+        next.schedule_ = std::make_shared<const SolveSchedule>(*base_->symbolic, *base_->numeric);
+    }
     next.mechanism_.reset();
     next.mechanism_slot_ = -1;
     return next;
@@ -202,7 +253,9 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {
         wanted[k] = rhs[static_cast<std::size_t>(exchanges_[k]->slot)];
     }
-    if (base_->block_rows.empty()) {
+    if (schedule_ != nullptr) {
+        schedule_->solve_transposed(rhs);
+    } else if (base_->block_rows.empty()) {
         klu_tsolve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
     } else {
         in_block(rhs, base_->block_columns, base_->block_rows, [&](std::vector<double>& x) {
@@ -255,7 +308,9 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
         exchange.change.add_to(rhs, -power / exchange.speed);
     }
     klu_common common = base_->common;
-    if (base_->block_rows.empty()) {
+    if (schedule_ != nullptr) {
+        schedule_->solve(rhs);
+    } else if (base_->block_rows.empty()) {
         klu_solve(base_->symbolic, base_->numeric, base_->matrix.rows, 1, rhs.data(), &common);
     } else {
         in_block(rhs, base_->block_rows, base_->block_columns, [&](std::vector<double>& x) {

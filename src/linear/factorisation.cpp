@@ -62,6 +62,8 @@ struct Factorisation::Implementation {
     bool fresh = true;
     int passes = 0;
     std::vector<double> x, r;
+    using Enough = std::function<bool(std::span<const double>, double)>;
+    double error = 0; ///< estimated, of the last refinement that ended because it was enough
 
     enum class Side { forces, velocities };
 
@@ -101,7 +103,8 @@ struct Factorisation::Implementation {
     /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
     /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
     /// refinement and converges where that does not.
-    bool refined(Side side, std::span<double> rhs, std::span<const double> guess = {}, double accuracy = 4 * u) {
+    bool refined(Side side, std::span<double> rhs, std::span<const double> guess = {}, double accuracy = 4 * u,
+                 const Enough& enough = {}) {
         const std::size_t n = rhs.size();
         // By a power of two near 1, which changes no bit: squares neither under- nor overflow, whatever the units are.
         int exponent = 0;
@@ -109,6 +112,7 @@ struct Factorisation::Implementation {
         exponent = std::clamp(exponent, -1000, 1000);
         const double up = std::ldexp(1.0, -exponent);
         const double down = std::ldexp(1.0, exponent);
+        error = 0;
         x.assign(n, 0.0);
         r.resize(n);
         std::transform(rhs.begin(), rhs.end(), r.begin(), [up](double c) { return c * up; });
@@ -162,6 +166,16 @@ struct Factorisation::Implementation {
                     return false;
                 }
                 return deliver();
+            }
+            if (enough && k > 0 && change < 0.1 * previous) {
+                const double left = change * change / previous;
+                if (largest(r) <= 100 * left) {
+                    deliver();
+                    if (enough(rhs, left * down)) {
+                        error = left * down;
+                        return true;
+                    }
+                }
             }
             previous = change;
         }
@@ -253,6 +267,18 @@ void Factorisation::solve_forces_from(std::span<double> rhs, std::span<const dou
     if (self.fresh || !self.refined(Implementation::Side::forces, rhs, guess, accuracy)) {
         self.solve(Implementation::Side::forces, rhs, 1);
     }
+}
+
+double Factorisation::solve_forces_until(std::span<double> rhs, std::span<const double> guess,
+                                         const std::function<bool(std::span<const double>, double)>& enough) const {
+    Implementation& self = *implementation_;
+    const std::vector<double> load(rhs.begin(), rhs.end());
+    if (!self.fresh && self.refined(Implementation::Side::forces, rhs, guess, 4 * u, enough)) {
+        return self.error;
+    }
+    std::copy(load.begin(), load.end(), rhs.begin());
+    self.solve(Implementation::Side::forces, rhs, 1);
+    return 0;
 }
 
 void Factorisation::solve_velocities(std::span<double> rhs, int count) const {

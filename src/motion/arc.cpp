@@ -1,3 +1,4 @@
+#include "motion/acceleration.hpp"
 #include "motion/geometry.hpp"
 
 #include <isostat/contact/contact_set.hpp>
@@ -139,7 +140,9 @@ template <int Dim> class Follower {
     template <class Row, class Target> bool converge(Packing<Dim>& at, Row row, Target target) {
         const double rounding = 2 * grid_step(at);
         double previous = infinity;
+        double rate = infinity;
         last_iterations_ = 0;
+        acceleration_.clear();
         for (int k = 0; k < 60; ++k) {
             chord([&](const Contact& c) { return quick_gap(at, c); }, [&](const Vector& v) { return row(at, v); },
                   target(at));
@@ -147,17 +150,23 @@ template <int Dim> class Follower {
             if (!(size < infinity)) {
                 return false;
             }
+            // About linear convergence: the next change is this one times the worse of the last two ratios.
+            const double ratio = size / previous;
+            const bool last = size <= rounding || (k > 1 && size * std::max(ratio, rate) <= 0.5 * rounding);
+            rate = ratio;
+            if (!last && size > 64 * rounding) {
+                acceleration_.improve(y_);
+            }
             for (std::size_t i = 0; i < y_.size(); ++i) {
                 at.q[i] += y_[i];
             }
             ++last_iterations_;
-            // The chord iteration converges linearly: the next change would be size^2 / previous.
-            if (size <= rounding || (k > 1 && size * size <= 0.1 * rounding * previous)) {
+            if (last) {
                 return true;
             }
             // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
             if (k > 3 && size > (factorisation_->is_fresh() ? 0.5 : 0.9) * previous) {
-                return size < 1e-9 * at.min_radius();
+                return size <= 64 * rounding;
             }
             previous = size;
         }
@@ -181,22 +190,13 @@ template <int Dim> class Follower {
     }
 
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
-    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy,
-                                     const sparse::Matrix<double>* known = nullptr) {
-        const DofMap<Dim>& dofs = structure_->dofs();
-        std::optional<sparse::Matrix<double>> made;
-        const sparse::Matrix<double>& h =
-            known != nullptr ? *known : made.emplace(contact_matrix(at, dofs, structure_->contacts()));
+    std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
+        const auto& contacts = structure_->contacts();
         Vector t = tangent_;
         double previous = infinity;
         for (int k = 0; k < 40; ++k) {
             for (std::size_t l = 0; l < size_; ++l) {
-                double approach = 0;
-                for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
-                    const auto s = static_cast<std::size_t>(e);
-                    approach += h.value[s] * t[static_cast<std::size_t>(dofs.coordinate_of(h.row[s]))];
-                }
-                rhs_[l] = l == slot_ ? 0.0 : -approach;
+                rhs_[l] = l == slot_ ? 0.0 : gap_rate(at, contacts[l], t);
             }
             finish_chord([&](const Vector& v) { return v[fastest_]; }, 0.0);
             const double size = largest(y_);
@@ -213,6 +213,17 @@ template <int Dim> class Follower {
             previous = size;
         }
         return previous < 1e-4 * largest(t) ? std::optional<Vector>(t) : std::nullopt;
+    }
+
+    /// The same after a step of length s, from the way it went: the third derivative is what the predictor missed.
+    Vector extrapolated_tangent(const Packing<Dim>& at, double s) const {
+        const double third = s > 1e-5 * step_limit_ ? 3 / s : 0.0; // else rounding
+        Vector t(tangent_.size());
+        for (std::size_t k = 0; k < t.size(); ++k) {
+            const double missed = at.q[k] - (q_.q[k] + s * (tangent_[k] + 0.5 * s * curvature_[k]));
+            t[k] = tangent_[k] + s * curvature_[k] + third * missed;
+        }
+        return t;
     }
 
     double power_of(const Packing<Dim>& at, const Vector& t) const {
@@ -243,6 +254,12 @@ template <int Dim> class Follower {
             return 3 * product / std::sqrt(square);
         };
         const double p1 = s * power_of(q_, curvature_);
+        // With three of the four the lowest value is known to the size of the rest: a pass for the fourth only where
+        // that could matter.
+        const double rest = std::abs(p_end - p_start - p1);
+        if (std::min(p_start, p_start + p1) > 2 * rest) {
+            return std::nullopt;
+        }
         chord(
             third, [&](const Vector& v) { return v[fastest_]; }, 0.0);
         const double p2 = 0.5 * s * s * power_of(q_, y_);
@@ -281,8 +298,10 @@ template <int Dim> class Follower {
     }
 
     void list_candidates() {
-        if (!candidates_.covers(q_) || reach_left() < 0.5 * candidates_.reach / 2) {
+        reach_left_ = reach_left();
+        if (!(reach_left_ >= 0.25 * candidates_.reach)) {
             candidates_ = find_candidates(q_, candidate_fraction);
+            reach_left_ = reach_left();
             active_.clear();
         }
         if (active_.empty()) {
@@ -305,16 +324,20 @@ template <int Dim> class Follower {
 
     /// Displacement that the candidate list still allows.
     double reach_left() const {
+        if (candidates_.reference.size() != q_.q.size()) {
+            return -1;
+        }
+        const double unit = 1 / candidates_.reach; // squares neither under- nor overflow, whatever the units are
         double moved = 0;
         for (std::size_t k = 0; k + Dim <= q_.q.size(); k += Dim) {
             double square = 0;
             for (std::size_t a = 0; a < Dim; ++a) {
-                const double d = q_.q[k + a] - candidates_.reference[k + a];
+                const double d = unit * (q_.q[k + a] - candidates_.reference[k + a]);
                 square += d * d;
             }
             moved = std::max(moved, square);
         }
-        return 0.5 * candidates_.reach - std::sqrt(moved);
+        return candidates_.reach * (0.5 - std::sqrt(moved));
     }
 
     Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power, Vector tangent) {
@@ -421,6 +444,20 @@ template <int Dim> class Follower {
         return found;
     }
 
+    /// With the tangent that the event needs: where a dip or the sign of the power is not clear from an extrapolation,
+    /// it is solved for.
+    std::optional<Point> tangent_at_event(Packing<Dim> at, double s, const Contact& closing) {
+        if (options_.extrapolate_tangent) {
+            Vector t = extrapolated_tangent(at, s);
+            const double p_start = power_of(q_, tangent_);
+            if (power_of(at, t) > 0.1 * std::abs(p_start) && !suspicious_dip(at, t, s, closing)) {
+                return Point{std::move(at), std::move(t)};
+            }
+        }
+        auto t = tangent_at(at, end_tangent_accuracy);
+        return t ? std::optional(Point{std::move(at), std::move(*t)}) : std::nullopt;
+    }
+
     Result<Arc<Dim>> power_turn(double s_low, double p_low, double s_high, double p_high);
 
     const IsostaticStructure<Dim>* structure_;
@@ -439,6 +476,8 @@ template <int Dim> class Follower {
     std::size_t fastest_ = 0;
     std::vector<Contact> active_;
     Vector start_gap_, start_rate_; ///< of the active candidates at q_
+    Acceleration acceleration_;
+    double reach_left_ = 0; ///< displacement that the candidates allow from q_
     double step_limit_ = 0;
     int last_iterations_ = 0;
     int steps_ = 0;
@@ -508,7 +547,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     bool moved = false;                // q_ is no longer the start
     if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
         choose_fastest();
-        if (auto t = tangent_at(q_, end_tangent_accuracy, &structure_->matrix())) {
+        if (auto t = tangent_at(q_, end_tangent_accuracy)) {
             tangent_ = std::move(*t);
         } else if (auto failure = renew()) {
             return *failure;
@@ -546,7 +585,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
             }
         }
         // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
-        const double reach = 0.9 * reach_left() / (1.3 * std::sqrt(static_cast<double>(Dim)));
+        const double reach = 0.9 * reach_left_ / (1.3 * std::sqrt(static_cast<double>(Dim)));
         const double s_max = std::min({step_limit_ * shrink, reach, forced_step, power_step});
         ++steps_;
         bool accepted = false;
@@ -598,11 +637,10 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                         continue;
                     }
                 }
-                auto t = tangent_at(at, end_tangent_accuracy);
-                if (!t) {
+                point = tangent_at_event(std::move(at), s, closing);
+                if (!point) {
                     break;
                 }
-                point = Point{std::move(at), std::move(*t)};
                 accepted = true;
             }
             if (!accepted) {

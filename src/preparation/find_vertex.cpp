@@ -84,7 +84,7 @@ template <int Dim> class VertexSearch {
 
     Result<State<Dim>> run() {
         const std::vector<double> g = generic_infinitesimal<Dim>(packing_.radius, report_.infinitesimal_seed);
-        const bool large = packing_.disk_count() > options_.interior_above;
+        const bool large = packing_.disk_count() > options_.large_above;
         ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), large, options_.stop);
         double weight = options_.infinitesimal_weight;
         bool divided = false;

@@ -1,6 +1,6 @@
 #include "preparation/interior_point.hpp"
 
-#include <cholmod.h>
+#include "preparation/clique_matrix.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,129 +14,12 @@ namespace {
 constexpr int most_iterations = 120;
 /// Share of the way to the nearest bound.
 constexpr double step_share = 0.9995;
-
-/// A^T D A + diagonal: pattern and fill-in order once, numbers and factor every iteration.
-class NormalMatrix {
-  public:
-    explicit NormalMatrix(const BoxedProgramme& programme) : programme_(programme) {
-        cholmod_start(&common_);
-        common_.supernodal = CHOLMOD_SIMPLICIAL;
-        common_.final_ll = 1;
-        common_.print = 0;
-        common_.quick_return_if_not_posdef = 1;
-        common_.nmethods = 1;
-        common_.method[0].ordering = CHOLMOD_AMD;
-        build_pattern();
-        factor_ = cholmod_analyze(&matrix_, &common_);
-    }
-    NormalMatrix(const NormalMatrix&) = delete;
-    NormalMatrix& operator=(const NormalMatrix&) = delete;
-    ~NormalMatrix() {
-        cholmod_free_dense(&solution_, &common_);
-        cholmod_free_dense(&work_y_, &common_);
-        cholmod_free_dense(&work_e_, &common_);
-        cholmod_free_factor(&factor_, &common_);
-        cholmod_finish(&common_);
-    }
-
-    /// False when the matrix is numerically singular.
-    bool factorise(const std::vector<double>& row_weight, const std::vector<double>& diagonal) {
-        std::fill(value_.begin(), value_.end(), 0.0);
-        std::size_t next = 0;
-        for (std::size_t l = 0; l < row_weight.size(); ++l) {
-            const auto begin = static_cast<std::size_t>(programme_.start[l]);
-            const auto end = static_cast<std::size_t>(programme_.start[l + 1]);
-            for (std::size_t p = begin; p < end; ++p) {
-                for (std::size_t r = begin; r <= p; ++r) {
-                    value_[static_cast<std::size_t>(place_[next++])] +=
-                        row_weight[l] * programme_.value[p] * programme_.value[r];
-                }
-            }
-        }
-        for (std::size_t k = 0; k < diagonal.size(); ++k) {
-            value_[static_cast<std::size_t>(start_[k])] += diagonal[k]; // the first entry of a column
-        }
-        return factor_ != nullptr && cholmod_factorize(&matrix_, factor_, &common_) != 0 &&
-               common_.status == CHOLMOD_OK && factor_->minor == factor_->n;
-    }
-
-    bool solve(std::vector<double>& b) {
-        cholmod_dense right{};
-        right.nrow = right.nzmax = right.d = b.size();
-        right.ncol = 1;
-        right.x = b.data();
-        right.xtype = CHOLMOD_REAL;
-        right.dtype = CHOLMOD_DOUBLE;
-        if (cholmod_solve2(CHOLMOD_A, factor_, &right, nullptr, &solution_, nullptr, &work_y_, &work_e_, &common_) ==
-            0) {
-            return false;
-        }
-        const auto* const x = static_cast<const double*>(solution_->x);
-        std::copy_n(x, b.size(), b.begin());
-        return true;
-    }
-
-  private:
-    /// Lower triangle by columns, diagonal first.
-    void build_pattern() {
-        const std::size_t columns = programme_.cost.size();
-        std::vector<std::pair<int, int>> entries;
-        for (std::size_t k = 0; k < columns; ++k) {
-            entries.emplace_back(static_cast<int>(k), static_cast<int>(k));
-        }
-        const auto each = [&](const auto& visit) {
-            for (std::size_t l = 0; l + 1 < programme_.start.size(); ++l) {
-                for (int p = programme_.start[l]; p < programme_.start[l + 1]; ++p) {
-                    for (int r = programme_.start[l]; r <= p; ++r) {
-                        const int a = programme_.column[static_cast<std::size_t>(p)];
-                        const int b = programme_.column[static_cast<std::size_t>(r)];
-                        visit(std::min(a, b), std::max(a, b));
-                    }
-                }
-            }
-        };
-        each([&](int column, int row) { entries.emplace_back(column, row); });
-        std::sort(entries.begin(), entries.end());
-        entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-        start_.assign(columns + 1, 0);
-        row_.reserve(entries.size());
-        for (const auto& [column, row] : entries) {
-            ++start_[static_cast<std::size_t>(column) + 1];
-            row_.push_back(row);
-        }
-        for (std::size_t k = 0; k < columns; ++k) {
-            start_[k + 1] += start_[k];
-        }
-        value_.assign(entries.size(), 0.0);
-        entries = {};
-        each([&](int column, int row) {
-            const auto from = row_.begin() + start_[static_cast<std::size_t>(column)];
-            const auto to = row_.begin() + start_[static_cast<std::size_t>(column) + 1];
-            place_.push_back(static_cast<int>(std::lower_bound(from, to, row) - row_.begin()));
-        });
-        matrix_.nrow = matrix_.ncol = columns;
-        matrix_.nzmax = value_.size();
-        matrix_.p = start_.data();
-        matrix_.i = row_.data();
-        matrix_.x = value_.data();
-        matrix_.stype = -1;
-        matrix_.itype = CHOLMOD_INT;
-        matrix_.xtype = CHOLMOD_REAL;
-        matrix_.dtype = CHOLMOD_DOUBLE;
-        matrix_.sorted = 1;
-        matrix_.packed = 1;
-    }
-
-    const BoxedProgramme& programme_;
-    cholmod_common common_{};
-    cholmod_sparse matrix_{};
-    cholmod_factor* factor_ = nullptr;
-    cholmod_dense* solution_ = nullptr;
-    cholmod_dense* work_y_ = nullptr;
-    cholmod_dense* work_e_ = nullptr;
-    std::vector<int> start_, row_, place_;
-    std::vector<double> value_;
-};
+/// Corrections of a direction: how many, how much farther each looks, what is near the centre, the gain that makes
+/// one more worth its solve.
+constexpr int most_corrections = 4;
+constexpr double reach_farther = 0.3;
+constexpr double near_centre = 10;
+constexpr double worth_it = 0.03;
 
 /// Constraints in one list: the rows, then x_k >= -bound, then x_k <= bound. Slack s >= 0, multiplier z >= 0.
 class Iteration {
@@ -203,7 +86,7 @@ class Iteration {
         return worst;
     }
 
-    bool factorise(NormalMatrix& matrix) {
+    bool factorise(CliqueMatrix& matrix) {
         std::vector<double> weight(rows_);
         for (std::size_t l = 0; l < rows_; ++l) {
             weight[l] = z_[l] / s_[l];
@@ -212,14 +95,48 @@ class Iteration {
         for (std::size_t k = 0; k < columns_; ++k) {
             diagonal[k] = z_[rows_ + k] / s_[rows_ + k] + z_[rows_ + columns_ + k] / s_[rows_ + columns_ + k];
         }
-        return matrix.factorise(weight, diagonal);
+        return matrix.factorise(
+            [&](std::size_t l, std::size_t p, std::size_t r) { return weight[l] * p_.value[p] * p_.value[r]; },
+            diagonal);
     }
 
     /// Direction towards products s z = centre (minus the product of the affine steps when `correct`).
-    bool direction(NormalMatrix& matrix, double centre, bool correct) {
+    bool direction(CliqueMatrix& matrix, double centre, bool correct) {
         for (std::size_t l = 0; l < s_.size(); ++l) {
             target_[l] = centre - s_[l] * z_[l] - (correct ? ds_[l] * dz_[l] : 0.0);
         }
+        return towards_target(matrix);
+    }
+
+    /// A direction with longer steps than the present one, when there is one: products that a longer step would leave
+    /// far from the centre are aimed back at it (J. Gondzio, Comput. Optim. Appl. 6, 137 (1996)). Costs a solve, no
+    /// factorisation. False when the present direction stays.
+    bool centre_more(CliqueMatrix& matrix, double centre) {
+        const double slack_before = slack_step();
+        const double force_before = force_step();
+        if (slack_before > 0.95 && force_before > 0.95) {
+            return false;
+        }
+        const double slack = std::min(1.0, slack_before + reach_farther);
+        const double force = std::min(1.0, force_before + reach_farther);
+        const std::vector<double> dx = dx_;
+        const std::vector<double> ds = ds_;
+        const std::vector<double> dz = dz_;
+        for (std::size_t l = 0; l < s_.size(); ++l) {
+            const double product = (s_[l] + slack * ds_[l]) * (z_[l] + force * dz_[l]);
+            const double wanted = std::clamp(product, centre / near_centre, centre * near_centre);
+            target_[l] += std::max(wanted - product, -near_centre * centre);
+        }
+        if (towards_target(matrix) && slack_step() + force_step() >= slack_before + force_before + worth_it) {
+            return true;
+        }
+        dx_ = dx;
+        ds_ = ds;
+        dz_ = dz;
+        return false;
+    }
+
+    bool towards_target(CliqueMatrix& matrix) {
         dx_.resize(columns_);
         for (std::size_t k = 0; k < columns_; ++k) {
             const auto term = [&](std::size_t l) { return (target_[l] - z_[l] * infeasible_[l]) / s_[l]; };
@@ -312,7 +229,7 @@ class Iteration {
 
 ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, const std::atomic<bool>* stop) {
     ActiveSet result;
-    NormalMatrix matrix(programme);
+    CliqueMatrix matrix(programme.cost.size(), programme.start, programme.column); // A^T D A + diagonal
     Iteration iteration(programme);
     for (; result.iterations < most_iterations; ++result.iterations) {
         if (stop != nullptr && stop->load(std::memory_order_relaxed)) {
@@ -329,8 +246,11 @@ ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, cons
         }
         const double affine = iteration.product_after(iteration.slack_step(), iteration.force_step());
         const double share = affine / product;
-        if (!iteration.direction(matrix, share * share * share * product, true)) {
+        const double centre = share * share * share * product;
+        if (!iteration.direction(matrix, centre, true)) {
             break;
+        }
+        for (int k = 0; k < most_corrections && iteration.centre_more(matrix, centre); ++k) {
         }
         iteration.advance(iteration.slack_step(), iteration.force_step());
         if (!iteration.finite()) {

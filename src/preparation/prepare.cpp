@@ -18,9 +18,19 @@ namespace preparation {
 
 namespace {
 
-/// Pressure / stiffness of the compression and of the first relaxation; then it falls by ten.
+/// Pressure / stiffness of the compression and of the first relaxation; then it falls by ten. Large packings are
+/// pressed harder first: far above the threshold of rigidity they settle within 10 000 steps whatever their size, and
+/// little rearranges as the pressure falls again (solid fraction at the end 0.841 instead of 0.839 at n = 10 000).
 constexpr double first_pressure = 1e-3;
+constexpr double first_pressure_large = 1e-2;
 constexpr double pressure_divisor = 10;
+/// The last relaxation of large packings ends at this many times `relaxation`: 10 costs twice the linear programmes, 1
+/// twice the steps. In a large packing something small moves at any time, and the residual is the largest of all: the
+/// earlier relaxations end at 10, or after so many steps, the last one after so many.
+constexpr double relaxation_large = 3;
+constexpr double relaxation_between = 10;
+constexpr long steps_between = 15000;
+constexpr long steps_large = 60000;
 /// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
 /// diameter.
 constexpr double compression_rate = 1e-4;
@@ -105,9 +115,11 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     scale.to_internal(internal);
     Packing<Dim> packing = scatter<Dim>(std::move(internal), options.loose_fraction, options.aspect,
                                         derived_seed(options.seed, Stream::positions));
+    const bool large = packing.disk_count() > options.large_above;
+    const double pressed = large ? first_pressure_large : first_pressure;
     const auto run = [&](const std::string& name, const auto& work) {
         Stage stage(name, options);
-        SoftDynamics<Dim> dynamics(packing, options.stop, [&](double fraction) {
+        SoftDynamics<Dim> dynamics(packing, large, options.stop, [&](double fraction) {
             stage.progress(fraction, fmt::format("solid fraction {:.4f}", packing.solid_fraction()));
         });
         const SoftMeasures measures = work(dynamics);
@@ -133,12 +145,19 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     if (!run("separation", [&](auto& d) { return d.separate(start_overlap, options.max_steps); })) {
         return interrupted();
     }
-    if (!run("compression", [&](auto& d) { return d.compress(first_pressure, compression_rate, options.max_steps); })) {
+    if (!run("compression", [&](auto& d) { return d.compress(pressed, compression_rate, options.max_steps); })) {
         return interrupted();
     }
-    for (double pressure = first_pressure;; pressure = std::max(pressure / pressure_divisor, options.softness)) {
+    for (double pressure = pressed;; pressure = std::max(pressure / pressure_divisor, options.softness)) {
+        double relaxation = options.relaxation;
+        long steps = options.max_steps;
+        if (large) {
+            const bool last = pressure <= options.softness;
+            relaxation *= last ? relaxation_large : relaxation_between;
+            steps = std::min(steps, last ? steps_large : steps_between);
+        }
         if (!run(fmt::format("relaxation at {:.0e}", pressure),
-                 [&](auto& d) { return d.relax(pressure, options.relaxation, options.max_steps); })) {
+                 [&](auto& d) { return d.relax(pressure, relaxation, steps); })) {
             return interrupted();
         }
         if (pressure <= options.softness) {

@@ -27,6 +27,15 @@ constexpr double least_skin = 0.02; // mean diameters
 constexpr double most_skin = 0.3;
 constexpr long renewed_often = 30; // steps
 constexpr long renewed_seldom = 150;
+/// Side of a patch in mean diameters: some thousand disks. With 10 the modes of the packing are cut to pieces and it
+/// takes twice the steps.
+constexpr double patch_width = 30;
+/// Constants of the damped descent, from its paper.
+constexpr double alpha_start = 0.1;
+constexpr double alpha_decay = 0.99;
+constexpr int delay = 5; // steps
+/// Tolerance of the pressure over that of the residual, in patches.
+constexpr double pressure_share = 1e-2;
 
 /// x and y in one register.
 using Plane [[gnu::vector_size(16)]] = double;
@@ -44,7 +53,7 @@ void store(double* xy, const Plane& value) {
 } // namespace
 
 template <int Dim>
-SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, const std::atomic<bool>* stop,
+SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, bool in_patches, const std::atomic<bool>* stop,
                                 std::function<void(double)> progress)
     : packing_(packing), n_(packing.radius.size()), velocity_(packing.q.size(), 0.0), force_(packing.q.size(), 0.0),
       stop_(stop), progress_(std::move(progress)) {
@@ -56,24 +65,32 @@ SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, const std::atomic<bool>* 
     max_radius_ = packing.max_radius();
     wall_mass_ = std::max(1.0, static_cast<double>(n_) / 3);
     skin_ = 0.1 * mean_diameter_;
-    renumber();
+    renumber(in_patches);
     refresh_pairs();
 }
 
-template <int Dim> void SoftDynamics<Dim>::renumber() {
+template <int Dim> void SoftDynamics<Dim>::renumber(bool in_patches) {
     order_.resize(n_);
     std::iota(order_.begin(), order_.end(), 0);
-    if (n_ > block) {
-        const double height = 2 * mean_diameter_;
-        const auto key = [&](int i) {
-            const auto k = Dim * static_cast<std::size_t>(i);
-            return std::pair(std::floor(packing_.q[k + Dim - 1] / height), packing_.q[k]);
-        };
-        std::sort(order_.begin(), order_.end(), [&](int i, int j) {
-            const auto a = key(i);
-            const auto b = key(j);
-            return a < b || (a == b && i < j);
+    if (in_patches) {
+        const double width = patch_width * mean_diameter_;
+        std::vector<std::array<double, Dim>> square(n_);
+        for (std::size_t i = 0; i < n_; ++i) {
+            for (std::size_t a = 0; a < Dim; ++a) {
+                square[i][Dim - 1 - a] = std::floor(packing_.q[Dim * i + a] / width);
+            }
+        }
+        std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) {
+            return square[static_cast<std::size_t>(i)] < square[static_cast<std::size_t>(j)];
         });
+        for (std::size_t k = 0; k < n_; ++k) {
+            if (k == 0 ||
+                square[static_cast<std::size_t>(order_[k])] != square[static_cast<std::size_t>(order_[k - 1])]) {
+                patches_.push_back({Dim * k, Dim * k});
+            }
+            patches_.back().last += Dim;
+        }
+        patches_.push_back({Dim * n_, Dim * (n_ + 1)});
     }
     q_.resize(packing_.q.size());
     radius_.resize(n_);
@@ -400,26 +417,55 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
     return finish(result);
 }
 
+template <int Dim> typename SoftDynamics<Dim>::Sums SoftDynamics<Dim>::sums_of(const Patch& patch) const {
+    Sums sums;
+    for (std::size_t k = patch.first; k < patch.last; ++k) {
+        sums.power += force_[k] * velocity_[k];
+        sums.vv += velocity_[k] * velocity_[k];
+        sums.ff += force_[k] * force_[k];
+    }
+    return sums;
+}
+
+/// Towards the forces; where these work against the velocities, these start anew.
+template <int Dim> void SoftDynamics<Dim>::turn(Patch& patch, Sums sums, double dt) {
+    if (sums.power > 0) {
+        if (++patch.downhill > delay) {
+            patch.alpha *= alpha_decay;
+        }
+    } else {
+        patch.alpha = alpha_start;
+        patch.downhill = 0;
+        std::fill(velocity_.begin() + static_cast<std::ptrdiff_t>(patch.first),
+                  velocity_.begin() + static_cast<std::ptrdiff_t>(patch.last), 0.0);
+        sums.vv = 0;
+    }
+    const double mix = sums.ff > 0 ? patch.alpha * std::sqrt(sums.vv / sums.ff) : 0.0;
+    for (std::size_t k = patch.first; k < patch.last; ++k) {
+        velocity_[k] = (1 - patch.alpha) * velocity_[k] + (mix + dt) * force_[k];
+    }
+}
+
 template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double tolerance, long max_steps) {
-    // Constants of the original paper; the step is in units of 1/sqrt(stiffness/mass).
-    constexpr double alpha_start = 0.1;
-    constexpr double alpha_decay = 0.99;
     constexpr double grow = 1.1;
     constexpr double shrink = 0.5;
-    constexpr int delay = 5;
-    double dt = 0.1;
-    double alpha = alpha_start;
-    int downhill = 0;
+    double dt = 0.1; // in units of sqrt(mass / stiffness)
     long step = 0;
     const std::size_t disks = Dim * n_;
     std::fill(velocity_.begin(), velocity_.end(), 0.0);
+    Patch whole{0, disks + Dim, alpha_start, 0};
+    for (Patch& patch : patches_) {
+        patch.alpha = alpha_start;
+        patch.downhill = 0;
+    }
     SoftMeasures result;
     double first_residual = 0;
     for (;; ++step) {
         compute_forces(pressure);
         if (step % 20 == 0) {
             result = measure(pressure);
-            const double worst = std::max(result.residual, result.pressure_error);
+            const double worst =
+                std::max(result.residual, (patches_.empty() ? 1.0 : pressure_share) * result.pressure_error);
             if (worst < tolerance || step >= max_steps || stopped()) {
                 result.converged = worst < tolerance;
                 break;
@@ -434,30 +480,24 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::relax(double pressure, double
         for (std::size_t a = 0; a < Dim; ++a) {
             force_[disks + a] /= wall_mass_; // from here on: accelerations
         }
-        double power = sums_.power;
-        double vv = sums_.vv;
-        double ff = sums_.ff;
-        for (std::size_t k = disks; k < disks + Dim; ++k) {
-            power += wall_mass_ * force_[k] * velocity_[k];
-            vv += wall_mass_ * velocity_[k] * velocity_[k];
-            ff += wall_mass_ * force_[k] * force_[k];
-        }
-        if (power > 0) {
-            if (++downhill > delay) {
-                dt = std::min(dt * grow, largest_step);
-                alpha *= alpha_decay;
+        if (patches_.empty()) {
+            Sums sums = sums_;
+            for (std::size_t k = disks; k < disks + Dim; ++k) {
+                sums.power += wall_mass_ * force_[k] * velocity_[k];
+                sums.vv += wall_mass_ * velocity_[k] * velocity_[k];
+                sums.ff += wall_mass_ * force_[k] * force_[k];
             }
+            // The step that the velocities are advanced with is the new one.
+            if (sums.power > 0) {
+                dt = whole.downhill + 1 > delay ? std::min(dt * grow, largest_step) : dt;
+            } else {
+                dt = std::max(dt * shrink, 0.02);
+            }
+            turn(whole, sums, dt);
         } else {
-            dt *= shrink;
-            dt = std::max(dt, 0.02);
-            alpha = alpha_start;
-            downhill = 0;
-            std::fill(velocity_.begin(), velocity_.end(), 0.0);
-            vv = 0;
-        }
-        const double mix = ff > 0 ? alpha * std::sqrt(vv / ff) : 0.0;
-        for (std::size_t k = 0; k < disks + Dim; ++k) {
-            velocity_[k] = (1 - alpha) * velocity_[k] + (mix + dt) * force_[k];
+            // One step for all of them, always the largest stable one in the end.
+            dt = std::min(dt * grow, largest_step);
+            parallel_pieces(patches_.size(), [&](std::size_t p) { turn(patches_[p], sums_of(patches_[p]), dt); });
         }
         advance(dt, true);
     }

@@ -105,23 +105,39 @@ bool same_pattern_elsewhere(const sparse::Matrix<double>& a, const sparse::Matri
 template <int Dim>
 sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
                                       const std::vector<Contact>& contacts) {
-    auto matrix = empty_matrix<double>(dofs.dof_count(), contacts.size());
-    for (const Contact& contact : contacts) {
+    sparse::Matrix<double> matrix;
+    matrix.rows = dofs.dof_count();
+    matrix.cols = static_cast<int>(contacts.size());
+    matrix.start.resize(contacts.size() + 1);
+    matrix.row.resize(2 * Dim * contacts.size());
+    matrix.value.resize(2 * Dim * contacts.size());
+    std::size_t end = 0;
+    const auto add = [&](int coordinate, double value) {
+        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
+        if (dof >= 0) {
+            matrix.row[end] = dof;
+            matrix.value[end] = value;
+            ++end;
+        }
+    };
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        // Rows grow with the coordinates, and those of the gradient are in order (i < j).
+        const Contact& contact = contacts[l];
         const GapGradient<Dim> g = gap_gradient(packing, contact);
-        Column<double> column;
+        const bool pair = contact.kind == ContactKind::disk_disk;
         for (int k = 0; k < g.count; ++k) {
             const auto e = static_cast<std::size_t>(k);
-            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[e]));
             // The pattern of the exact matrix: a component that underflows is kept as 0.
-            const int axis = g.coordinate[e] % Dim;
-            const bool pair = contact.kind == ContactKind::disk_disk;
-            if (dof >= 0 &&
-                !(pair && packing.coordinate(DiskId(contact.i), axis) == packing.coordinate(DiskId(contact.j), axis))) {
-                column.add(dof, -g.value[e]);
+            const auto a = static_cast<std::size_t>(k % Dim);
+            if (!(pair && packing.q[static_cast<std::size_t>(g.coordinate[a])] ==
+                              packing.q[static_cast<std::size_t>(g.coordinate[Dim + a])])) {
+                add(g.coordinate[e], -g.value[e]);
             }
         }
-        append(matrix, column);
+        matrix.start[l + 1] = static_cast<int>(end);
     }
+    matrix.row.resize(end);
+    matrix.value.resize(end);
     return matrix;
 }
 

@@ -19,6 +19,7 @@ Ordering::Ordering(int n, std::span<const int> start, std::span<const int> row) 
     }
     klu_common common;
     klu_defaults(&common);
+    common.ordering = fill_reducing_order(n);
     // KLU's interface is not const-correct; the pattern is only read.
     klu_symbolic* symbolic =
         klu_analyze(n, const_cast<int*>(start.data()), // NOLINT(cppcoreguidelines-pro-type-const-cast)

@@ -35,7 +35,7 @@ std::vector<int> nonzero_rows(const std::vector<double>& force) {
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
                       const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
-                      const VertexEnclosure* vertex)
+                      const VertexEnclosure* vertex, const Statics* near)
     : structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
       sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
       ladder_(packing, structure, factorisation, inverse, options, vertex) {
@@ -44,15 +44,36 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
     const bool follows = load.kind == LoadKind::true_stress;
     const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
                                                      [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    ladder_.add(on_dofs(load.external_force(packing), dofs), follows ? stress * (1 + 4 * u) : 0);
-    ladder_.add(on_dofs(load.unit_force(packing), dofs), follows ? 1 : 0);
-    ladder_.add(on_dofs(load.infinitesimal, dofs));
+    const auto known = [near](Part part) {
+        const std::span<const double> x = near != nullptr ? near->ladder_.known(part) : std::span<const double>();
+        return std::vector<double>(x.begin(), x.end());
+    };
+    ladder_.add(on_dofs(load.external_force(packing), dofs), follows ? stress * (1 + 4 * u) : 0,
+                near != nullptr ? near->guess(sigma_) : std::vector<double>());
+    ladder_.add(on_dofs(load.unit_force(packing), dofs), follows ? 1 : 0, known(unit));
+    ladder_.add(on_dofs(load.infinitesimal, dofs), 0, known(infinitesimal_part));
     loaded_rows_ = nonzero_rows(on_dofs(load.fixed_force(packing), dofs));
     const std::vector<int> wall = nonzero_rows(ladder_.force(unit));
     std::vector<int> all = loaded_rows_;
     all.insert(all.end(), wall.begin(), wall.end());
     loaded_wall_row_ = wall.empty() ? -1 : wall.front();
     backbone_ = nonzeros(all);
+}
+
+/// Forces at a stress as far as they are known: at another one only with the slopes.
+template <int Dim> std::vector<double> Statics<Dim>::guess(double sigma) const {
+    const std::span<const double> a = ladder_.known(present);
+    std::vector<double> forces(a.begin(), a.end());
+    if (sigma != sigma_ && !forces.empty()) {
+        const std::span<const double> b = ladder_.known(unit);
+        if (b.empty()) {
+            return {};
+        }
+        for (std::size_t l = 0; l < forces.size(); ++l) {
+            forces[l] += (sigma - sigma_) * b[l];
+        }
+    }
+    return forces;
 }
 
 template <int Dim> std::vector<unsigned char> Statics<Dim>::nonzeros(std::span<const int> rows) const {

@@ -19,15 +19,27 @@ template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coo
     return force;
 }
 
-/// Relative, of forces on the way: estimated, not bounded.
+/// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
 constexpr double accuracy = 1e-12;
+/// Elsewhere they are as accurate as a record asks for, and as what opens next does: the estimated error times `safety`
+/// changes neither.
+constexpr double recorded_accuracy = 3e-8;
+constexpr double safety = 30;
+
+double largest(std::span<const double> v) {
+    double size = 0;
+    for (const double c : v) {
+        size = std::max(size, std::abs(c));
+    }
+    return size;
+}
 
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
   public:
     /// `guess`: forces in the same slots.
     PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const Load<Dim>& load,
-                const std::vector<double>& guess)
+                const std::vector<double>& guess, OpeningRule rule)
         : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)),
           load_(load) {
         const DofMap<Dim>& dofs = structure.dofs();
@@ -41,7 +53,12 @@ template <int Dim> class PlainVertex {
         }
         const sparse::Matrix<double>& h = structure.matrix();
         backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
-        factorisation.solve_forces_from(force, guess, accuracy);
+        load_on_dofs_ = force;
+        error_ = safety * factorisation.solve_forces_until(force, guess, [&](std::span<const double> f, double error) {
+            error_ = safety * error;
+            return rule == OpeningRule::most_negative && error_ <= recorded_accuracy * largest(f) &&
+                   clear(f, most_negative(f));
+        });
     }
 
     Packing<Dim> packing;
@@ -59,11 +76,54 @@ template <int Dim> class PlainVertex {
         return infinitesimal_;
     }
     [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits) {
-        auto chosen = stage(true, rule, fresh_hold, random_bits);
+        const auto chosen = stage(true, rule, fresh_hold, random_bits);
         return chosen ? chosen : stage(false, rule, fresh_hold, random_bits);
+    }
+    /// Whether the force in a contact is compressive.
+    [[nodiscard]] bool compressive(std::size_t l) {
+        if (error_ > 0 && std::abs(force[l]) <= error_) {
+            refine();
+        }
+        return force[l] > 0;
     }
 
   private:
+    void refine() {
+        std::vector<double> better = load_on_dofs_;
+        factorisation.solve_forces_from(better, force, accuracy);
+        force = std::move(better);
+        error_ = 0;
+    }
+    [[nodiscard]] std::size_t most_negative(std::span<const double> f) const {
+        std::size_t best = f.size();
+        double smallest = 0;
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            const double size = signed_size(f, l);
+            if (size < smallest && !is_structural_zero(l)) {
+                smallest = size;
+                best = l;
+            }
+        }
+        return best;
+    }
+    /// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is
+    /// none for all.
+    [[nodiscard]] bool clear(std::span<const double> f, std::size_t chosen) const {
+        const double bar = chosen < f.size() ? signed_size(f, chosen) + 2 * error_ : error_;
+        if (chosen < f.size() && bar >= error_) {
+            return false; // it may be 0
+        }
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            if (l != chosen && signed_size(f, l) <= bar && !is_structural_zero(l)) {
+                return false;
+            }
+        }
+        return true;
+    }
+    [[nodiscard]] double signed_size(std::span<const double> f, std::size_t l) const {
+        return structure.contacts()[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l];
+    }
+
     /// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
     std::optional<Opening> stage(bool finite, OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits) {
         if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
@@ -122,6 +182,8 @@ template <int Dim> class PlainVertex {
     const Load<Dim>& load_;
     std::vector<unsigned char> backbone_;
     std::vector<double> infinitesimal_;
+    std::vector<double> load_on_dofs_;
+    double error_ = 0; ///< of the finite forces, with a margin; 0: they are as accurate as they get
 };
 
 /// When new factors are due: as soon as an arc costs more than the average since the last ones, their making included,
@@ -139,7 +201,7 @@ class Wear {
     void renew() { *this = {}; }
 
   private:
-    static constexpr double factorisation_in_passes = 90; ///< KLU: analysis and factorisation, n = 1936, 4900
+    static constexpr double factorisation_in_passes = 50; ///< KLU: analysis and factorisation, n = 1936, 4900
     double last_ = 0;
     double sum_ = 0;
     int exchanges_ = 0;
@@ -166,6 +228,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
                                     const PlainCalls<Dim>& calls) {
     ArcOptions arc_options;
     arc_options.step_fraction = options.step_fraction;
+    arc_options.extrapolate_tangent = true;
     const Packing<Dim>* packing = &from.packing;
     const IsostaticStructure<Dim>* structure = &from.structure;
     const Factorisation* factorisation = &from.factorisation;
@@ -222,7 +285,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         wear.add((path.passes + factorisation->passes()) * factorisation->approximate().relative_cost(),
                  factorisation->approximate().exchanges());
         const bool worn = wear.out();
-        ApproximateInverse approximate = worn ? ApproximateInverse(next->matrix())
+        ApproximateInverse approximate = worn ? factorisation->approximate().renewed(next->matrix())
                                               : factorisation->approximate().exchanged(next->slot(), next->matrix());
         if (worn) {
             wear.renew();
@@ -230,13 +293,13 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         const std::vector<double> guess = here ? std::move(here->force) : std::vector<double>();
         here = std::make_unique<PlainVertex<Dim>>(std::move(path.end),
                                                   IsostaticStructure<Dim>::without_proof(std::move(*next)),
-                                                  std::move(approximate), load, guess);
+                                                  std::move(approximate), load, guess, options.rule);
         packing = &here->packing;
         structure = &here->structure;
         factorisation = &here->factorisation;
         const std::size_t slot = opening.contact.index();
         if (!record.power_turn && (opening.infinitesimal || !here->is_structural_zero(slot)) &&
-            !((opening.infinitesimal ? here->infinitesimal() : here->force)[slot] > 0)) {
+            !(opening.infinitesimal ? here->infinitesimal()[slot] > 0 : here->compressive(slot))) {
             return Failure{FailureKind::undecided,
                            fmt::format("the power of the load is not positive at the end of {}", names())};
         }

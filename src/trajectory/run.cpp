@@ -20,6 +20,8 @@ namespace isostat {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
+constexpr double enough_to_decide = 1e-10;
 
 /// The same choice for the same step of a run, also after a resume (splitmix64 finaliser).
 std::uint64_t bits_for(std::uint64_t seed, long step) {
@@ -64,7 +66,7 @@ template <int Dim> class Run {
         if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // else it would be the same list
             candidates_ = find_candidates(packing, candidate_fraction);
         }
-        bound_cache_ = {};
+        bound_cache_.forget();
     }
 
     [[nodiscard]] bool perturbs() const { return options_.ties == TiePolicy::perturb; }
@@ -162,6 +164,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
                                                       ArcRecord<Dim>& record) {
     ArcOptions arc_options;
     arc_options.step_fraction = options_.step_fraction;
+    LadderOptions ladder;
+    ladder.first_accuracy = perturbs() ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
     const PowerLoad<Dim> power{&load, opening.infinitesimal, at_limit};
     std::optional<Contact> next_to; // closes on a way of length O(eps)
     std::vector<TieDecision> departed;
@@ -213,8 +217,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         record.power = path.power;
         record.displacement = path.displacement;
         record.steps = path.steps;
-        auto made =
-            Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load, bound_cache_);
+        auto made = Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load,
+                                           bound_cache_, fresh ? 0 : path.passes, ladder);
         if (made.ok()) {
             perturb_at(*made.value(), load, limit);
         }
@@ -721,7 +725,7 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
         if (!end.ok()) {
             return located(end.failure(), where());
         }
-        bound_cache_ = {};
+        bound_cache_.forget();
         auto anew =
             Vertex<Dim>::make(std::move(end.value().packing), std::move(end.value().contacts), load, bound_cache_);
         if (!anew.ok()) {

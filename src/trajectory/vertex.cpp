@@ -21,20 +21,20 @@ Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& 
 
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
-                    const InverseBound& bound, const Load<Dim>& load)
+                    const InverseBound& bound, const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
+      statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near) {}
 
-template <int Dim> double Vertex<Dim>::cost_of_solves() const {
-    constexpr double arc_per_statics = 3; // passes of an arc and its proofs for one pass of the statics, about
-    return arc_per_statics * factorisation.passes() * factorisation.approximate().relative_cost();
+template <int Dim> double Vertex<Dim>::cost_of_solves(int arc_passes) const {
+    constexpr double proofs = 3; // passes of the bound and the enclosure
+    return (arc_passes + factorisation.passes() + proofs) * factorisation.approximate().relative_cost();
 }
 
-template <int Dim> bool Vertex<Dim>::factors_are_worn() const {
+template <int Dim> bool Vertex<Dim>::factors_are_worn(int arc_passes) const {
     constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
     const int exchanges = factorisation.approximate().exchanges();
-    const double here = cost_of_solves();
+    const double here = cost_of_solves(arc_passes);
     return exchanges > 0 && here * (exchanges + 1) > factorisation_in_passes + cost_before_ + here;
 }
 
@@ -78,7 +78,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
                                                             const Contact& closed, const std::vector<double>& tangent,
-                                                            const Load<Dim>& load, InverseBoundCache& cache) {
+                                                            const Load<Dim>& load, InverseBoundCache& cache,
+                                                            int arc_passes, LadderOptions options) {
     const auto anew = [&] {
         std::vector<Contact> contacts = from.structure.contacts();
         contacts[slot.index()] = closed;
@@ -89,8 +90,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
         return anew(); // it says why
     }
     const ApproximateInverse approximate =
-        from.factors_are_worn() ? ApproximateInverse(next->matrix())
-                                : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
+        from.factors_are_worn(arc_passes) ? ApproximateInverse(next->matrix())
+                                          : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {
         mechanism[mu] = tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
@@ -104,9 +105,9 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     }
     std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing),
                                               IsostaticStructure<Dim>::exchanged(std::move(*next), proved->proof),
-                                              approximate, proved->bound, load));
+                                              approximate, proved->bound, load, options, from.statics));
     if (approximate.exchanges() > 0) {
-        vertex->cost_before_ = from.cost_before_ + from.cost_of_solves();
+        vertex->cost_before_ = from.cost_before_ + from.cost_of_solves(arc_passes);
     }
     if (auto failure = vertex->lacking()) {
         return *failure;

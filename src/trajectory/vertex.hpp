@@ -40,9 +40,11 @@ template <int Dim> class Vertex {
     /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the
     /// bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a Cholesky
     /// factorisation (V1), everything anew as in `make`. The factors of `from` go on serving. `tangent` is a guess.
+    /// `arc_passes`: of these factors on the arc between the two.
     static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
                                                      const Contact& closed, const std::vector<double>& tangent,
-                                                     const Load<Dim>& load, InverseBoundCache& cache);
+                                                     const Load<Dim>& load, InverseBoundCache& cache, int arc_passes,
+                                                     LadderOptions options = {});
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -74,14 +76,14 @@ template <int Dim> class Vertex {
   private:
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
-           const Load<Dim>& load);
+           const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near);
     /// What every vertex needs, or why not.
     std::optional<Failure> lacking();
-    /// Cost of the solves of this vertex, in passes of fresh factors; those of the arc from it are in proportion.
-    [[nodiscard]] double cost_of_solves() const;
+    /// Cost of the solves of this vertex and of the arc from it, in passes of fresh factors.
+    [[nodiscard]] double cost_of_solves(int arc_passes) const;
     /// New factors are due when this vertex cost more than the average since the last ones, their making included: the
     /// rule that keeps that average smallest. It counts operations, never seconds.
-    [[nodiscard]] bool factors_are_worn() const;
+    [[nodiscard]] bool factors_are_worn(int arc_passes) const;
 
     double cost_before_ = 0; ///< of the vertices since the factorisation, without this one
 };

@@ -5,12 +5,22 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <new>
 #include <numeric>
+
+// The same operations on four numbers at a time where the processor can; no contraction, hence the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define ISOSTAT_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define ISOSTAT_WIDE
+#endif
 
 namespace isostat {
 
 namespace {
+
+using Wide = double __attribute__((vector_size(32)));
 
 constexpr double u = 0x1p-53;
 
@@ -51,198 +61,257 @@ std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks
 
 } // namespace
 
-BlockCholesky::BlockCholesky(const sparse::Matrix<double>& h, std::vector<int>& permutation)
-    : h_(h), blocks_((static_cast<std::size_t>(h.rows) + 1) / 2) {
-    if (permutation.size() != blocks_) {
-        permutation = little_fill(h, blocks_);
+void BlockCholesky::set(const sparse::Matrix<double>& h, FillOrder& order) {
+    constexpr double outgrown = 1.2; // new contacts join parts that the order keeps apart: the work grows
+    h_ = &h;
+    blocks_ = (static_cast<std::size_t>(h.rows) + 1) / 2;
+    const bool known = order.blocks.size() == blocks_;
+    if (known) {
+        arrange(order.blocks);
     }
+    if (!known || work() > outgrown * order.work) {
+        order.blocks = little_fill(h, blocks_);
+        arrange(order.blocks);
+        order.work = work();
+    }
+}
+
+/// The entries of each contact by blocks (rows are sorted: those of one block follow each other), and the blocks of
+/// H H^T that they make.
+void BlockCholesky::arrange(const std::vector<int>& order) {
     position_.resize(blocks_);
     for (std::size_t k = 0; k < blocks_; ++k) {
-        position_[static_cast<std::size_t>(permutation[k])] = static_cast<int>(k);
+        position_[static_cast<std::size_t>(order[k])] = static_cast<int>(k);
     }
-    form_products(position_);
+    diagonal_.assign(blocks_, Block{});
+    if (h_->rows % 2 != 0) { // the last row is not there: coupled to nothing
+        diagonal_[static_cast<std::size_t>(position_[blocks_ - 1])].value[3] = 1;
+    }
+    pairs_.clear();
+    column_start_.assign(blocks_ + 1, 0);
+    row_start_.assign(blocks_ + 1, 0);
+    const auto contacts = static_cast<std::size_t>(h_->cols);
+    for (std::size_t l = 0; l < contacts; ++l) {
+        std::array<Part, 8> parts{};
+        std::size_t count = 0;
+        int last = -1;
+        for (auto e = static_cast<std::size_t>(h_->start[l]); e < static_cast<std::size_t>(h_->start[l + 1]); ++e) {
+            const int block = h_->row[e] / 2;
+            if (block != last) {
+                parts[count++].place = position_[static_cast<std::size_t>(block)];
+                last = block;
+            }
+            parts[count - 1].value[static_cast<std::size_t>(h_->row[e] % 2)] = h_->value[e];
+        }
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::array<double, 2>& v = parts[k].value;
+            std::array<double, 4>& d = diagonal_[static_cast<std::size_t>(parts[k].place)].value;
+            d[0] += v[0] * v[0];
+            d[1] += v[1] * v[0];
+            d[2] += v[0] * v[1];
+            d[3] += v[1] * v[1];
+            for (std::size_t m = k + 1; m < count; ++m) {
+                const bool later = parts[m].place > parts[k].place;
+                pairs_.push_back({later ? parts[k] : parts[m], later ? parts[m] : parts[k]});
+                ++column_start_[static_cast<std::size_t>(pairs_.back().column.place) + 1];
+                ++row_start_[static_cast<std::size_t>(pairs_.back().row.place) + 1];
+            }
+        }
+    }
+    std::partial_sum(column_start_.begin(), column_start_.end(), column_start_.begin());
+    std::partial_sum(row_start_.begin(), row_start_.end(), row_start_.begin());
+    by_column_.resize(pairs_.size());
+    by_row_.resize(pairs_.size());
+    next_.assign(column_start_.begin(), column_start_.end() - 1);
+    next_row_.assign(row_start_.begin(), row_start_.end() - 1);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const Pair& pair = pairs_[p];
+        by_column_[static_cast<std::size_t>(next_[static_cast<std::size_t>(pair.column.place)]++)] =
+            static_cast<int>(p);
+        by_row_[static_cast<std::size_t>(next_row_[static_cast<std::size_t>(pair.row.place)]++)] = pair.column.place;
+    }
     analyse();
 }
 
-/// Blocks of H H^T: each contact adds the products of its entries.
-void BlockCholesky::form_products(const std::vector<int>& position) {
-    diagonal_.assign(blocks_, Block{});
-    if (h_.rows % 2 != 0) { // a row that is not there: pivot 1 - s, coupled to nothing
-        diagonal_[static_cast<std::size_t>(position[blocks_ - 1])][3] = 1;
+double BlockCholesky::work() const {
+    double sum = 0;
+    for (std::size_t j = 0; j < blocks_; ++j) {
+        const double count = start_[j + 1] - start_[j];
+        sum += count * (count + 1);
     }
-    std::vector<Product> unsorted;
-    unsorted.reserve(static_cast<std::size_t>(h_.cols));
-    product_start_.assign(blocks_ + 1, 0);
-    for (std::size_t l = 0; l < static_cast<std::size_t>(h_.cols); ++l) {
-        // The entries by blocks; rows are sorted, so those of one block follow each other.
-        std::array<int, 8> block{};
-        std::array<std::array<double, 2>, 8> part{};
-        std::size_t count = 0;
-        for (auto e = static_cast<std::size_t>(h_.start[l]); e < static_cast<std::size_t>(h_.start[l + 1]); ++e) {
-            const int b = position[static_cast<std::size_t>(h_.row[e] / 2)];
-            if (count == 0 || block[count - 1] != b) {
-                block[count++] = b;
-            }
-            part[count - 1][static_cast<std::size_t>(h_.row[e] % 2)] = h_.value[e];
-        }
-        for (std::size_t a = 0; a < count; ++a) {
-            Block& d = diagonal_[static_cast<std::size_t>(block[a])];
-            for (std::size_t c = 0; c < 2; ++c) {
-                for (std::size_t r = 0; r < 2; ++r) {
-                    d[2 * c + r] += part[a][r] * part[a][c];
-                }
-            }
-            for (std::size_t b = 0; b < count; ++b) {
-                if (block[b] > block[a]) {
-                    unsorted.push_back({block[b],
-                                        block[a],
-                                        {part[b][0] * part[a][0], part[b][1] * part[a][0], part[b][0] * part[a][1],
-                                         part[b][1] * part[a][1]}});
-                    ++product_start_[static_cast<std::size_t>(block[a]) + 1];
-                }
-            }
-        }
-    }
-    std::partial_sum(product_start_.begin(), product_start_.end(), product_start_.begin());
-    products_.resize(unsorted.size());
-    std::vector<int> next(product_start_.begin(), product_start_.end() - 1);
-    for (const Product& product : unsorted) {
-        products_[static_cast<std::size_t>(next[static_cast<std::size_t>(product.column)]++)] = product;
-    }
+    return sum;
 }
 
-/// Pattern of L: a column has the rows of its products and those of its children in the elimination tree.
+/// Pattern of L: row i has the columns on the ways up the elimination tree from the blocks that share a contact with i.
 void BlockCholesky::analyse() {
-    std::vector<int> mark(blocks_, -1);
-    std::vector<int> first_child(blocks_, -1);
-    std::vector<int> next_child(blocks_, -1);
-    std::vector<int> unsorted;
-    unsorted.reserve(10 * blocks_);
-    start_.assign(1, 0);
-    start_.reserve(blocks_ + 1);
-    for (std::size_t j = 0; j < blocks_; ++j) {
-        const int column = static_cast<int>(j);
-        mark[j] = column;
-        int parent = static_cast<int>(blocks_);
-        const auto add = [&](int row) {
-            if (mark[static_cast<std::size_t>(row)] != column) {
-                mark[static_cast<std::size_t>(row)] = column;
-                unsorted.push_back(row);
-                parent = std::min(parent, row);
-            }
-        };
-        for (int p = product_start_[j]; p < product_start_[j + 1]; ++p) {
-            add(products_[static_cast<std::size_t>(p)].row);
-        }
-        for (int child = first_child[j]; child >= 0; child = next_child[static_cast<std::size_t>(child)]) {
-            const auto c = static_cast<std::size_t>(child);
-            for (int p = start_[c]; p < start_[c + 1]; ++p) {
-                add(unsorted[static_cast<std::size_t>(p)]);
-            }
-        }
-        if (parent < static_cast<int>(blocks_)) {
-            next_child[j] = first_child[static_cast<std::size_t>(parent)];
-            first_child[static_cast<std::size_t>(parent)] = column;
-        }
-        start_.push_back(static_cast<int>(unsorted.size()));
-    }
-    // Two transpositions sort the rows of each column and list the entries of each row.
-    across_start_.assign(blocks_ + 1, 0);
-    for (const int row : unsorted) {
-        ++across_start_[static_cast<std::size_t>(row) + 1];
-    }
-    std::partial_sum(across_start_.begin(), across_start_.end(), across_start_.begin());
-    across_.resize(unsorted.size());
-    std::vector<int> next(across_start_.begin(), across_start_.end() - 1);
-    for (std::size_t j = 0; j < blocks_; ++j) {
-        for (int p = start_[j]; p < start_[j + 1]; ++p) {
-            const auto row = static_cast<std::size_t>(unsorted[static_cast<std::size_t>(p)]);
-            across_[static_cast<std::size_t>(next[row]++)] = static_cast<int>(j);
-        }
-    }
-    row_.resize(unsorted.size());
-    column_of_.resize(unsorted.size());
-    next.assign(start_.begin(), start_.end() - 1);
+    constexpr int none = -1;
+    struct Column {
+        int parent = none;
+        int seen = none; ///< the last row that has it
+        int count = 0;
+    };
+    std::vector<Column> columns(blocks_);
+    across_start_.resize(blocks_ + 1);
+    std::size_t entries = 0;
     for (std::size_t i = 0; i < blocks_; ++i) {
-        for (int a = across_start_[i]; a < across_start_[i + 1]; ++a) {
-            const int column = across_[static_cast<std::size_t>(a)];
-            const int place = next[static_cast<std::size_t>(column)]++;
-            row_[static_cast<std::size_t>(place)] = static_cast<int>(i);
-            column_of_[static_cast<std::size_t>(place)] = column;
-            across_[static_cast<std::size_t>(a)] = place;
+        const int row = static_cast<int>(i);
+        across_start_[i] = static_cast<int>(entries);
+        columns[i].seen = row;
+        if (column_.size() < entries + blocks_) {
+            column_.resize(2 * entries + 8 * blocks_);
+        }
+        int* const found = column_.data();
+        for (int p = row_start_[i]; p < row_start_[i + 1]; ++p) {
+            int j = by_row_[static_cast<std::size_t>(p)];
+            while (columns[static_cast<std::size_t>(j)].seen != row) {
+                Column& column = columns[static_cast<std::size_t>(j)];
+                column.seen = row;
+                ++column.count;
+                found[entries++] = j;
+                column.parent = column.parent == none ? row : column.parent;
+                j = column.parent;
+            }
+        }
+    }
+    across_start_[blocks_] = static_cast<int>(entries);
+    start_.resize(blocks_ + 1);
+    next_.resize(blocks_);
+    start_[0] = 0;
+    for (std::size_t j = 0; j < blocks_; ++j) {
+        next_[j] = start_[j];
+        start_[j + 1] = start_[j] + columns[j].count;
+    }
+    if (row_.size() < entries) { // never made smaller: the memory serves the next matrix
+        row_.resize(entries);
+        across_.resize(entries);
+        value_.resize(entries);
+    }
+    int* const next = next_.data();
+    int* const row = row_.data();
+    int* const across = across_.data();
+    const int* const column = column_.data();
+    for (std::size_t i = 0; i < blocks_; ++i) { // rows come in ascending order
+        const auto end = static_cast<std::size_t>(across_start_[i + 1]);
+        for (auto a = static_cast<std::size_t>(across_start_[i]); a < end; ++a) {
+            const int place = next[column[a]]++;
+            row[place] = static_cast<int>(i);
+            across[a] = place;
         }
     }
 }
 
+ISOSTAT_WIDE
 bool BlockCholesky::factorise(double shift) {
-    value_.resize(row_.size());
-    pivot_.resize(blocks_);
-    std::vector<int> place(blocks_, 0); // of each row in the column in work
-    std::vector<Block> work;
+    place_.resize(blocks_);
+    work_.resize(blocks_);
+    int* const place = place_.data(); // of each row in the column in work
+    Block* const work = work_.data();
+    Block* const value = value_.data(); // not through `this`, which every store might change
+    const int* const start = start_.data();
+    const int* const row = row_.data();
+    const int* const column = column_.data();
+    const int* const across = across_.data();
     for (std::size_t j = 0; j < blocks_; ++j) {
-        const auto begin = static_cast<std::size_t>(start_[j]);
-        const auto count = static_cast<std::size_t>(start_[j + 1]) - begin;
-        work.assign(count + 1, Block{});
-        work[0] = diagonal_[j];
-        work[0][0] -= shift;
-        work[0][3] -= shift;
+        const auto begin = static_cast<std::size_t>(start[j]);
+        const auto count = static_cast<std::size_t>(start[j + 1]) - begin;
+        std::fill_n(work, count + 1, Block{});
         place[j] = 0;
         for (std::size_t k = 0; k < count; ++k) {
-            place[static_cast<std::size_t>(row_[begin + k])] = static_cast<int>(k) + 1;
+            place[static_cast<std::size_t>(row[begin + k])] = static_cast<int>(k) + 1;
         }
-        for (int p = product_start_[j]; p < product_start_[j + 1]; ++p) {
-            const Product& product = products_[static_cast<std::size_t>(p)];
-            Block& w = work[static_cast<std::size_t>(place[static_cast<std::size_t>(product.row)])];
-            for (std::size_t k = 0; k < 4; ++k) {
-                w[k] += product.value[k];
+        work[0] = diagonal_[j];
+        work[0].value[0] -= shift;
+        work[0].value[3] -= shift;
+        for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) {
+            const Pair& pair = pairs_[static_cast<std::size_t>(by_column_[static_cast<std::size_t>(p)])];
+            std::array<double, 4>& w = work[place[pair.row.place]].value;
+            const std::array<double, 2>& own = pair.column.value;
+            const std::array<double, 2>& other = pair.row.value;
+            w[0] += other[0] * own[0];
+            w[1] += other[1] * own[0];
+            w[2] += other[0] * own[1];
+            w[3] += other[1] * own[1];
+        }
+        // work -= m l^T for the columns of this row, in the order of the scalar operations: the bits do not depend on
+        // the width. Two columns at a time when one is the parent of the other and has as many rows left: it has the
+        // same rows then.
+        const auto across_end = static_cast<std::size_t>(across_start_[j + 1]);
+        for (auto a = static_cast<std::size_t>(across_start_[j]); a < across_end; ++a) {
+            const int c = column[a];
+            const int own = across[a];
+            const int left = start[c + 1] - own;
+            Wide l;
+            std::memcpy(&l, value[own].value.data(), sizeof l);
+            const Wide first = __builtin_shufflevector(l, l, 0, 0, 1, 1);
+            const Wide second = __builtin_shufflevector(l, l, 2, 2, 3, 3);
+            const bool two = a + 1 < across_end && row[start[c]] == column[a + 1] &&
+                             start[column[a + 1] + 1] - across[a + 1] == left;
+            if (!two) {
+                for (int q = 0; q < left; ++q) {
+                    double* target = work[place[row[own + q]]].value.data();
+                    Wide m;
+                    Wide w;
+                    std::memcpy(&m, value[own + q].value.data(), sizeof m);
+                    std::memcpy(&w, target, sizeof w);
+                    w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
+                    w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
+                    std::memcpy(target, &w, sizeof w);
+                }
+                continue;
+            }
+            const int other = across[++a];
+            std::memcpy(&l, value[other].value.data(), sizeof l);
+            const Wide third = __builtin_shufflevector(l, l, 0, 0, 1, 1);
+            const Wide fourth = __builtin_shufflevector(l, l, 2, 2, 3, 3);
+            for (int q = 0; q < left; ++q) {
+                double* target = work[place[row[own + q]]].value.data();
+                Wide m;
+                Wide k;
+                Wide w;
+                std::memcpy(&m, value[own + q].value.data(), sizeof m);
+                std::memcpy(&k, value[other + q].value.data(), sizeof k);
+                std::memcpy(&w, target, sizeof w);
+                w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
+                w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
+                w = w - __builtin_shufflevector(k, k, 0, 1, 0, 1) * third;
+                w = w - __builtin_shufflevector(k, k, 2, 3, 2, 3) * fourth;
+                std::memcpy(target, &w, sizeof w);
             }
         }
-        for (int a = across_start_[j]; a < across_start_[j + 1]; ++a) {
-            const int own = across_[static_cast<std::size_t>(a)];
-            const Block l = value_[static_cast<std::size_t>(own)];
-            const auto end = static_cast<std::size_t>(
-                start_[static_cast<std::size_t>(column_of_[static_cast<std::size_t>(own)]) + 1]);
-            for (auto q = static_cast<std::size_t>(own); q < end; ++q) {
-                Block& w = work[static_cast<std::size_t>(place[static_cast<std::size_t>(row_[q])])];
-                const Block& m = value_[q];
-                w[0] = w[0] - m[0] * l[0] - m[2] * l[2];
-                w[1] = w[1] - m[1] * l[0] - m[3] * l[2];
-                w[2] = w[2] - m[0] * l[1] - m[2] * l[3];
-                w[3] = w[3] - m[1] * l[1] - m[3] * l[3];
-            }
-        }
-        const double d0 = work[0][0];
+        const std::array<double, 4>& diagonal = work[0].value;
+        const double d0 = diagonal[0];
         if (!(d0 > 0)) {
             return false;
         }
         const double l00 = std::sqrt(d0);
-        const double l10 = work[0][1] / l00;
-        const double d1 = work[0][3] - l10 * l10;
+        const double l10 = diagonal[1] / l00;
+        const double d1 = diagonal[3] - l10 * l10;
         if (!(d1 > 0)) {
             return false;
         }
         const double l11 = std::sqrt(d1);
-        pivot_[j] = {l00, l10, 0, l11};
+        const double by00 = 1 / l00;
+        const double by11 = 1 / l11;
         for (std::size_t k = 0; k < count; ++k) {
-            const Block& w = work[k + 1];
-            Block& l = value_[begin + k];
-            l[0] = w[0] / l00;
-            l[1] = w[1] / l00;
-            l[2] = (w[2] - l[0] * l10) / l11;
-            l[3] = (w[3] - l[1] * l10) / l11;
+            const std::array<double, 4>& w = work[k + 1].value;
+            std::array<double, 4>& l = value[begin + k].value;
+            l[0] = w[0] * by00;
+            l[1] = w[1] * by00;
+            l[2] = (w[2] - l[0] * l10) * by11;
+            l[3] = (w[3] - l[1] * l10) * by11;
         }
     }
     return true;
 }
 
 double BlockCholesky::error_bound(double shift) const {
-    const auto n = static_cast<std::size_t>(h_.rows);
+    const auto n = static_cast<std::size_t>(h_->rows);
     std::vector<int> entries(n, 0);
     std::vector<double> diagonal(n, 0.0);
-    for (std::size_t e = 0; e < h_.row.size(); ++e) {
-        const auto row = static_cast<std::size_t>(h_.row[e]);
+    for (std::size_t e = 0; e < h_->row.size(); ++e) {
+        const auto row = static_cast<std::size_t>(h_->row[e]);
         ++entries[row];
-        diagonal[row] += h_.value[e] * h_.value[e];
+        diagonal[row] += h_->value[e] * h_->value[e];
     }
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {

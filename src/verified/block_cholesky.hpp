@@ -2,7 +2,7 @@
 // Sparse Cholesky factorisation of H H^T - s I in blocks of 2 x 2, one block per pair of successive rows (the two
 // coordinates of a disk, or of the walls): private to the room.
 
-#include <isostat/sparse/pattern.hpp>
+#include <isostat/verified/inverse_bound.hpp>
 
 #include <array>
 #include <vector>
@@ -12,9 +12,9 @@ namespace isostat {
 /// Left-looking, in double, round to nearest. It proves nothing by itself: statement V1 turns its success into a bound.
 class BlockCholesky {
   public:
-    /// `permutation` is an order of the blocks of little fill; made (AMD) when it does not fit the matrix. \pre the
-    /// matrix outlives the object.
-    BlockCholesky(const sparse::Matrix<double>& h, std::vector<int>& permutation);
+    /// The matrix to factorise; it must live as long as it is used. `order` is made (AMD) when it does not fit or lets
+    /// the work grow too far. The memory of the last matrix is used again.
+    void set(const sparse::Matrix<double>& h, FillOrder& order);
 
     /// Factorises H H^T - shift I = L L^T; true when every pivot was positive.
     bool factorise(double shift);
@@ -22,27 +22,39 @@ class BlockCholesky {
     /// E of statement V1 after a successful `factorise(shift)`.
     [[nodiscard]] double error_bound(double shift) const;
 
+    /// Products of blocks in a factorisation, about: what an order is judged by.
+    [[nodiscard]] double work() const;
+
   private:
-    /// Row-major pairs: element 2 c + r is (row r, column c) of the block.
-    using Block = std::array<double, 4>;
-    struct Product {
-        int row, column; ///< permuted blocks, row > column
-        Block value;
+    /// By columns: element 2 c + r is (row r, column c) of the block.
+    struct alignas(32) Block {
+        std::array<double, 4> value{};
+    };
+    /// What a contact has in one block.
+    struct Part {
+        int place = 0;                 ///< of the block in the order
+        std::array<double, 2> value{}; ///< 0 where nothing is stored
+    };
+    /// Two blocks that share a contact.
+    struct Pair {
+        Part column, row; ///< column.place < row.place
     };
 
-    void form_products(const std::vector<int>& position);
+    void arrange(const std::vector<int>& order);
     void analyse();
 
-    const sparse::Matrix<double>& h_;
-    std::size_t blocks_;
-    std::vector<Block> diagonal_;    ///< of H H^T, permuted
-    std::vector<Product> products_;  ///< off the diagonal, sorted by column
-    std::vector<int> product_start_; ///< by column
-    std::vector<int> start_, row_;   ///< L without its diagonal, by columns, rows ascending
-    std::vector<Block> value_, pivot_;
-    std::vector<int> across_start_, across_; ///< by row: places in `row_` of its entries, columns ascending
-    std::vector<int> column_of_;             ///< by place in `row_`
-    std::vector<int> position_;              ///< of each block in the permuted order
+    const sparse::Matrix<double>* h_ = nullptr;
+    std::size_t blocks_ = 0;
+    std::vector<int> position_;                 ///< of each block in the order
+    std::vector<Block> diagonal_;               ///< of H H^T, in the order
+    std::vector<Pair> pairs_;                   ///< by contacts
+    std::vector<int> column_start_, by_column_; ///< pairs by column
+    std::vector<int> row_start_, by_row_;       ///< columns of the pairs by row
+    std::vector<int> start_, row_;              ///< L without its diagonal, by columns, rows ascending
+    std::vector<int> across_start_;             ///< by row of L:
+    std::vector<int> column_, across_;          ///< columns of its entries, and their places in `row_`
+    std::vector<Block> value_, work_;
+    std::vector<int> place_, next_, next_row_;
 };
 
 } // namespace isostat

@@ -43,8 +43,10 @@ struct Part {
     std::vector<double> force;
     double rate = 0; ///< |F(q) - F(q*)| per |q - q*|
     bool zero = false;
-    ForceSolution solution; ///< on the rung `solution.rung` with `solution.bits`; empty before the first request
-    RefinedVector refined;  ///< rung multiprecision
+    bool rough = false;        ///< `solution` stopped at `first_accuracy`
+    std::vector<double> guess; ///< of the solution, or empty
+    ForceSolution solution;    ///< on the rung `solution.rung` with `solution.bits`; empty before the first request
+    RefinedVector refined;     ///< rung multiprecision
     std::vector<mpq_class> unknown; ///< rung exact
 };
 
@@ -119,6 +121,7 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
     std::optional<RefinedVertex> refined_vertex;
     Rung rung = Rung::double_bound;
     int bits = 53;
+    bool rough = false; ///< on the rung double: solutions at `first_accuracy` are enough
     bool exact_allowed = true;
     mutable std::vector<Part> parts;
     std::optional<ExtendedMatrix> extended;
@@ -248,7 +251,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::refine(int next) {
 
 template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) const {
     ForceSolution& s = part.solution;
-    if (!s.value.empty() && s.rung == rung && s.bits == bits) {
+    if (!s.value.empty() && s.rung == rung && s.bits == bits && (rough || !part.rough)) {
         return;
     }
     const std::size_t n = part.force.size();
@@ -271,8 +274,11 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
         round(x, error, s);
         s.residual = 0;
     } else {
-        if (s.value.empty()) {
-            s = solve_forces(*structure, *factorisation, *inverse, part.force);
+        if (s.value.empty() || part.rough) {
+            part.rough = rough;
+            s = solve_forces(*structure, *factorisation, *inverse, part.force, s.value.empty() ? part.guess : s.value,
+                             rough ? options.first_accuracy : 0);
+            part.guess.clear();
         }
         if (rung != Rung::double_bound && s.rung == Rung::double_bound) {
             refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force);
@@ -484,6 +490,7 @@ ForceLadder<Dim>::ForceLadder(const Packing<Dim>& packing, const IsostaticStruct
     implementation_->inverse = &inverse;
     implementation_->options = options;
     implementation_->vertex = vertex;
+    implementation_->rough = options.first_accuracy > 0 && !factorisation.is_fresh();
 }
 
 template <int Dim> ForceLadder<Dim>::~ForceLadder() = default;
@@ -494,11 +501,12 @@ template <int Dim> double ForceLadder<Dim>::normal_uncertainty() const {
     return implementation_->vertex == nullptr ? 0 : implementation_->stored_uncertainty();
 }
 
-template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, double rate) {
+template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, double rate, std::vector<double> guess) {
     Part part;
     part.rate = rate;
     part.zero = all_zero(force);
     part.force = std::move(force);
+    part.guess = std::move(guess);
     implementation_->parts.push_back(std::move(part));
     return static_cast<int>(implementation_->parts.size()) - 1;
 }
@@ -511,6 +519,10 @@ template <int Dim> const ForceSolution& ForceLadder<Dim>::solution(int part) con
     Part& p = implementation_->parts[static_cast<std::size_t>(part)];
     implementation_->bring(p);
     return p.solution;
+}
+
+template <int Dim> std::span<const double> ForceLadder<Dim>::known(int part) const {
+    return implementation_->parts[static_cast<std::size_t>(part)].solution.value;
 }
 
 template <int Dim> std::string ForceLadder<Dim>::digits(int part, ContactId contact, int bits) const {
@@ -555,6 +567,10 @@ template <int Dim> bool ForceLadder<Dim>::climb() {
     Implementation& self = *implementation_;
     const bool bounded = self.inverse->verdict == Verdict::proved;
     self.mechanism.clear();
+    if (self.rough) {
+        self.rough = false;
+        return true;
+    }
     switch (self.rung) {
     case Rung::double_bound:
         if (!bounded) {

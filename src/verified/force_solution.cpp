@@ -67,18 +67,24 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
 
 template <int Dim>
 ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           const InverseBound& inverse, const std::vector<double>& force) {
+                           const InverseBound& inverse, const std::vector<double>& force, std::span<const double> guess,
+                           double accuracy) {
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(h.rows);
     ForceSolution solution;
     solution.value = force;
-    factorisation.solve_forces(solution.value);
+    const bool rough = accuracy > 0 && !factorisation.is_fresh();
+    if (!rough && guess.empty()) {
+        factorisation.solve_forces(solution.value);
+    } else {
+        factorisation.solve_forces_from(solution.value, guess, rough ? accuracy : 4 * u);
+    }
     std::vector<double> r(n);
     std::vector<double> size(n);
     std::vector<int> terms(n);
     Residual residual = residual_in_double(h, solution.value, force, r, size, terms);
     // A residual that is mostly the rounding of its own evaluation cannot be improved in double.
-    if (!(residual.bound < 3 * residual.rounding)) {
+    if (!rough && !(residual.bound < 3 * residual.rounding)) {
         factorisation.solve_forces(r);
         for (std::size_t l = 0; l < n; ++l) {
             solution.value[l] += r[l];
@@ -199,7 +205,7 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
 template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                    const std::vector<double>&);
 template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
-                                       const std::vector<double>&);
+                                       const std::vector<double>&, std::span<const double>, double);
 template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
                                       const Factorisation&, const InverseBound&, const std::vector<double>&);
 

@@ -138,7 +138,11 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& h, const ApproximateIn
     outcome.estimated = estimate(inverse, cache.vector, iterations);
     double shift = 0.5 * outcome.estimated;
     if (std::isfinite(shift) && shift > 0) {
-        BlockCholesky cholesky(h, cache.permutation);
+        if (cache.workspace == nullptr) {
+            cache.workspace = std::make_shared<BlockCholesky>();
+        }
+        BlockCholesky& cholesky = *cache.workspace;
+        cholesky.set(h, cache.order);
         for (int attempt = 0; attempt < 4; ++attempt, shift /= 8) {
             if (!cholesky.factorise(shift)) {
                 continue;

@@ -34,40 +34,93 @@ Pair exact_square(double a) {
     return {square, ((high * high - square) + 2 * high * low) + low * low};
 }
 
-/// F_l of statement V4 at the stored configuration and a bound of its error. Lengths are multiplied by `scale`, a power
-/// of two that brings the largest near 1.
-template <int Dim> Pair constraint(const Packing<Dim>& packing, const Contact& contact, double scale) {
-    const auto at = [&](int coordinate) { return scale * packing.q[static_cast<std::size_t>(coordinate)]; };
-    const double ri =
-        contact.kind == ContactKind::held ? 0 : scale * packing.radius[static_cast<std::size_t>(contact.i)];
-    switch (contact.kind) {
-    case ContactKind::disk_disk: {
-        const Pair d = exact_sum(ri, scale * packing.radius[static_cast<std::size_t>(contact.j)]);
-        const Pair target_square = exact_square(d.sum);
-        Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
-        for (int a = 0; a < Dim; ++a) {
-            const Pair x = exact_sum(at(Dim * contact.j + a), -at(Dim * contact.i + a));
-            const Pair square = exact_square(x.sum);
-            const Pair sum = exact_sum(value.sum, square.sum);
-            value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
+/// What V4 needs of the gaps at the stored configuration, in one pass over the contacts. Lengths are multiplied by
+/// `scale`, a power of two that brings the largest near 1.
+struct Constraints {
+    std::vector<double> f;     ///< F_l
+    std::vector<double> error; ///< bound of its error
+    double worst = 0;          ///< largest |gap| / D of disks, from above
+    double largest = 0;        ///< largest |gap|, as computed; in the unit of the packing
+    double lipschitz = 0;      ///< of the derivative of F, scaled (V4 (a))
+};
+
+template <int Dim>
+Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>& contacts, double scale) {
+    constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
+    const std::size_t n = contacts.size();
+    Constraints result{std::vector<double>(n), std::vector<double>(n)};
+    std::vector<int> count(packing.radius.size(), 0);
+    const double* const q = packing.q.data();
+    const double* const radius = packing.radius.data();
+    double smallest = std::numeric_limits<double>::infinity();
+    double ratio = 0;
+    double largest = 0;
+    for (std::size_t l = 0; l < n; ++l) {
+        const auto i = static_cast<std::size_t>(contacts[l].i);
+        const auto j = static_cast<std::size_t>(contacts[l].j);
+        switch (contacts[l].kind) {
+        case ContactKind::disk_disk: {
+            const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
+            const Pair target_square = exact_square(d.sum);
+            Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
+            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+                const Pair x = exact_sum(scale * q[Dim * j + a], -(scale * q[Dim * i + a]));
+                const Pair square = exact_square(x.sum);
+                const Pair sum = exact_sum(value.sum, square.sum);
+                value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
+            }
+            const double inverse = 1 / d.sum;
+            const double f = (value.sum + value.error) * 0.5 * inverse;
+            const double size = std::abs(f);
+            result.f[l] = f;
+            result.error[l] = 4 * u * size + 0x1p-98 * d.sum + underflow * inverse;
+            ratio = std::max(ratio, size * inverse);
+            largest = std::max(largest, size);
+            smallest = std::min(smallest, d.sum);
+            ++count[i];
+            ++count[j];
+            break;
         }
-        const double f = (value.sum + value.error) / (2 * d.sum);
-        return {f, 4 * u * std::abs(f) + 0x1p-98 * d.sum + 16 * underflow_unit / d.sum};
+        case ContactKind::lower_wall: {
+            const double f = scale * q[Dim * i + j] - scale * radius[i];
+            result.f[l] = f;
+            result.error[l] = 2 * u * std::abs(f);
+            largest = std::max(largest, std::abs(f));
+            break;
+        }
+        case ContactKind::upper_wall: {
+            const double length = scale * q[Dim * packing.radius.size() + j];
+            const Pair x = exact_sum(length, -(scale * q[Dim * i + j]));
+            const Pair sum = exact_sum(x.sum, -(scale * radius[i]));
+            const double f = sum.sum + (sum.error + x.error);
+            result.f[l] = f;
+            result.error[l] = 4 * u * std::abs(f) + 0x1p-98 * std::abs(length);
+            largest = std::max(largest, std::abs(f));
+            break;
+        }
+        case ContactKind::held: break;
+        }
     }
-    case ContactKind::lower_wall: {
-        const double f = at(Dim * contact.i + contact.j) - ri;
-        return {f, 2 * u * std::abs(f)};
+    // From |F| to the gap: F = g (1 + g / 2D) gives |g| <= |F| (1 + |F| / D) while |F| / D < 1/4.
+    result.worst = ratio * 1.0011 + 0x1p-90;
+    result.largest = largest / scale;
+    const int most = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
+    result.lipschitz = most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-49);
+    return result;
+}
+
+/// Upper bound of the 2-norm; by way of a scale only when a square may under- or overflow.
+double norm_of(const std::vector<double>& x) {
+    double sum = 0;
+    for (const double c : x) {
+        sum += c * c;
     }
-    case ContactKind::upper_wall: {
-        const double length = at(Dim * packing.disk_count() + contact.j);
-        const Pair x = exact_sum(length, -at(Dim * contact.i + contact.j));
-        const Pair sum = exact_sum(x.sum, -ri);
-        const double f = sum.sum + (sum.error + x.error);
-        return {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)};
+    if (sum > 0x1p-900 && sum < 0x1p1000) {
+        return std::sqrt(sum) * (1 + 1e-10);
     }
-    case ContactKind::held: break;
-    }
-    return {0, 0};
+    std::vector<double> size(x.size());
+    std::transform(x.begin(), x.end(), size.begin(), [](double c) { return std::abs(c); });
+    return norm_above(size);
 }
 
 } // namespace
@@ -75,59 +128,58 @@ template <int Dim> Pair constraint(const Packing<Dim>& packing, const Contact& c
 template <int Dim>
 VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                const Factorisation& factorisation, const InverseBound& inverse) {
-    VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
-    const double worst = worst_gap_ratio(packing, structure.contacts());
     double longest = 0;
     for (const double x : packing.q) {
         longest = std::max(longest, std::abs(x));
     }
     int exponent = 0;
     std::frexp(longest, &exponent);
-    if (inverse.verdict != Verdict::proved || !(worst < 1e-3) || std::abs(exponent) > 1000) {
-        return vertex;
+    if (inverse.verdict != Verdict::proved || std::abs(exponent) > 400) {
+        return enclose_vertex(packing, structure, inverse);
     }
     const double scale = std::ldexp(1.0, -exponent);
+    const Constraints at = constraints(packing, structure.contacts(), scale);
+    if (!(at.worst < 1e-3)) {
+        return enclose_vertex(packing, structure, inverse);
+    }
+    VertexEnclosure vertex;
+    vertex.max_gap = at.largest;
+    vertex.radius = std::numeric_limits<double>::infinity();
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(structure.size());
-    std::vector<double> f(n);
-    std::vector<double> error(n);
-    for (std::size_t l = 0; l < n; ++l) {
-        const Pair value = constraint(packing, structure.contacts()[l], scale);
-        f[l] = value.sum;
-        error[l] = value.error;
-    }
-    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * worst + 8 * u);
-    const double k = lipschitz(packing, structure.contacts()) / scale;
-    std::vector<double> step = f; // with approach velocities equal to the gaps they close
+    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * at.worst + 8 * u);
+    std::vector<double> step = at.f; // with approach velocities equal to the gaps they close
     factorisation.approximate().velocities(step);
     std::vector<double> r(n);
     std::vector<double> bound(n);
     constexpr int max_passes = 4;
     for (int pass = 1; pass <= max_passes; ++pass) {
+        const double* const value = h.value.data();
+        const int* const row = h.row.data();
         for (std::size_t l = 0; l < n; ++l) {
             double approach = 0;
             double size = 0;
-            for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
-                const double term = h.value[e] * step[static_cast<std::size_t>(h.row[e])];
+            const int end = h.start[l + 1];
+            for (int e = h.start[l]; e < end; ++e) {
+                const double term = value[e] * step[static_cast<std::size_t>(row[e])];
                 approach += term;
                 size += std::abs(term);
             }
-            r[l] = f[l] - approach;
+            r[l] = at.f[l] - approach;
             // 5u of the entries, products and sums; the row of DF is that of G times d / D.
-            bound[l] = std::abs(r[l]) * (1 + 2 * u) + error[l] + (16 * u + 1.01 * worst) * size;
+            bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (16 * u + 1.01 * at.worst) * size;
         }
-        std::vector<double> size(n);
-        std::transform(step.begin(), step.end(), size.begin(), [](double c) { return std::abs(c); });
-        const double length = norm_above(size);
-        const double rest = inverse_norm * norm_above(bound) * (1 + 4 * u);
+        const double length = norm_of(step);
+        const double rest = inverse_norm * norm_of(bound) * (1 + 4 * u);
         const double eta = (length + rest) * (1 + 4 * u);
-        const double product = inverse_norm * k * eta * (1 + 8 * u);
+        const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);
         const double radius = eta * (1 + product) * (1 + 8 * u) / scale; // (1 - sqrt(1 - 2h)) / h <= 1 + h up to 1/4
-        if (product <= 0.25 && (vertex.verdict != Verdict::proved || radius < vertex.radius)) {
+        if (product <= 0.25 && radius < vertex.radius) {
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
         }
-        if (!(rest > 0.5 * length) || pass == max_passes) {
+        constexpr double enough = 2; // more passes would at most divide the radius by 3
+        if (!(rest > enough * length) || pass == max_passes) {
             break;
         }
         factorisation.approximate().velocities(r);
@@ -135,7 +187,7 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             step[l] += r[l];
         }
     }
-    return vertex;
+    return vertex.verdict == Verdict::proved ? vertex : enclose_vertex(packing, structure, inverse);
 }
 
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,

@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(an_infeasible_programme_has_no_interior_point) {
 BOOST_AUTO_TEST_CASE(a_vertex_found_with_interior_points_is_proved_like_any_other) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
         PreparationOptions options;
-        options.interior_above = 0;
+        options.large_above = 0;
         PreparationReport<2> report;
         const auto found = find_vertex<2>(loose_lattice(6, seed), options, report);
         BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));

@@ -87,6 +87,28 @@ BOOST_AUTO_TEST_CASE(solid_fraction_and_rattlers_are_those_of_random_packings) {
     BOOST_TEST(rattlers < 0.09);
 }
 
+// The way of large packings (pressed harder first, patches, interior points) on small ones: four to nine patches.
+BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_same_kind) {
+    double fraction = 0;
+    double rattlers = 0;
+    constexpr int samples = 3;
+    for (int seed = 1; seed <= samples; ++seed) {
+        PreparationOptions options;
+        options.disks = 1000;
+        options.seed = static_cast<std::uint64_t>(seed);
+        options.large_above = 100;
+        const Outcome outcome = run(options);
+        must_be_vertex(outcome);
+        BOOST_TEST(outcome.report.stages[2].name == "relaxation at 1e-02");
+        fraction += outcome.report.solid_fraction / samples;
+        rattlers += outcome.report.rattlers / (1000.0 * samples);
+    }
+    BOOST_TEST(fraction > 0.82);
+    BOOST_TEST(fraction < 0.845);
+    BOOST_TEST(rattlers > 0.03);
+    BOOST_TEST(rattlers < 0.09);
+}
+
 BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_bits_and_another_seed_another_packing) {
     const Outcome first = run(60, 7);
     run(33, 5); // leaves nothing behind

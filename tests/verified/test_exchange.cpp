@@ -2,14 +2,18 @@
 // factors.
 #include "oracle/random.hpp"
 #include "support/crafted.hpp"
+#include "verified/block_cholesky.hpp"
 
 #include <isostat/io/state_file.hpp>
 #include <isostat/motion/arc.hpp>
+#include <isostat/statics/statics.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 using namespace isostat;
 using namespace crafted;
@@ -131,6 +135,121 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     }
     const auto still = carry_bound(from.structure, from.bound, *next, approximate, wrong);
     BOOST_TEST((!still || still->bound.sigma_min < sigma * 1.001));
+}
+
+BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_eigenvalue_and_not_above_it) {
+    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    const double sigma = smallest_singular_value(from.structure);
+    const auto n = static_cast<std::size_t>(from.structure.size());
+    FillOrder made;
+    BlockCholesky cholesky;
+    cholesky.set(from.structure.matrix(), made);
+    BOOST_TEST(made.work == cholesky.work());
+    // Also a bad order that is said to be good, and the same that is found outgrown.
+    FillOrder backwards{made.blocks, 1e300};
+    std::iota(backwards.blocks.rbegin(), backwards.blocks.rend(), 0);
+    FillOrder outgrown = backwards;
+    outgrown.work = made.work;
+    for (FillOrder* order : {&made, &backwards, &outgrown}) {
+        cholesky.set(from.structure.matrix(), *order); // in the memory of the one before
+        BOOST_TEST(cholesky.factorise(0.995 * sigma * sigma));
+        BOOST_TEST(!cholesky.factorise(1.005 * sigma * sigma));
+        BOOST_TEST(cholesky.factorise(0.5 * sigma * sigma));
+        BOOST_TEST(cholesky.error_bound(0.5 * sigma * sigma) < 1e-8);
+        BOOST_TEST(cholesky.error_bound(0.5 * sigma * sigma) > 0x1p-53 * static_cast<double>(n));
+    }
+    BOOST_TEST(backwards.work == 1e300);
+    BOOST_TEST((outgrown.blocks == made.blocks));
+    // An odd number of rows: half of the last block is not there.
+    sparse::Matrix<double> odd;
+    odd.rows = odd.cols = 3;
+    odd.start = {0, 2, 4, 6};
+    odd.row = {0, 1, 1, 2, 0, 2};
+    odd.value = {3, 1, 2, -1, 1, 2}; // H H^T = [[10, 3, 2], [3, 5, -2], [2, -2, 5]]
+    FillOrder any;
+    cholesky.set(odd, any);
+    double low = 0;
+    double high = 0.99; // the pivot of the row that is not there is 1 - s
+    BOOST_TEST(cholesky.factorise(0.0));
+    for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (low + high);
+        (cholesky.factorise(middle) ? low : high) = middle;
+    }
+    const auto det = [](double s) {
+        const double a = 10 - s;
+        const double b = 5 - s;
+        return a * (b * b - 4) - 3 * (3 * b + 4) + 2 * (-6 - 2 * b);
+    };
+    BOOST_TEST(det(0.9) > 0);
+    BOOST_TEST(low > 0.9);
+    for (double& c : odd.value) {
+        c *= 0.25; // now the smallest eigenvalue is below 1
+    }
+    cholesky.set(odd, any);
+    low = 0;
+    high = 0.99;
+    for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (low + high);
+        (cholesky.factorise(middle) ? low : high) = middle;
+    }
+    BOOST_TEST(low < 0.9);
+    BOOST_TEST(std::abs(det(16 * low)) < 1e-9);
+    BOOST_TEST(det(15.9 * low) > 0);
+}
+
+BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_takes_them_to_rounding) {
+    Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
+    int compared = 0;
+    double worst = 0;
+    for (int opened = 0; opened < from.structure.size(); opened += 9) {
+        const auto arc = from.open(opened);
+        if (!arc.ok()) {
+            continue;
+        }
+        auto next =
+            IsostaticStructure<2>::exchange(from.structure, arc.value().end, ContactId(opened), arc.value().closed);
+        BOOST_TEST_REQUIRE(next.has_value());
+        const ApproximateInverse approximate = from.factorisation.approximate().exchanged(next->slot(), next->matrix());
+        const auto proved = bound_exchanged(*next, approximate, from.cache);
+        if (!proved) {
+            continue;
+        }
+        const auto structure = IsostaticStructure<2>::exchanged(std::move(*next), proved->proof);
+        const Factorisation stale(structure, approximate);
+        const Factorisation fresh(structure);
+        const Packing<2>& packing = arc.value().end;
+        const Statics<2> near(from.state.packing, from.state.load, from.structure, from.factorisation, from.bound);
+        const double sigma = from.state.load.stress[1];
+        (void)near.force(ContactId(0), sigma);
+        LadderOptions options;
+        options.first_accuracy = 1e-5;
+        Statics<2> rough(packing, from.state.load, structure, stale, proved->bound, options, nullptr, &near);
+        Statics<2> exact(packing, from.state.load, structure, fresh, proved->bound);
+        BOOST_TEST_REQUIRE(exact.climb()); // double-double
+        const auto differ = [&] {
+            double largest = 0;
+            for (int l = 0; l < structure.size(); ++l) {
+                const ContactId id(l);
+                const double f = exact.force(id, sigma).value;
+                largest = std::max(largest, std::abs(rough.force(id, sigma).value - f));
+                BOOST_TEST(std::abs(rough.force(id, sigma).value - f) <=
+                           rough.force(id, sigma).radius + 1e-16 * std::abs(f));
+            }
+            return largest;
+        };
+        const double off = differ();
+        const double first = rough.bound(sigma);
+        worst = std::max(worst, off);
+        BOOST_TEST_REQUIRE(rough.climb());
+        BOOST_TEST((rough.rung() == Rung::double_bound));
+        BOOST_TEST(rough.bound(sigma) < std::max(1e-3 * first, 1e-10));
+        BOOST_TEST(differ() < 1e-9);
+        BOOST_TEST_REQUIRE(rough.climb());
+        BOOST_TEST((rough.rung() == Rung::double_double));
+        ++compared;
+    }
+    BOOST_TEST(compared > 5);
+    BOOST_TEST(worst > 1e-12); // they were rough
 }
 
 BOOST_AUTO_TEST_CASE(a_structure_says_what_its_regularity_was_proved_with) {

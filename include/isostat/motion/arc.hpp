@@ -17,6 +17,9 @@ struct ArcOptions {
     double step_fraction = 0.1;   ///< longest predictor step of the fastest coordinate, in units of the smallest radius
     int max_steps = 100000;       ///< predictor steps before the motion is called unbounded
     double max_length_change = 1; ///< |L_a / L_a(start) - 1| beyond which the motion is called unbounded
+    /// The tangent at an event is extrapolated from the way there instead of solved for, where nothing is close enough
+    /// to depend on it: for callers that do not use `Arc::tangent`. Saves two passes and more.
+    bool extrapolate_tangent = false;
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
     /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
     /// does), and those proved to keep their distance all along (both at rest).
@@ -39,7 +42,7 @@ template <int Dim> struct Arc {
     Packing<Dim> end;
     ArcEnd kind = ArcEnd::contact;
     Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
-    double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate
+    double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as good as t
     std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
     double displacement = 0;     ///< largest displacement of a coordinate
     int steps = 0;               ///< predictor steps

@@ -52,9 +52,11 @@ struct PreparationOptions {
     long max_steps = 200000;     ///< of each stage of the dynamics; the next stage starts from what was reached
     double infinitesimal_weight = 1e-7; ///< eps of the linear programmes: weight of g against the mean contact force
     int max_programmes = 200;
-    /// Above this number of disks the first programmes are solved by an interior-point method: the pivots of the
-    /// simplex method grow as n (13 000 at n = 20 000, 5 ms each), interior-point iterations do not.
-    int interior_above = 8192;
+    /// Above this number of disks: the dynamics presses harder first (1e-2 of the stiffness), in patches, with fewer
+    /// steps, and ends at 3 `relaxation`; programmes that are expected to change many contacts are solved by an
+    /// interior-point method. The pivots of the simplex method grow as n (13 000 at n = 20 000, 5 ms each),
+    /// interior-point iterations do not.
+    int large_above = 8192;
 };
 
 /// Figures of one stage.

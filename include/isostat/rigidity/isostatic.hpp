@@ -32,6 +32,8 @@ template <int Dim> class ExchangedContacts {
   public:
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
     [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
+    /// Column matched to each row.
+    [[nodiscard]] const std::vector<int>& matching() const { return matching_; }
     /// Place of the new contact in the list (and of its column).
     [[nodiscard]] int slot() const { return slot_; }
 

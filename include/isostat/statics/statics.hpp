@@ -25,9 +25,11 @@ template <int Dim> class Statics {
     /// (most vertices of a rearrangement need neither). The arguments must outlive the object. With `vertex` every
     /// answer is about the true vertex that it encloses, without it about the stored configuration (ForceLadder). Cost:
     /// 2 solves, and 2 for each part asked for.
+    /// `near`: the statics of a neighbouring vertex with the contacts in the same places, whose forces are where the
+    /// solves start; not used afterwards.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
             const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
-            const VertexEnclosure* vertex = nullptr);
+            const VertexEnclosure* vertex = nullptr, const Statics* near = nullptr);
 
     /// Finite part at the loaded stress sigma (taken as exact).
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;
@@ -92,6 +94,7 @@ template <int Dim> class Statics {
 
   private:
     enum Part : int { present, unit, infinitesimal_part };
+    [[nodiscard]] std::vector<double> guess(double sigma) const;
     [[nodiscard]] std::vector<unsigned char> nonzeros(std::span<const int> rows) const;
 
     const IsostaticStructure<Dim>* structure_;

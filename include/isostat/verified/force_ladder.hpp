@@ -8,6 +8,7 @@
 #include <isostat/verified/order.hpp>
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct ForceExpression {
 /// The solutions of H f = F for several right-hand sides, all on one rung, each with its proved bound:
 ///   double -> refined with residuals in double-double -> in MPFR with first_bits, twice as many, ... max_bits ->
 ///   exact.
+/// With `first_accuracy` the rung double has two steps: see LadderOptions.
 /// The rungs in floating point need the bound of the inverse (V3) and are skipped when there is none or when a climb
 /// gained nothing; exact numbers need only the proof of rank that `structure` is. Solutions are computed when asked
 /// for. The arguments must outlive the object.
@@ -56,11 +58,14 @@ template <int Dim> class ForceLadder {
 
     /// Adds a right-hand side (one number per degree of freedom, taken as exact); returns its number, from 0.
     /// `rate`: the force itself depends on the configuration, |F(q) - F(q*)|_2 <= rate |q - q*|_2 (true stresses).
-    int add(std::vector<double> force, double rate = 0);
+    /// `guess`: of the solution, or empty; changes the cost.
+    int add(std::vector<double> force, double rate = 0, std::vector<double> guess = {});
     [[nodiscard]] const std::vector<double>& force(int part) const;
 
     /// The solution on the present rung. A zero right-hand side has the exact solution 0 with bound 0 on every rung.
     const ForceSolution& solution(int part) const;
+    /// What is known of the solution so far, without solving: empty, or one number per contact.
+    [[nodiscard]] std::span<const double> known(int part) const;
     /// Component l of the solution on the present rung, as a hexadecimal floating-point number with `bits` bits of
     /// mantissa (rounded to nearest): for records and references.
     [[nodiscard]] std::string digits(int part, ContactId contact, int bits) const;

@@ -6,6 +6,7 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -35,10 +36,13 @@ ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const Isosta
 
 /// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the
 /// rounding of the residual and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound
-/// is infinite. Cost: two solves.
+/// is infinite. Cost: two solves. With `accuracy` > 0 and factors taken over the solve stops at that relative accuracy,
+/// estimated, and is not refined: fewer passes, and the larger bound that its residual gives. `guess`: empty, or where
+/// the iteration starts.
 template <int Dim>
 ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           const InverseBound& inverse, const std::vector<double>& force);
+                           const InverseBound& inverse, const std::vector<double>& force,
+                           std::span<const double> guess = {}, double accuracy = 0);
 
 /// Refines `solution` with residuals in double-double: bound near 1e-30 |f| |H^-1|. The right-hand side is the same
 /// `force`, taken as exact.
@@ -50,7 +54,7 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
 extern template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                           const std::vector<double>&);
 extern template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
-                                              const std::vector<double>&);
+                                              const std::vector<double>&, std::span<const double>, double);
 extern template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
                                              const Factorisation&, const InverseBound&, const std::vector<double>&);
 

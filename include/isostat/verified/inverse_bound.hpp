@@ -5,6 +5,7 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/linear/factorisation.hpp>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -22,10 +23,25 @@ struct InverseBound {
     double carried_from = 0;
 };
 
-/// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity.
+/// An order of elimination of little fill, for the blocks of a Cholesky factorisation.
+struct FillOrder {
+    std::vector<int> blocks;
+    double work = 0; ///< of a factorisation in this order when it was made
+};
+
+class BlockCholesky; // private to the room
+
+/// What one bound leaves for the next one, at a neighbouring vertex: changes the cost, never the validity. Copies share
+/// the memory: not for concurrent use.
 struct InverseBoundCache {
-    std::vector<double> vector;   ///< guess of the singular vector that belongs to sigma_min
-    std::vector<int> permutation; ///< fill-reducing order of the degrees of freedom
+    std::vector<double> vector; ///< guess of the singular vector that belongs to sigma_min
+    FillOrder order;
+    std::shared_ptr<BlockCholesky> workspace;
+    /// Back to an empty cache that keeps its memory: what follows does not depend on what was before.
+    void forget() {
+        vector.clear();
+        order = {};
+    }
 };
 
 /// First route: Cholesky factorisation (CHOLMOD, simplicial, in round to nearest) of H H^T - s I with s chosen from a

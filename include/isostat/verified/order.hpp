@@ -10,6 +10,9 @@ namespace isostat {
 
 /// How far a ladder may climb.
 struct LadderOptions {
+    /// Of the first solutions, with factors taken over: relative, estimated. They are improved to rounding, still on
+    /// the rung double, by the first climb. 0: at rounding at once, as with fresh factors.
+    double first_accuracy = 0;
     int first_bits = 256;  ///< of the first rung in MPFR; doubled on every climb
     int max_bits = 4096;   ///< cap: a comparison that is open there is a tie "to max_bits bits", unless exact
     int exact_size = 2000; ///< largest N_f for exact numbers (0.04 s at 200, 1 s at 800, grows like N_f^2.5)

@@ -1,5 +1,7 @@
 #include "bench/shared/report.hpp"
 
+#include <isostat/core/memory.hpp>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -119,6 +121,7 @@ struct Program::Implementation {
 };
 
 Program::Program(std::string name, std::string description) : implementation_(std::make_unique<Implementation>()) {
+    isostat::keep_freed_memory(); // as the program isostat does
     implementation_->name = std::move(name);
     implementation_->app.name(implementation_->name);
     implementation_->app.description(std::move(description));

@@ -90,7 +90,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
         return anew(); // it says why
     }
     const ApproximateInverse approximate =
-        from.factors_are_worn(arc_passes) ? ApproximateInverse(next->matrix())
+        from.factors_are_worn(arc_passes) ? from.factorisation.approximate().renewed(next->matrix())
                                           : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
-constexpr double enough_to_decide = 1e-10;
+constexpr double enough_to_decide = 1e-12;
 
 /// The same choice for the same step of a run, also after a resume (splitmix64 finaliser).
 std::uint64_t bits_for(std::uint64_t seed, long step) {

@@ -74,6 +74,17 @@ void round(const std::vector<Real>& x, const Real& error, ForceSolution& solutio
     solution.bound = bound.above();
 }
 
+/// What is said of forces in records holds to this fraction of the largest.
+constexpr double recorded_accuracy = 1e-7;
+
+double largest_of(const std::vector<double>& x) {
+    double largest = 0;
+    for (const double c : x) {
+        largest = std::max(largest, std::abs(c));
+    }
+    return largest;
+}
+
 /// Norm of the components of normals that the matrix of the structure leaves out because they are 0 in the stored
 /// configuration: `moved(j, i)` is a bound of what they are at other coordinates.
 template <int Dim, class Moved>
@@ -140,7 +151,7 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
 
 template <int Dim> double ForceLadder<Dim>::Implementation::normals() const {
     if (!rate) {
-        rate = vertex == nullptr        ? 0
+        rate = vertex == nullptr       ? 0
                : vertex->lipschitz > 0 ? normal_rate(vertex->lipschitz)
                                        : normal_rate(*packing, structure->contacts());
     }
@@ -272,6 +283,12 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
             s = solve_forces(*structure, *factorisation, *inverse, part.force, s.value.empty() ? part.guess : s.value,
                              rough ? options.first_accuracy : 0);
             part.guess.clear();
+            // The accuracy was estimated: where the bound does not confirm what records say, to rounding at once.
+            const double largest = largest_of(s.value);
+            if (part.rough && !(s.bound <= recorded_accuracy * largest)) {
+                part.rough = false;
+                s = solve_forces(*structure, *factorisation, *inverse, part.force, s.value);
+            }
         }
         if (rung != Rung::double_bound && s.rung == Rung::double_bound) {
             refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force);

@@ -5,7 +5,7 @@
 // from the library (tests/oracle). CPU time of one thread in units of one KLU analysis + factorisation. Writes
 // arc_levels.csv, arc_factors.csv and, with gnuplot, arc-accuracy.svg into the folder. The status is 1 when an arc ends
 // at another contact than in the run at level `decisions`, or when a run records something more than 100 times as wrong
-// as fresh factors at every arc make it (and above 1e-12 smallest radii, 1e-10 of the largest force): speed must not be
+// as fresh factors at every arc make it (and above 1e-12 smallest radii, 1e-7 of the largest force): speed must not be
 // paid for in digits. Usage:
 //   bench_arc_accuracy [--json FILE] [--equilibria E] [--repeats R] [folder [n | n:seed | state file]]
 // default: . 1936, 4 equilibria, 3 repeats
@@ -129,7 +129,7 @@ double velocity_error(std::vector<double> v, const True& truth) {
 /// positions in smallest radii, forces in units of the largest.
 constexpr double times_fresh = 100;
 constexpr double small_position = 1e-12;
-constexpr double small_force = 1e-10;
+constexpr double small_force = 1e-7; // to which `verify` compares recorded forces
 
 /// How the arcs are followed again.
 struct Choice {

@@ -128,7 +128,8 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
     inspection.rattlers = rattlers(vertex);
     CandidateList<Dim> candidates = find_candidates(state.packing, candidate_fraction);
-    auto gaps = vertex.check_gaps(candidates);
+    KeptCandidates kept;
+    auto gaps = vertex.check_gaps(candidates, kept);
     const bool isostatic = std::none_of(inspection.contacts.begin(), inspection.contacts.end(),
                                         [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!gaps.ok()) {

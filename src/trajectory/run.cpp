@@ -21,7 +21,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
-constexpr double enough_to_decide = 1e-10;
+constexpr double enough_to_decide = 1e-12;
 
 /// The same choice for the same step of a run, also after a resume (splitmix64 finaliser).
 std::uint64_t bits_for(std::uint64_t seed, long step) {
@@ -121,6 +121,7 @@ template <int Dim> class Run {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::unique_ptr<Vertex<Dim>> vertex_;
     CandidateList<Dim> candidates_;
+    KeptCandidates kept_; ///< of `candidates_`
     InverseBoundCache bound_cache_;
     EquilibriumRecord<Dim> record_;
     double margin_ = infinity; ///< of the decisions since the last equilibrium
@@ -226,7 +227,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
         }
-        auto gaps = made.value()->check_gaps(candidates_, perturbs());
+        auto gaps = made.value()->check_gaps(candidates_, kept_, perturbs());
         if (!gaps.ok()) {
             return located(gaps.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
                                                        to_string<Dim>(record.opened), to_string<Dim>(path.closed)));
@@ -508,7 +509,7 @@ template <int Dim> Result<bool> Run<Dim>::choose_start() {
     if (!made.ok()) {
         return located(made.failure(), "start");
     }
-    auto gaps = made.value()->check_gaps(candidates_, true);
+    auto gaps = made.value()->check_gaps(candidates_, kept_, true);
     if (!gaps.ok()) {
         return located(gaps.failure(), "start");
     }
@@ -642,7 +643,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
     }
     vertex_ = std::move(anew.value());
-    auto gaps = vertex_->check_gaps(candidates_, perturbs());
+    auto gaps = vertex_->check_gaps(candidates_, kept_, perturbs());
     if (!gaps.ok()) {
         return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
     }
@@ -733,7 +734,7 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
         }
         proved = std::move(anew.value());
         fresh_caches(proved->packing);
-        auto gaps = proved->check_gaps(candidates_);
+        auto gaps = proved->check_gaps(candidates_, kept_);
         if (!gaps.ok()) {
             return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
         }
@@ -827,7 +828,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         return located(made.failure(), "start");
     }
     vertex_ = std::move(made.value());
-    auto gaps = vertex_->check_gaps(candidates_, perturbs());
+    auto gaps = vertex_->check_gaps(candidates_, kept_, perturbs());
     if (!gaps.ok()) {
         return located(gaps.failure(), "start");
     }

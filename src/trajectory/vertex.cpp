@@ -1,6 +1,5 @@
 #include "trajectory/vertex.hpp"
 
-#include <isostat/contact/contact_set.hpp>
 #include <isostat/motion/arc.hpp>
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
 
@@ -90,7 +89,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
         return anew(); // it says why
     }
     const ApproximateInverse approximate =
-        from.factors_are_worn(arc_passes) ? ApproximateInverse(next->matrix())
+        from.factors_are_worn(arc_passes) ? from.factorisation.approximate().renewed(next->matrix())
                                           : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {
@@ -116,11 +115,12 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
 }
 
 template <int Dim>
-Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, bool ties_are_values) {
+Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept,
+                                                               bool ties_are_values) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction);
     }
-    const ContactSet kept(structure.contacts(), packing.disk_count());
+    const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;
     gaps.smallest = std::numeric_limits<double>::infinity();
     gaps.margin = std::numeric_limits<double>::infinity();
@@ -139,9 +139,9 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             gaps.where = contact;
         }
     };
-    for (const Contact& contact : candidates.contacts) {
-        if (!kept.contains(contact)) {
-            look(contact);
+    for (std::size_t k = 0; k < is_kept.size(); ++k) {
+        if (is_kept[k] == 0) {
+            look(candidates.contacts[k]);
         }
     }
     if (!doubtful.empty()) {

@@ -2,6 +2,8 @@
 /// \file
 /// A vertex with everything that is known of it: private to the room.
 
+#include "trajectory/kept_candidates.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
@@ -68,7 +70,8 @@ template <int Dim> class Vertex {
     /// there (T6). Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the
     /// precision reached.
     /// With `ties_are_values` they are returned instead; `undecided` when too few bits say that a gap is 0.
-    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, bool ties_are_values = false);
+    /// `kept`: for the next vertices with the same list.
+    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept, bool ties_are_values = false);
 
     /// Under `ties = "perturb"` only.
     std::unique_ptr<FirstOrderVertex<Dim>> perturbed;

@@ -74,13 +74,15 @@ void round(const std::vector<Real>& x, const Real& error, ForceSolution& solutio
     solution.bound = bound.above();
 }
 
-/// 2-norm of a correction, from above.
-double length_of(const std::vector<double>& correction) {
-    std::vector<double> size;
-    for (const double c : correction) {
-        size.push_back(std::abs(c));
+/// What is said of forces in records holds to this fraction of the largest.
+constexpr double recorded_accuracy = 1e-7;
+
+double largest_of(const std::vector<double>& x) {
+    double largest = 0;
+    for (const double c : x) {
+        largest = std::max(largest, std::abs(c));
     }
-    return norm_above(size);
+    return largest;
 }
 
 /// Norm of the components of normals that the matrix of the structure leaves out because they are 0 in the stored
@@ -149,7 +151,9 @@ template <int Dim> struct ForceLadder<Dim>::Implementation {
 
 template <int Dim> double ForceLadder<Dim>::Implementation::normals() const {
     if (!rate) {
-        rate = vertex == nullptr ? 0 : normal_rate(*packing, structure->contacts());
+        rate = vertex == nullptr       ? 0
+               : vertex->lipschitz > 0 ? normal_rate(vertex->lipschitz)
+                                       : normal_rate(*packing, structure->contacts());
     }
     return *rate;
 }
@@ -160,7 +164,7 @@ const typename ForceLadder<Dim>::Implementation::Place& ForceLadder<Dim>::Implem
         place.emplace();
         if (vertex != nullptr) {
             place->away = vertex->verdict == Verdict::proved
-                              ? (vertex->radius + length_of(vertex->correction)) * (1 + 4 * u)
+                              ? (vertex->radius + norm_above(vertex->correction)) * (1 + 4 * u)
                               : std::numeric_limits<double>::infinity();
             place->uncertainty = stored_uncertainty();
         }
@@ -186,7 +190,7 @@ template <int Dim> void ForceLadder<Dim>::Implementation::inflate(const Part& pa
         return;
     }
     const double residual =
-        s.bound * sigma + here.uncertainty * length_of(s.value) * (1 + 4 * u) + part.rate * here.away;
+        s.bound * sigma + here.uncertainty * norm_above(s.value) * (1 + 4 * u) + part.rate * here.away;
     s.bound = residual / left * (1 + 16 * u);
 }
 
@@ -198,7 +202,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::extend() {
         if (at.verdict != Verdict::proved) {
             return false;
         }
-        const double shift = length_of(at.correction);
+        const double shift = norm_above(at.correction);
         Place here;
         here.shift = shift;
         here.away = (shift + at.radius) * (1 + 4 * u);
@@ -279,6 +283,12 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
             s = solve_forces(*structure, *factorisation, *inverse, part.force, s.value.empty() ? part.guess : s.value,
                              rough ? options.first_accuracy : 0);
             part.guess.clear();
+            // The accuracy was estimated: where the bound does not confirm what records say, to rounding at once.
+            const double largest = largest_of(s.value);
+            if (part.rough && !(s.bound <= recorded_accuracy * largest)) {
+                part.rough = false;
+                s = solve_forces(*structure, *factorisation, *inverse, part.force, s.value);
+            }
         }
         if (rung != Rung::double_bound && s.rung == Rung::double_bound) {
             refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force);

@@ -31,33 +31,42 @@ struct Residual {
     double rounding;
 };
 
+/// A row of the residual: value, sum of the absolute values, and number of roundings.
+struct Row {
+    double r;
+    double size;
+    int terms;
+};
+
 /// Residual F - H x in double, with a bound of its distance from the exact residual (exact H: entries of fl(H) carry
 /// 5u). Returns an upper bound of the 2-norm of the exact residual.
 Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<double>& x,
-                            const std::vector<double>& force, std::vector<double>& r, std::vector<double>& size,
-                            std::vector<int>& terms) {
-    r = force;
+                            const std::vector<double>& force, std::vector<double>& r) {
     const auto n = static_cast<std::size_t>(h.rows);
+    std::vector<Row> rows(n);
     for (std::size_t i = 0; i < n; ++i) {
-        size[i] = std::abs(force[i]);
+        rows[i] = {force[i], std::abs(force[i]), 7}; // 5u of the entries, the product and the final sum
     }
-    std::fill(terms.begin(), terms.end(), 7); // 5u of the entries, the product and the final sum
+    Row* const row = rows.data();
+    const double* const value = h.value.data();
     for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
-        for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
-            const auto s = static_cast<std::size_t>(e);
-            const auto i = static_cast<std::size_t>(h.row[s]);
-            const double term = h.value[s] * x[j];
-            r[i] -= term;
-            size[i] += std::abs(term);
-            ++terms[i];
+        const auto end = static_cast<std::size_t>(h.start[j + 1]);
+        const double xj = x[j];
+        for (auto e = static_cast<std::size_t>(h.start[j]); e < end; ++e) {
+            Row& at = row[h.row[e]];
+            const double term = value[e] * xj;
+            at.r -= term;
+            at.size += std::abs(term);
+            ++at.terms;
         }
     }
     // Entries and products that underflow err by an absolute amount besides.
     const double lost = underflow_unit * (1 + max_abs(x));
-    std::vector<double>& unknown = size;
+    std::vector<double> unknown(n);
     std::vector<double> bound(n);
     for (std::size_t i = 0; i < n; ++i) {
-        unknown[i] = terms[i] * (u * 1.001 * size[i] + lost);
+        r[i] = row[i].r;
+        unknown[i] = row[i].terms * (u * 1.001 * row[i].size + lost);
         bound[i] = std::abs(r[i]) + unknown[i];
     }
     return {norm_above(bound), norm_above(unknown)};
@@ -80,16 +89,14 @@ ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Facto
         factorisation.solve_forces_from(solution.value, guess, rough ? accuracy : 4 * u);
     }
     std::vector<double> r(n);
-    std::vector<double> size(n);
-    std::vector<int> terms(n);
-    Residual residual = residual_in_double(h, solution.value, force, r, size, terms);
+    Residual residual = residual_in_double(h, solution.value, force, r);
     // A residual that is mostly the rounding of its own evaluation cannot be improved in double.
     if (!rough && !(residual.bound < 3 * residual.rounding)) {
         factorisation.solve_forces(r);
         for (std::size_t l = 0; l < n; ++l) {
             solution.value[l] += r[l];
         }
-        residual = residual_in_double(h, solution.value, force, r, size, terms);
+        residual = residual_in_double(h, solution.value, force, r);
     }
     solution.residual = max_abs(r);
     solution.bound = inverse.verdict == Verdict::proved ? residual.bound / inverse.sigma_min * (1 + 4 * u)

@@ -109,20 +109,6 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
     return result;
 }
 
-/// Upper bound of the 2-norm; by way of a scale only when a square may under- or overflow.
-double norm_of(const std::vector<double>& x) {
-    double sum = 0;
-    for (const double c : x) {
-        sum += c * c;
-    }
-    if (sum > 0x1p-900 && sum < 0x1p1000) {
-        return std::sqrt(sum) * (1 + 1e-10);
-    }
-    std::vector<double> size(x.size());
-    std::transform(x.begin(), x.end(), size.begin(), [](double c) { return std::abs(c); });
-    return norm_above(size);
-}
-
 } // namespace
 
 template <int Dim>
@@ -144,6 +130,7 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
     }
     VertexEnclosure vertex;
     vertex.max_gap = at.largest;
+    vertex.lipschitz = at.lipschitz * scale;
     vertex.radius = std::numeric_limits<double>::infinity();
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(structure.size());
@@ -169,8 +156,8 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             // 5u of the entries, products and sums; the row of DF is that of G times d / D.
             bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (16 * u + 1.01 * at.worst) * size;
         }
-        const double length = norm_of(step);
-        const double rest = inverse_norm * norm_of(bound) * (1 + 4 * u);
+        const double length = norm_above(step);
+        const double rest = inverse_norm * norm_above(bound) * (1 + 4 * u);
         const double eta = (length + rest) * (1 + 4 * u);
         const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);
         const double radius = eta * (1 + product) * (1 + 8 * u) / scale; // (1 - sqrt(1 - 2h)) / h <= 1 + h up to 1/4

@@ -3,18 +3,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <span>
 
 namespace isostat {
 
 /// One product or quotient that underflows errs by at most this (2^-1075 in truth).
 inline constexpr double underflow_unit = 0x1p-1074;
 
-/// An upper bound of the 2-norm of a non-negative vector: scaled by a power of two, so that no square under- or
-/// overflows. NaN or infinity when an entry is.
-inline double norm_above(const std::vector<double>& x) {
-    double largest = 0;
+/// An upper bound of the 2-norm: scaled by a power of two where a square might under- or overflow. NaN or infinity when
+/// an entry is.
+inline double norm_above(std::span<const double> x) {
+    double plain = 0;
     for (const double c : x) {
+        plain += c * c;
+    }
+    if (plain > 0x1p-900 && plain < 0x1p1000) { // what underflowed is below 2^-1022 n
+        return std::sqrt(plain) * (1 + 1e-10);
+    }
+    double largest = 0;
+    for (const double entry : x) {
+        const double c = std::abs(entry);
         if (!(c <= 0x1p1020)) {
             return c * 16; // NaN, infinity, or too large to be of use
         }

@@ -52,8 +52,11 @@ template <int Dim> double worst_gap_ratio(const Packing<Dim>& packing, const std
 /// |H(q) - H(q')|_2 <= normal_rate |q - q'| for the unit normals between the stored configuration and the true vertex:
 /// unit vectors of d and d' differ by at most |d - d'| / min(|d|, |d'|), and every distance there is above 0.99 D
 /// (\pre worst_gap_ratio below 1e-3 and |q - q'| below D_min / 1000, as V4 checks); then as in V4 (a).
+inline double normal_rate(double lipschitz_constant) {
+    return 1.02 * lipschitz_constant;
+}
 template <int Dim> double normal_rate(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    return 1.02 * lipschitz(packing, contacts);
+    return normal_rate(lipschitz(packing, contacts));
 }
 
 } // namespace isostat

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
 /// Interior-point method for one linear programme of the preparation: where the simplex method would need a number of
-/// pivots that grows with the packing, this needs some thirty sparse factorisations whatever the size.
+/// pivots that grows with the packing, this needs some thirty sparse factorisations (22 at n = 10 000).
 
 #include <atomic>
 #include <vector>
@@ -27,8 +27,8 @@ struct ActiveSet {
     std::vector<double> x;           ///< the point reached
 };
 
-/// Predictor-corrector steps (S. Mehrotra, SIAM J. Optim. 2, 575 (1992)) on the normal equations, CHOLMOD without BLAS,
-/// so that the bits do not depend on a library's kernels. Ends when the complementarity products are below `tolerance`
+/// Predictor-corrector steps (S. Mehrotra, SIAM J. Optim. 2, 575 (1992)) on the normal equations (CliqueMatrix), each
+/// direction centred again where that makes longer steps. Ends when the complementarity products are below `tolerance`
 /// (cost unit x length unit) and the constraints hold to it. A generic programme has one solution, strictly
 /// complementary: the active set is then the basis of the simplex method. It is a proposal: nothing is proved.
 /// Cost: O(n^1.5) per iteration for planar contact graphs, O(n log n) memory.

@@ -39,8 +39,9 @@ struct SoftMeasures {
 ///
 /// In patches, for large packings: the disks are divided by the squares of a grid, 30 diameters wide, in which they
 /// are at the beginning, and renumbered square by square, so that neighbours are near each other in memory too; `relax`
-/// then judges the power of the forces patch by patch. Over a whole large packing it hardly ever turns negative, while
-/// regions far from each other wait for it: the number of steps grew as n^0.7.
+/// then judges the power of the forces patch by patch. Over a whole large packing it stays positive for thousands of
+/// steps, and the damping with it at 1e-5 and less. One sample of 10 000 disks: 32 000 steps instead of 68 000 to the
+/// residual 1e-4 at the pressure 1e-4; at 1e-5 50 000 to 1e-3, but 135 000 instead of 85 000 to 1e-4.
 template <int Dim> class SoftDynamics {
   public:
     /// Takes the packing as it is; overlaps are allowed. The packing is up to date after each phase; during one only

@@ -55,7 +55,7 @@ struct PreparationOptions {
     /// Above this number of disks: the dynamics presses harder first (1e-2 of the stiffness), in patches, with fewer
     /// steps, and ends at 3 `relaxation`; programmes that are expected to change many contacts are solved by an
     /// interior-point method. The pivots of the simplex method grow as n (13 000 at n = 20 000, 5 ms each),
-    /// interior-point iterations do not.
+    /// interior-point iterations hardly do (28 at 10 000, 38 at 100 000).
     int large_above = 8192;
 };
 

@@ -138,6 +138,14 @@ template <int Dim> class Follower {
 
     /// Newton-like iteration with the chord matrix: kept gaps = 0 and `row`.y = target(at). Stops at rounding.
     template <class Row, class Target> bool converge(Packing<Dim>& at, Row row, Target target) {
+        const Packing<Dim> guess = at;
+        if (iterate(at, row, target, true)) {
+            return true;
+        }
+        at = guess; // acceleration may have taken rounding for a direction
+        return iterate(at, row, target, false);
+    }
+    template <class Row, class Target> bool iterate(Packing<Dim>& at, Row row, Target target, bool accelerated) {
         const double rounding = 2 * grid_step(at);
         double previous = infinity;
         double rate = infinity;
@@ -152,9 +160,9 @@ template <int Dim> class Follower {
             }
             // About linear convergence: the next change is this one times the worse of the last two ratios.
             const double ratio = size / previous;
-            const bool last = size <= rounding || (k > 1 && size * std::max(ratio, rate) <= 0.5 * rounding);
+            const bool last = size <= rounding || (k > 1 && size * std::max(ratio, rate) <= 0.1 * rounding);
             rate = ratio;
-            if (!last && size > 64 * rounding) {
+            if (accelerated && size > rounding) { // the last change too: the ratios are those of accelerated ones
                 acceleration_.improve(y_);
             }
             for (std::size_t i = 0; i < y_.size(); ++i) {
@@ -166,7 +174,7 @@ template <int Dim> class Follower {
             }
             // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
             if (k > 3 && size > (factorisation_->is_fresh() ? 0.5 : 0.9) * previous) {
-                return size <= 64 * rounding;
+                return size <= (accelerated ? 64 * rounding : 1e-9 * at.min_radius());
             }
             previous = size;
         }
@@ -671,10 +679,16 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
                 continue;
             }
         }
-        const double p_end = power_of(point->at, point->tangent);
+        double p_end = power_of(point->at, point->tangent);
         // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
         // in the new contact.
         const bool judged = !(power_.starts_at_zero && at_start);
+        if (judged && p_end < 0) { // it may only seem so: a turn at the very end of an arc is none
+            if (auto t = tangent_at(point->at, turn_tangent_accuracy)) {
+                point->tangent = std::move(*t);
+                p_end = power_of(point->at, point->tangent);
+            }
+        }
         if (!judged && p_end < 0 && s > 1e-6 * step_limit_) {
             forced_step = 0.25 * s; // it may have grown and turned within the step
             continue;

@@ -21,18 +21,10 @@ template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coo
 
 /// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
 constexpr double accuracy = 1e-12;
-/// Elsewhere they are as accurate as a record asks for, and as what opens next does: the estimated error times `safety`
-/// changes neither.
-constexpr double recorded_accuracy = 3e-8;
+/// Elsewhere they are as accurate as the record of the force that opens asks for, and as the choice of it does: the
+/// estimated error times `safety` changes neither.
+constexpr double recorded_accuracy = 1e-8;
 constexpr double safety = 30;
-
-double largest(std::span<const double> v) {
-    double size = 0;
-    for (const double c : v) {
-        size = std::max(size, std::abs(c));
-    }
-    return size;
-}
 
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
@@ -56,8 +48,9 @@ template <int Dim> class PlainVertex {
         load_on_dofs_ = force;
         error_ = safety * factorisation.solve_forces_until(force, guess, [&](std::span<const double> f, double error) {
             error_ = safety * error;
-            return rule == OpeningRule::most_negative && error_ <= recorded_accuracy * largest(f) &&
-                   clear(f, most_negative(f));
+            const std::size_t chosen = most_negative(f);
+            return rule == OpeningRule::most_negative &&
+                   (chosen == f.size() || error_ <= recorded_accuracy * std::abs(f[chosen])) && clear(f, chosen);
         });
     }
 

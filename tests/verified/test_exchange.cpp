@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
         const double sigma = from.state.load.stress[1];
         (void)near.force(ContactId(0), sigma);
         LadderOptions options;
-        options.first_accuracy = 1e-5;
+        options.first_accuracy = 1e-8; // rougher is refused: records hold to 1e-7
         Statics<2> rough(packing, from.state.load, structure, stale, proved->bound, options, nullptr, &near);
         Statics<2> exact(packing, from.state.load, structure, fresh, proved->bound);
         BOOST_TEST_REQUIRE(exact.climb()); // double-double
@@ -242,7 +242,7 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
         worst = std::max(worst, off);
         BOOST_TEST_REQUIRE(rough.climb());
         BOOST_TEST((rough.rung() == Rung::double_bound));
-        BOOST_TEST(rough.bound(sigma) < std::max(1e-3 * first, 1e-10));
+        BOOST_TEST(rough.bound(sigma) <= std::max(1e-3 * first, 1e-9));
         BOOST_TEST(differ() < 1e-9);
         BOOST_TEST_REQUIRE(rough.climb());
         BOOST_TEST((rough.rung() == Rung::double_double));

@@ -1,5 +1,6 @@
 #include "linear/solve_schedule.hpp"
 
+#include <isostat/core/dot.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/linear/approximate_inverse.hpp>
 
@@ -289,21 +290,7 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
         if (exchange.many.empty()) {
             power = exchange.few.dot(rhs);
         } else {
-            // Four sums at a time: a single one would wait for each addition. The order is fixed.
-            const double* v = exchange.many.data();
-            const double* x = rhs.data();
-            double sum[4] = {0, 0, 0, 0};
-            std::size_t i = 0;
-            for (; i + 4 <= rhs.size(); i += 4) {
-                sum[0] += v[i] * x[i];
-                sum[1] += v[i + 1] * x[i + 1];
-                sum[2] += v[i + 2] * x[i + 2];
-                sum[3] += v[i + 3] * x[i + 3];
-            }
-            for (; i < rhs.size(); ++i) {
-                sum[0] += v[i] * x[i];
-            }
-            power = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+            power = dot(exchange.many, rhs);
         }
         exchange.change.add_to(rhs, -power / exchange.speed);
     }

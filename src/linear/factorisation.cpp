@@ -1,3 +1,4 @@
+#include <isostat/core/dot.hpp>
 #include <isostat/linear/factorisation.hpp>
 
 #include <algorithm>
@@ -24,21 +25,6 @@ double largest(std::span<const double> x) {
         value = std::max(value, std::abs(c));
     }
     return value;
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    // Four sums: a single one would wait for each addition. The order is fixed.
-    std::array<double, 4> sum{};
-    std::size_t i = 0;
-    for (; i + 4 <= a.size(); i += 4) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            sum[k] += a[i + k] * b[i + k];
-        }
-    }
-    for (; i < a.size(); ++i) {
-        sum[0] += a[i] * b[i];
-    }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /// A direction and its image under the matrix.

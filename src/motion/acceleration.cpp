@@ -1,27 +1,10 @@
 #include "motion/acceleration.hpp"
 
+#include <isostat/core/dot.hpp>
+
 #include <algorithm>
 
 namespace isostat {
-
-namespace {
-
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-    // Four sums: a single one would wait for each addition. The order is fixed.
-    std::array<double, 4> sum{};
-    std::size_t i = 0;
-    for (; i + 4 <= a.size(); i += 4) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            sum[k] += a[i + k] * b[i + k];
-        }
-    }
-    for (; i < a.size(); ++i) {
-        sum[0] += a[i] * b[i];
-    }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
-} // namespace
 
 void Acceleration::improve(std::vector<double>& y) {
     if (count_ > 0) {

@@ -262,8 +262,8 @@ template <int Dim> class Follower {
             return 3 * product / std::sqrt(square);
         };
         const double p1 = s * power_of(q_, curvature_);
-        // With three of the four the lowest value is known to the size of the rest: a pass for the fourth only where
-        // that could matter.
+        // A pass for the fourth number only where the curved part, as the other three show it, could bring the power
+        // near 0. Like the cubic itself this is an estimate, not a proof.
         const double rest = std::abs(p_end - p_start - p1);
         if (std::min(p_start, p_start + p1) > 2 * rest) {
             return std::nullopt;

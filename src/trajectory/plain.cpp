@@ -68,9 +68,9 @@ template <int Dim> class PlainVertex {
         }
         return infinitesimal_;
     }
-    [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits) {
-        const auto chosen = stage(true, rule, fresh_hold, random_bits);
-        return chosen ? chosen : stage(false, rule, fresh_hold, random_bits);
+    [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, std::uint64_t random_bits) {
+        const auto chosen = stage(true, rule, random_bits);
+        return chosen ? chosen : stage(false, rule, random_bits);
     }
     /// Whether the force in a contact is compressive.
     [[nodiscard]] bool compressive(std::size_t l) {
@@ -118,7 +118,7 @@ template <int Dim> class PlainVertex {
     }
 
     /// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
-    std::optional<Opening> stage(bool finite, OpeningRule rule, ContactId fresh_hold, std::uint64_t random_bits) {
+    std::optional<Opening> stage(bool finite, OpeningRule rule, std::uint64_t random_bits) {
         if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
             return std::nullopt;
         }
@@ -127,7 +127,7 @@ template <int Dim> class PlainVertex {
         const auto size = [&](std::size_t l) { return contacts[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l]; };
         std::vector<std::size_t> negative;
         for (std::size_t l = 0; l < contacts.size(); ++l) {
-            if (ContactId(l) != fresh_hold && is_structural_zero(l) != finite && size(l) < 0) {
+            if (is_structural_zero(l) != finite && size(l) < 0) {
                 negative.push_back(l);
             }
         }
@@ -302,7 +302,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         if (record.power_turn) { // the ends of a straight strut carry one force there: only a proof orders them
             return PlainEnd<Dim>{here->packing, structure->contacts(), opening.contact};
         }
-        const auto chosen = here->choose(options.rule, ContactId(), calls.random_bits());
+        const auto chosen = here->choose(options.rule, calls.random_bits());
         if (!chosen) {
             return PlainEnd<Dim>{here->packing, structure->contacts(), ContactId()};
         }

@@ -71,6 +71,15 @@ sparse::Matrix<double> with_exchanges(const sparse::Matrix<double>& h, const std
     return next;
 }
 
+void check_solves(const ApproximateInverse& inverse, const sparse::Matrix<double>& h, const std::vector<double>& rhs) {
+    auto f = rhs;
+    inverse.forces(f);
+    BOOST_TEST(residual_of_forces(h, f, rhs) < 1e-10 * largest(f));
+    auto v = rhs;
+    inverse.velocities(v);
+    BOOST_TEST(residual_of_velocities(h, v, rhs) < 1e-10 * largest(v));
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_CASE(exchanged_operators_solve_with_the_exchanged_matrix) {
@@ -83,12 +92,7 @@ BOOST_AUTO_TEST_CASE(exchanged_operators_solve_with_the_exchanged_matrix) {
         slots.push_back(slot);
         const auto next = with_exchanges(h, slots);
         inverse = inverse.exchanged(slot, next);
-        auto f = rhs;
-        inverse.forces(f);
-        BOOST_TEST(residual_of_forces(next, f, rhs) < 1e-10 * largest(f));
-        auto v = rhs;
-        inverse.velocities(v);
-        BOOST_TEST(residual_of_velocities(next, v, rhs) < 1e-10 * largest(v));
+        check_solves(inverse, next, rhs);
     }
     BOOST_TEST(inverse.exchanges() == 4);
 }
@@ -108,12 +112,7 @@ BOOST_AUTO_TEST_CASE(renewed_factors_are_those_of_the_new_matrix) {
         inverse = inverse.renewed(next);
         BOOST_TEST(inverse.valid());
         BOOST_TEST(inverse.exchanges() == 0);
-        auto f = rhs;
-        inverse.forces(f);
-        BOOST_TEST(residual_of_forces(next, f, rhs) < 1e-10 * largest(f));
-        auto v = rhs;
-        inverse.velocities(v);
-        BOOST_TEST(residual_of_velocities(next, v, rhs) < 1e-10 * largest(v));
+        check_solves(inverse, next, rhs);
     }
 }
 

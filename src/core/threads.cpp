@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cassert>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -13,6 +14,30 @@
 #include <vector>
 
 namespace isostat {
+
+/// Whoever turns `stage` from waiting to begun does the work.
+struct Errand::Task {
+    enum Stage : int { waiting, begun, done };
+    std::function<void()> work;
+    std::exception_ptr failure;
+    std::atomic<int> stage{waiting};
+
+    explicit Task(std::function<void()> w) : work(std::move(w)) {}
+    bool claim() {
+        int expected = waiting;
+        return stage.compare_exchange_strong(expected, begun, std::memory_order_acq_rel);
+    }
+    void perform() {
+        try {
+            work();
+        } catch (...) {
+            failure = std::current_exception();
+        }
+        work = nullptr;
+        stage.store(done, std::memory_order_release);
+        stage.notify_all();
+    }
+};
 
 namespace {
 
@@ -23,6 +48,10 @@ void pause_briefly() {
     std::this_thread::yield();
 #endif
 }
+
+constexpr long longest_spin = 1000; // a pause is some 40 ns
+
+} // namespace
 
 /// Workers that take pieces of one job at a time. The job number and the pieces left share one word, so a worker that
 /// comes late cannot take a piece of a job that it has not seen.
@@ -42,6 +71,17 @@ class Pool {
         for (std::thread& worker : workers_) {
             worker.join();
         }
+    }
+
+    /// \pre as for `run`: one thread at a time
+    void send(std::shared_ptr<Errand::Task> task) {
+        {
+            const std::scoped_lock lock(errands_guard_);
+            errands_.push_back(std::move(task));
+        }
+        errands_waiting_.fetch_add(1, std::memory_order_release);
+        ticket_.fetch_add(next_job, std::memory_order_release);
+        ticket_.notify_all();
     }
 
     void run(std::size_t pieces, const std::function<void(std::size_t)>& work) {
@@ -68,7 +108,6 @@ class Pool {
 
   private:
     static constexpr std::uint64_t next_job = std::uint64_t{1} << 32U;
-    static constexpr long longest_spin = 1000; // a pause is some 40 ns
 
     bool take_one() {
         std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
@@ -91,6 +130,27 @@ class Pool {
         return false;
     }
 
+    /// Does one errand that nobody has begun, if there is one.
+    bool take_errand() {
+        while (errands_waiting_.load(std::memory_order_acquire) > 0) {
+            std::shared_ptr<Errand::Task> task;
+            {
+                const std::scoped_lock lock(errands_guard_);
+                if (errands_.empty()) {
+                    return false;
+                }
+                task = std::move(errands_.front());
+                errands_.pop_front();
+            }
+            errands_waiting_.fetch_sub(1, std::memory_order_relaxed);
+            if (task->claim()) {
+                task->perform();
+                return true;
+            }
+        }
+        return false;
+    }
+
     void serve();
 
     const std::function<void(std::size_t)>* work_ = nullptr;
@@ -100,28 +160,38 @@ class Pool {
     std::mutex failure_guard_;
     std::exception_ptr failure_;
     std::size_t failed_piece_ = 0;
-    std::vector<std::thread> workers_;
+    std::mutex errands_guard_;
+    std::deque<std::shared_ptr<Errand::Task>> errands_;
+    std::atomic<int> errands_waiting_{0};
+    std::vector<std::thread> workers_; ///< last: they use the rest
 };
 
-thread_local bool inside = false; // a piece is being worked on by this thread
+namespace {
+
+thread_local bool inside = false; // a piece or an errand is being worked on by this thread
+
+} // namespace
 
 void Pool::serve() {
     inside = true;
     long spins = 0;
     while (!ending_.load(std::memory_order_relaxed)) {
-        if (take_one()) {
+        if (take_one() || take_errand()) {
             spins = 0;
         } else if (++spins < longest_spin) {
             pause_briefly();
         } else {
             const std::uint64_t seen = ticket_.load(std::memory_order_acquire);
-            if (seen % next_job == 0 && !ending_.load(std::memory_order_relaxed)) {
+            if (seen % next_job == 0 && errands_waiting_.load(std::memory_order_relaxed) == 0 &&
+                !ending_.load(std::memory_order_relaxed)) {
                 ticket_.wait(seen, std::memory_order_acquire);
             }
             spins = 0;
         }
     }
 }
+
+namespace {
 
 struct Crew {
     std::mutex in_use;
@@ -177,6 +247,52 @@ void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>&
         ~Outside() { inside = false; }
     } outside;
     c.pool->run(pieces, work);
+}
+
+Errand::Errand(std::function<void()> work) : task_(std::make_shared<Task>(std::move(work))) {
+    Crew& c = crew();
+    std::unique_lock lock(c.in_use, std::defer_lock);
+    if (inside || c.wanted < 2 || !lock.try_lock()) {
+        return;
+    }
+    if (!c.pool) {
+        c.pool = std::make_unique<Pool>(c.wanted - 1);
+    }
+    c.pool->send(task_);
+}
+
+Errand::Errand(Errand&&) noexcept = default;
+
+Errand& Errand::operator=(Errand&& other) noexcept {
+    Errand before(std::move(*this));
+    task_ = std::move(other.task_);
+    return *this;
+}
+
+Errand::~Errand() {
+    if (task_ != nullptr && !task_->claim()) {
+        task_->stage.wait(Task::begun, std::memory_order_acquire);
+    }
+}
+
+void Errand::finish() {
+    if (task_ == nullptr) {
+        return;
+    }
+    const std::shared_ptr<Task> task = std::move(task_);
+    if (task->claim()) {
+        task->perform();
+    }
+    for (long spins = 0; task->stage.load(std::memory_order_acquire) != Task::done; ++spins) {
+        if (spins < longest_spin) {
+            pause_briefly();
+        } else {
+            task->stage.wait(Task::begun, std::memory_order_acquire);
+        }
+    }
+    if (task->failure) {
+        std::rethrow_exception(task->failure);
+    }
 }
 
 } // namespace isostat

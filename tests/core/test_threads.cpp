@@ -4,9 +4,12 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -66,6 +69,92 @@ BOOST_AUTO_TEST_CASE(the_exception_of_the_lowest_piece_comes_back_and_the_next_c
             parallel_pieces(10, [&](std::size_t piece) { sum += static_cast<int>(piece); });
             BOOST_TEST(sum == 45);
         }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_errand_is_done_once_whoever_does_it) {
+    for (const int count : {1, 2, 4}) {
+        const Threads threads(count);
+        for (int round = 0; round < 500; ++round) {
+            std::atomic<int> done{0};
+            std::vector<Errand> errands;
+            for (int k = 0; k < round % 7; ++k) {
+                errands.emplace_back([&done] { ++done; });
+            }
+            std::vector<int> pieces(5, 0); // the others keep serving
+            parallel_pieces(pieces.size(), [&](std::size_t piece) { ++pieces[piece]; });
+            for (Errand& errand : errands) {
+                errand.finish();
+                BOOST_TEST(!errand.pending());
+                errand.finish(); // nothing left
+            }
+            BOOST_TEST(done == round % 7);
+            BOOST_TEST((pieces == std::vector<int>(pieces.size(), 1)));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_errand_runs_beside_its_caller) {
+    const Threads threads(2);
+    std::atomic<bool> begun{false};
+    Errand errand([&] { begun = true; });
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!begun && std::chrono::steady_clock::now() < until) {
+        std::this_thread::yield();
+    }
+    BOOST_TEST(begun.load());
+    errand.finish();
+}
+
+BOOST_AUTO_TEST_CASE(one_thread_does_an_errand_when_it_is_asked_for_and_not_at_all_otherwise) {
+    int done = 0;
+    {
+        Errand errand([&] { ++done; });
+        BOOST_TEST(done == 0);
+        errand.finish();
+        BOOST_TEST(done == 1);
+        errand = Errand([&] { ++done; });
+        BOOST_TEST(errand.pending());
+    }
+    BOOST_TEST(done == 1);
+}
+
+BOOST_AUTO_TEST_CASE(nothing_of_an_errand_is_left_running_when_it_is_dropped) {
+    const Threads threads(3);
+    for (int round = 0; round < 200; ++round) {
+        std::vector<int> written(1000, 0);
+        {
+            Errand errand([&] { std::fill(written.begin(), written.end(), 1); });
+        }
+        const int first = written.front();
+        BOOST_TEST((written == std::vector<int>(written.size(), first)));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_an_errand_threw_comes_out_of_finish) {
+    for (const int count : {1, 2}) {
+        const Threads threads(count);
+        Promised<int> good([] { return 7; });
+        Promised<int> bad([]() -> int { throw std::runtime_error("bad"); });
+        BOOST_CHECK_THROW((void)bad.take(), std::runtime_error);
+        BOOST_TEST(good.take() == 7);
+        BOOST_TEST(!good.pending());
+    }
+}
+
+BOOST_AUTO_TEST_CASE(errands_within_errands_and_pieces_end) {
+    const Threads threads(2);
+    for (int round = 0; round < 100; ++round) {
+        std::atomic<int> sum{0};
+        const auto nested = [&sum] {
+            Errand inner([&sum] { sum += 1; });
+            parallel_pieces(4, [&sum](std::size_t) { sum += 10; });
+            inner.finish();
+        };
+        Errand outer(nested);
+        parallel_pieces(3, [&](std::size_t) { nested(); });
+        outer.finish();
+        BOOST_TEST(sum == 4 * 41);
     }
 }
 

@@ -5,6 +5,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <utility>
 
 namespace isostat {
 
@@ -24,6 +27,51 @@ int available_cores();
 /// while another thread's call is under way, it does all the work itself. Cost beyond the work: none with one thread or
 /// one piece, else about a microsecond; the threads wait busily for some 50 microseconds after a call, then sleep.
 void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>& work);
+
+/// One piece of work beside what the caller goes on with. A thread that has nothing else to do begins it; `finish` does
+/// it where none has, so that with one thread it is done there and then. What the work reads must not change until
+/// then, and nothing else may read what it writes. Begun or not, its results have the same bits.
+class Errand {
+  public:
+    Errand() = default; ///< nothing to do
+    explicit Errand(std::function<void()> work);
+    Errand(Errand&&) noexcept;
+    /// As if the one before ended.
+    Errand& operator=(Errand&&) noexcept;
+    /// Waits for work that was begun; work that was not is never done.
+    ~Errand();
+
+    /// Returns when the work is done; throws what it threw. Afterwards there is nothing to do.
+    void finish();
+    /// There is work that `finish` was not called for.
+    [[nodiscard]] bool pending() const { return task_ != nullptr; }
+
+  private:
+    friend class Pool;
+    struct Task;
+    std::shared_ptr<Task> task_;
+};
+
+/// A value that an errand makes.
+template <class Value> class Promised {
+  public:
+    Promised() = default;
+    template <class Make>
+    explicit Promised(Make make)
+        : value_(std::make_shared<std::optional<Value>>()),
+          errand_([to = value_, make = std::move(make)] { to->emplace(make()); }) {}
+
+    /// \pre pending()
+    [[nodiscard]] Value take() {
+        errand_.finish();
+        return std::move(**value_);
+    }
+    [[nodiscard]] bool pending() const { return errand_.pending(); }
+
+  private:
+    std::shared_ptr<std::optional<Value>> value_;
+    Errand errand_;
+};
 
 /// Number of pieces of at most `size` items each, and the bounds of one: [first, last).
 struct Pieces {

@@ -155,7 +155,14 @@ ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& mat
     }
     ApproximateInverse inverse;
     inverse.base_ = std::move(base);
+    inverse.make_schedule();
     return inverse;
+}
+
+void ApproximateInverse::make_schedule() {
+    if (schedule_ == nullptr && valid() && base_->block_rows.empty()) {
+        schedule_ = std::make_shared<const SolveSchedule>(*base_->symbolic, *base_->numeric);
+    }
 }
 
 ApproximateInverse ApproximateInverse::of_block(const sparse::Matrix<double>& matrix, std::vector<int> rows,
@@ -233,9 +240,7 @@ ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<
     }
     ApproximateInverse next(*this);
     next.exchanges_.push_back(std::move(exchange));
-    if (next.schedule_ == nullptr && valid() && base_->block_rows.empty()) {
-        next.schedule_ = std::make_shared<const SolveSchedule>(*base_->symbolic, *base_->numeric);
-    }
+    next.make_schedule();
     next.mechanism_.reset();
     next.mechanism_slot_ = -1;
     return next;

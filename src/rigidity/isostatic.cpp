@@ -150,7 +150,14 @@ sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, 
 template <int Dim>
 Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim>& packing,
                                                                std::vector<Contact> contacts) {
-    IsostaticStructure structure;
+    auto proof = RankProof<Dim>::begin(packing, std::move(contacts));
+    return proof.ok() ? proof.value().conclude() : proof.failure();
+}
+
+template <int Dim>
+Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::vector<Contact> contacts) {
+    RankProof proof;
+    IsostaticStructure<Dim>& structure = proof.structure_;
     structure.dofs_ = std::make_shared<const DofMap<Dim>>(packing);
     const int dof_count = structure.dofs_->dof_count();
     const int contact_count = static_cast<int>(contacts.size());
@@ -160,33 +167,48 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
             fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
                         dof_count, contact_count)};
     }
-    auto matrix = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *structure.dofs_, contacts));
-    auto ordering = std::make_shared<const sparse::Ordering>(*matrix);
+    structure.matrix_ =
+        std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *structure.dofs_, contacts));
+    auto ordering = std::make_shared<const sparse::Ordering>(*structure.matrix_);
     if (!ordering->structurally_regular()) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
                                    dof_count, ordering->structural_rank())};
     }
-    count_work(Work::rank_proofs);
-    // Full rank over any prime field is a proof; the small field is tried first because it costs half.
-    int rank = exact::rank(
-        reduced_contact_matrix(packing, *structure.dofs_, contacts, exact::mersenne31, exact::residue31), *ordering);
-    if (rank != dof_count) {
-        rank = exact::rank(exact_contact_matrix(packing, *structure.dofs_, contacts), *ordering);
-    }
-    if (rank != dof_count) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("the rank of the contact matrix mod 2^61-1 is {}, N_f = N = {}: not proved regular",
-                                   rank, dof_count)};
-    }
+    proof.elimination_ = Promised<int>([packing, dofs = structure.dofs_, contacts, ordering] {
+        count_work(Work::rank_proofs);
+        // Full rank over any prime field is a proof; the small field is tried first because it costs half.
+        const int rank = exact::rank(
+            reduced_contact_matrix(packing, *dofs, contacts, exact::mersenne31, exact::residue31), *ordering);
+        return rank == dofs->dof_count() ? rank
+                                         : exact::rank(exact_contact_matrix(packing, *dofs, contacts), *ordering);
+    });
     structure.contacts_ = std::move(contacts);
-    structure.matrix_ = std::move(matrix);
+    structure.evidence_ = RegularityEvidence::none;
     structure.matching_.resize(static_cast<std::size_t>(dof_count));
     for (std::size_t k = 0; k < structure.matching_.size(); ++k) {
         structure.matching_[static_cast<std::size_t>(ordering->row_order()[k])] = ordering->column_order()[k];
     }
     structure.ordering_ = std::move(ordering);
-    return structure;
+    return proof;
+}
+
+template <int Dim> bool RankProof<Dim>::is_regular() {
+    if (elimination_.pending()) {
+        rank_ = elimination_.take();
+    }
+    return rank_ == structure_.size();
+}
+
+template <int Dim> Result<IsostaticStructure<Dim>> RankProof<Dim>::conclude() {
+    if (!is_regular()) {
+        return Failure{FailureKind::not_isostatic,
+                       fmt::format("the rank of the contact matrix mod 2^61-1 is {}, N_f = N = {}: not proved regular",
+                                   rank_, structure_.size())};
+    }
+    IsostaticStructure<Dim> proved = structure_;
+    proved.evidence_ = RegularityEvidence::elimination;
+    return proved;
 }
 
 template <int Dim>
@@ -238,5 +260,6 @@ template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMa
 template sparse::Matrix<std::uint64_t> exact_contact_matrix<2>(const Packing<2>&, const DofMap<2>&,
                                                                const std::vector<Contact>&);
 template class IsostaticStructure<2>;
+template class RankProof<2>;
 
 } // namespace isostat

@@ -1,5 +1,7 @@
 #include "trajectory/plain.hpp"
 
+#include <isostat/core/threads.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -194,10 +196,48 @@ class Wear {
     void renew() { *this = {}; }
 
   private:
-    static constexpr double factorisation_in_passes = 50; ///< KLU: analysis and factorisation, n = 1936, 4900
+    static inline const double factorisation_in_passes = std::getenv("FP") ? std::atof(std::getenv("FP")) : 50;
     double last_ = 0;
     double sum_ = 0;
     int exchanges_ = 0;
+};
+
+/// New factors made beside the arcs, which go on with the old ones meanwhile.
+class Renewal {
+  public:
+    /// Of the matrix that `old` stands for. Nothing when one is under way.
+    void begin(const ApproximateInverse& old, std::shared_ptr<const sparse::Matrix<double>> matrix) {
+        if (!factors_.pending()) {
+            slots_.clear();
+            factors_ = Promised<ApproximateInverse>([old, matrix = std::move(matrix)] { return old.renewed(*matrix); });
+        }
+    }
+    /// One more exchange: the new factors with all that they missed, when it is time to take them.
+    std::optional<ApproximateInverse> after(int slot, const sparse::Matrix<double>& matrix) {
+        if (!factors_.pending()) {
+            return std::nullopt;
+        }
+        if (std::find(slots_.begin(), slots_.end(), slot) == slots_.end()) {
+            slots_.push_back(slot);
+        }
+        if (++arcs_ < arcs_beside) {
+            return std::nullopt;
+        }
+        arcs_ = 0;
+        ApproximateInverse inverse = factors_.take();
+        for (const int missed : slots_) {
+            inverse = inverse.exchanged(missed, matrix);
+        }
+        return inverse;
+    }
+
+  private:
+    /// As many as take a core about the time of new factors. A fixed number: when they are ready depends on the
+    /// machine, when they are taken must not.
+    static constexpr int arcs_beside = 2;
+    Promised<ApproximateInverse> factors_;
+    std::vector<int> slots_; ///< exchanged since
+    int arcs_ = 0;
 };
 
 /// Decrease of W along an arc; the second is what rounding may have changed.
@@ -228,6 +268,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
     std::unique_ptr<PlainVertex<Dim>> here;
     std::string arc_kind = kind;
     Wear wear;
+    Renewal renewal;
     bool first = true;
     while (true) {
         ArcRecord<Dim> record;
@@ -275,18 +316,22 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
             return Failure{FailureKind::not_isostatic,
                            fmt::format("the contacts are structurally singular at the end of {}", names())};
         }
+        std::optional<ApproximateInverse> approximate;
         wear.add((path.passes + factorisation->passes()) * factorisation->approximate().relative_cost(),
                  factorisation->approximate().exchanges());
-        const bool worn = wear.out();
-        ApproximateInverse approximate = worn ? factorisation->approximate().renewed(next->matrix())
-                                              : factorisation->approximate().exchanged(next->slot(), next->matrix());
-        if (worn) {
+        if (auto renewed = renewal.after(next->slot(), next->matrix())) {
+            approximate = std::move(renewed);
             wear.renew();
+        } else {
+            approximate = factorisation->approximate().exchanged(next->slot(), next->matrix());
+        }
+        auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
+        if (wear.out()) {
+            renewal.begin(*approximate, unproved.shared_matrix());
         }
         const std::vector<double> guess = here ? std::move(here->force) : std::vector<double>();
-        here = std::make_unique<PlainVertex<Dim>>(std::move(path.end),
-                                                  IsostaticStructure<Dim>::without_proof(std::move(*next)),
-                                                  std::move(approximate), load, guess, options.rule);
+        here = std::make_unique<PlainVertex<Dim>>(std::move(path.end), std::move(unproved), *approximate, load, guess,
+                                                  options.rule);
         packing = &here->packing;
         structure = &here->structure;
         factorisation = &here->factorisation;

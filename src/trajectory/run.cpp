@@ -727,13 +727,15 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
             return located(end.failure(), where());
         }
         bound_cache_.forget();
+        Promised<CandidateList<Dim>> listed(
+            [packing = end.value().packing] { return find_candidates(packing, candidate_fraction); });
         auto anew =
             Vertex<Dim>::make(std::move(end.value().packing), std::move(end.value().contacts), load, bound_cache_);
         if (!anew.ok()) {
             return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
         }
         proved = std::move(anew.value());
-        fresh_caches(proved->packing);
+        candidates_ = listed.take();
         auto gaps = proved->check_gaps(candidates_, kept_);
         if (!gaps.ok()) {
             return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));

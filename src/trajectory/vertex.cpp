@@ -11,10 +11,16 @@
 
 namespace isostat {
 
+namespace {
+
+constexpr int row_limit = 20000; ///< above, a bound of the inverse row by row takes too long
+
+} // namespace
+
 template <int Dim>
-Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache)
-    : packing(std::move(p)), structure(std::move(s)), factorisation(structure),
-      inverse(bound_inverse(structure, factorisation, cache)),
+Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load, InverseBoundCache& cache)
+    : packing(std::move(p)), structure(proof.unproved()), factorisation(structure),
+      inverse(bound_inverse(structure, factorisation, cache, row_limit, [&] { return proof.is_regular(); })),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
 
@@ -59,11 +65,16 @@ template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                        const Load<Dim>& load, InverseBoundCache& cache) {
-    auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
-    if (!structure.ok()) {
-        return structure.failure();
+    auto proof = RankProof<Dim>::begin(packing, std::move(contacts));
+    if (!proof.ok()) {
+        return proof.failure();
     }
-    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), std::move(structure.value()), load, cache));
+    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), proof.value(), load, cache));
+    auto proved = proof.value().conclude();
+    if (!proved.ok()) {
+        return proved.failure();
+    }
+    vertex->structure = std::move(proved.value());
     if (vertex->inverse.verdict != Verdict::proved) { // small structures: with as many bits as it takes
         vertex->inverse = bound_inverse_multiprecision(vertex->packing, vertex->structure);
         vertex->enclosure = enclose_vertex(vertex->packing, vertex->structure, vertex->factorisation, vertex->inverse);
@@ -116,7 +127,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
 
 template <int Dim>
 Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept,
-                                                               bool ties_are_values) {
+                                                           bool ties_are_values) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction);
     }

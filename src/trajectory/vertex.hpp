@@ -77,7 +77,8 @@ template <int Dim> class Vertex {
     std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
 
   private:
-    Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, const Load<Dim>& load, InverseBoundCache& cache);
+    /// Nothing is proved unless the proof is concluded.
+    Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load, InverseBoundCache& cache);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
            const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near);
     /// What every vertex needs, or why not.

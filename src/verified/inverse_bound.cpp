@@ -163,11 +163,14 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& h, const ApproximateIn
 
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, int row_limit) {
+                           InverseBoundCache& cache, int row_limit, const std::function<bool()>& worth_more) {
     const sparse::Matrix<double>& h = structure.matrix();
     const CholeskyOutcome first = by_cholesky(h, factorisation.approximate(), cache);
     if (first.bound.verdict == Verdict::proved) {
         return first.bound;
+    }
+    if (worth_more && !worth_more()) {
+        return {};
     }
     const double estimated = first.estimated;
     const double entry_error = first.entry_error;
@@ -196,6 +199,7 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& cont
 
 template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
                                                           InverseBoundCache&);
-template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int);
+template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int,
+                                       const std::function<bool()>&);
 
 } // namespace isostat

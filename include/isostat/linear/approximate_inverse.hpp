@@ -15,7 +15,8 @@ class SolveSchedule;
 /// An operator M^-1 close to H^-1, made of the LU factors (KLU) of a base matrix and one rank-one correction for each
 /// column exchanged since (product form, as in the simplex method; proofs/exchange.md). Columns that stay keep the
 /// values they had when the base was factorised. *Nothing is proved by what it returns*: it makes guesses whose
-/// residuals are then bounded with the true matrix. A value; copies share the factors.
+/// residuals are then bounded with the true matrix. A value; copies share the factors, and with them the memory that
+/// solves with factors fresh from the constructor use: then not for concurrent use.
 class ApproximateInverse {
   public:
     /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern (`Ordering::symbolic`), when there is
@@ -23,8 +24,8 @@ class ApproximateInverse {
     explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
 
     /// New factors, of a matrix with nearly the same columns in the same places: the order of the columns is taken
-    /// over, and with it most of the analysis, until the factors have filled up by a fifth. Cost: half of that of the
-    /// constructor.
+    /// over, and with it most of the analysis, until the factors have filled up by a fifth. Columns exchanged before come
+    /// last, where they fill least. Cost: half of that of the constructor.
     [[nodiscard]] ApproximateInverse renewed(const sparse::Matrix<double>& matrix) const;
 
     /// Of a block that moves by itself: the square submatrix of the given rows (degrees of freedom) and columns
@@ -54,11 +55,12 @@ class ApproximateInverse {
 
   private:
     ApproximateInverse() = default;
+    void make_schedule();
     struct Base;
     struct Exchange;
     std::shared_ptr<const Base> base_;
     std::vector<std::shared_ptr<const Exchange>> exchanges_;
-    std::shared_ptr<const SolveSchedule> schedule_; ///< from the first exchange on: many solves follow
+    std::shared_ptr<const SolveSchedule> schedule_; ///< of factors that serve many solves: renewed or exchanged
     mutable std::shared_ptr<const std::vector<double>> mechanism_;
     mutable int mechanism_slot_ = -1;
 };

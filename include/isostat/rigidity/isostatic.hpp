@@ -5,6 +5,7 @@
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/ids.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/core/threads.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/sparse/pattern.hpp>
 
@@ -105,6 +106,7 @@ template <int Dim> class IsostaticStructure {
     [[nodiscard]] const sparse::Ordering& ordering() const;
 
   private:
+    template <int> friend class RankProof;
     IsostaticStructure() = default;
     std::vector<Contact> contacts_;
     std::shared_ptr<const DofMap<Dim>> dofs_;
@@ -114,10 +116,30 @@ template <int Dim> class IsostaticStructure {
     mutable std::shared_ptr<const sparse::Ordering> ordering_;
 };
 
+/// `IsostaticStructure::prove` while other work goes on with the same matrix: the elimination is an errand.
+template <int Dim> class RankProof {
+  public:
+    /// Failures that need no elimination: N != N_f, or a structurally singular pattern.
+    static Result<RankProof> begin(const Packing<Dim>& packing, std::vector<Contact> contacts);
+    /// With evidence `none`: whatever is made of it must be thrown away unless `conclude` agrees.
+    [[nodiscard]] const IsostaticStructure<Dim>& unproved() const { return structure_; }
+    /// Whether the rank is full; waits for the elimination.
+    [[nodiscard]] bool is_regular();
+    /// The same structure, with the same shared matrix, proved regular, or the failure of `prove`.
+    [[nodiscard]] Result<IsostaticStructure<Dim>> conclude();
+
+  private:
+    RankProof() = default;
+    IsostaticStructure<Dim> structure_;
+    Promised<int> elimination_;
+    int rank_ = -1;
+};
+
 extern template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMap<2>&,
                                                          const std::vector<Contact>&);
 extern template sparse::Matrix<std::uint64_t> exact_contact_matrix<2>(const Packing<2>&, const DofMap<2>&,
                                                                       const std::vector<Contact>&);
 extern template class IsostaticStructure<2>;
+extern template class RankProof<2>;
 
 } // namespace isostat

@@ -5,6 +5,7 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/linear/factorisation.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -49,10 +50,12 @@ struct InverseBoundCache {
 /// proofs/). Works down to sigma_min ~ 1e-5; 3 to 9 ms at n = 1936 to 4900. Second route, when rounding hides sigma_min
 /// there: the same in double-double (Eigen), down to sigma_min ~ 1e-12; about 0.3 s at n = 4900. Third route:
 /// R ~ H^-1 row by row from the LU factors, |H^-1| <= |R| / (1 - |I - R H|) in the 1 and the infinity norm (statement
-/// V2); one solve per row, tried when size <= `row_limit`.
+/// V2); one solve per row, tried when size <= `row_limit`. The second and third take long: where the structure is not
+/// proved yet, `worth_more` is asked first, and false ends it with `undecided`.
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, int row_limit = 20000);
+                           InverseBoundCache& cache, int row_limit = 20000,
+                           const std::function<bool()>& worth_more = {});
 
 /// A bound of the inverse that is at the same time the proof that the exchanged matrix is regular.
 struct ProvedExchange {
@@ -84,6 +87,6 @@ extern template std::optional<ProvedExchange> carry_bound<2>(const IsostaticStru
                                                              const ExchangedContacts<2>&, const ApproximateInverse&,
                                                              std::vector<double>, double);
 extern template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&,
-                                              int);
+                                              int, const std::function<bool()>&);
 
 } // namespace isostat

@@ -72,10 +72,16 @@ template <int Dim> class Follower {
         }
     }
 
+    /// Tangent, curvature and the first event that they predict, at the start.
+    void begin();
+    /// \pre begin()
     Result<Arc<Dim>> run();
 
   private:
     using Vector = std::vector<double>;
+
+    /// From q_ and its tangent; false: `failure_` says why.
+    bool predict();
 
     /// Velocity (on coordinates) with unit approach velocity in the slot and none in the kept contacts.
     void fresh_slot_mechanism() {
@@ -482,6 +488,11 @@ template <int Dim> class Follower {
     std::size_t size_;
     Vector rhs_, y_, mechanism_, tangent_, curvature_;
     std::size_t fastest_ = 0;
+    std::optional<Failure> failure_;
+    bool predicted_ = false;  ///< what follows belongs to q_
+    bool moved_ = false;      ///< q_ is no longer the start
+    double s_event_ = 0;      ///< predicted distance of the first event
+    std::size_t event_ = 0;   ///< and its candidate
     std::vector<Contact> active_;
     Vector start_gap_, start_rate_; ///< of the active candidates at q_
     Acceleration acceleration_;
@@ -535,6 +546,49 @@ Result<Arc<Dim>> Follower<Dim>::power_turn(double s_low, double p_low, double s_
                   p_best, std::move(best->tangent));
 }
 
+template <int Dim> void Follower<Dim>::begin() {
+    if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
+        choose_fastest();
+        if (auto t = tangent_at(q_, end_tangent_accuracy)) {
+            tangent_ = std::move(*t);
+        } else {
+            failure_ = renew();
+        }
+    }
+    predicted_ = !failure_ && predict();
+}
+
+template <int Dim> bool Follower<Dim>::predict() {
+    choose_fastest();
+    if (!std::isfinite(tangent_[fastest_])) {
+        failure_ = Failure{FailureKind::not_converged, "the mechanism is not finite"};
+        return false;
+    }
+    list_candidates();
+    chord([&](const Contact& c) { return quick_curvature(q_, c, tangent_); },
+          [&](const Vector& v) { return v[fastest_]; }, 0.0);
+    curvature_ = y_;
+    start_gap_.resize(active_.size());
+    start_rate_.resize(active_.size());
+    s_event_ = infinity;
+    event_ = 0;
+    for (std::size_t c = 0; c < active_.size(); ++c) {
+        const bool opening = !moved_ && leaves(active_[c]);
+        const GapCourse course = gap_course(q_, active_[c], tangent_, curvature_);
+        start_gap_[c] = opening ? 0.0 : course.value;
+        start_rate_[c] = course.rate;
+        double root = first_root(std::max(start_gap_[c], 0.0), start_rate_[c], course.bend);
+        if (start_gap_[c] <= 0 && !(start_rate_[c] > 0)) {
+            root = 0;
+        }
+        if (root < s_event_) {
+            s_event_ = root;
+            event_ = c;
+        }
+    }
+    return true;
+}
+
 template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     const double noise = 16 * grid_step(start_);
     double shrink = 1;
@@ -552,46 +606,20 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         return std::nullopt;
     };
     bool renewed_here = false;
-    bool moved = false;                // q_ is no longer the start
-    if (!factorisation_->is_fresh()) { // the mechanism is that of a neighbouring matrix
-        choose_fastest();
-        if (auto t = tangent_at(q_, end_tangent_accuracy)) {
-            tangent_ = std::move(*t);
-        } else if (auto failure = renew()) {
-            return *failure;
-        }
+    if (failure_) {
+        return *failure_;
     }
     while (steps_ < options_.max_steps) {
-        choose_fastest();
-        if (!std::isfinite(tangent_[fastest_])) {
-            return Failure{FailureKind::not_converged, "the mechanism is not finite"};
+        if (!predicted_ && !predict()) {
+            return *failure_;
         }
-        list_candidates();
-        const bool at_start = !moved;
-        chord([&](const Contact& c) { return quick_curvature(q_, c, tangent_); },
-              [&](const Vector& v) { return v[fastest_]; }, 0.0);
-        curvature_ = y_;
+        predicted_ = false;
+        const bool at_start = !moved_;
         if (!(p_start < infinity)) {
             p_start = power_of(q_, tangent_);
         }
-        start_gap_.resize(active_.size());
-        start_rate_.resize(active_.size());
-        double s_event = infinity;
-        std::size_t event = 0;
-        for (std::size_t c = 0; c < active_.size(); ++c) {
-            const bool opening = at_start && leaves(active_[c]);
-            const GapCourse course = gap_course(q_, active_[c], tangent_, curvature_);
-            start_gap_[c] = opening ? 0.0 : course.value;
-            start_rate_[c] = course.rate;
-            double root = first_root(std::max(start_gap_[c], 0.0), start_rate_[c], course.bend);
-            if (start_gap_[c] <= 0 && !(start_rate_[c] > 0)) {
-                root = 0;
-            }
-            if (root < s_event) {
-                s_event = root;
-                event = c;
-            }
-        }
+        double s_event = s_event_;
+        std::size_t event = event_;
         // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
         const double reach = 0.9 * reach_left_ / (1.3 * std::sqrt(static_cast<double>(Dim)));
         const double s_max = std::min({step_limit_ * shrink, reach, forced_step, power_step});
@@ -712,7 +740,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
         if (try_event) {
             return finish(std::move(point->at), ArcEnd::contact, closing, p_end, std::move(point->tangent));
         }
-        moved = true;
+        moved_ = true;
         q_ = std::move(point->at);
         tangent_ = std::move(point->tangent);
         p_start = p_end;
@@ -738,13 +766,33 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
 
 } // namespace
 
+template <int Dim> struct ArcDeparture<Dim>::Implementation {
+    Follower<Dim> follower;
+};
+
+template <int Dim>
+ArcDeparture<Dim>::ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
+                                const Factorisation& factorisation, ContactId opened, int direction,
+                                const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options)
+    : implementation_(new Implementation{
+          Follower<Dim>(start, structure, factorisation, opened, direction, power, candidates, options)}) {
+    implementation_->follower.begin();
+}
+template <int Dim> ArcDeparture<Dim>::ArcDeparture(ArcDeparture&&) noexcept = default;
+template <int Dim> ArcDeparture<Dim>::~ArcDeparture() = default;
+
+template <int Dim> Result<Arc<Dim>> ArcDeparture<Dim>::follow() {
+    return implementation_->follower.run();
+}
+
 template <int Dim>
 Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
                             const Factorisation& factorisation, ContactId opened, int direction,
                             const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options) {
-    return Follower<Dim>(start, structure, factorisation, opened, direction, power, candidates, options).run();
+    return ArcDeparture<Dim>(start, structure, factorisation, opened, direction, power, candidates, options).follow();
 }
 
+template class ArcDeparture<2>;
 template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId,
                                       int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
 

@@ -17,6 +17,7 @@ namespace {
 constexpr double u = 0x1p-53;
 constexpr std::size_t max_passes = 20; ///< more than that costs as much as new factors
 constexpr std::size_t kept_directions = 4;
+constexpr double cancelled = 1e-12;     ///< of the square of an image: as much as 1e-10 of it is rounding
 constexpr double residual_left = 1e-12; ///< of the size of the unknowns and the right-hand side
 
 double largest(std::span<const double> x) {
@@ -121,18 +122,25 @@ struct Factorisation::Implementation {
             pass(side, now.step);
             now.image.resize(n);
             multiply(side, now.step, now.image);
+            double taken_out = 0;
             for (std::size_t back = 1; back < kept_directions && back <= k; ++back) {
                 const Direction& earlier = directions[(k - back) % kept_directions];
-                subtract(now, earlier, dot(now.image, earlier.image) / earlier.square);
+                const double factor = dot(now.image, earlier.image) / earlier.square;
+                subtract(now, earlier, factor);
+                taken_out += factor * factor * earlier.square;
             }
             now.square = dot(now.image, now.image);
-            if (!(now.square > 0)) { // nothing is left to correct, or the numbers are not finite
-                if (largest(r) != 0) {
-                    return false;
-                }
-                return deliver();
+            if (now.square < cancelled * taken_out) { // rounding is left: it is no longer the image of what is left
+                multiply(side, now.step, now.image);
+                now.square = dot(now.image, now.image);
+            }
+            if (now.square == 0 && largest(r) == 0) {
+                return deliver(); // nothing is left to correct
             }
             const double length = dot(now.image, r) / now.square;
+            if (!std::isfinite(now.square) || !std::isfinite(length)) { // maxima below do not see a NaN
+                return false;
+            }
             double change = 0;
             double size = 0;
             for (std::size_t i = 0; i < n; ++i) {

@@ -200,4 +200,38 @@ BOOST_AUTO_TEST_CASE(factors_that_do_not_converge_are_replaced_by_fresh_ones) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by_fresh_ones) {
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(structure.ok());
+    const sparse::Matrix<double>& matrix = structure.value().matrix();
+    const auto n = static_cast<std::size_t>(structure.value().size());
+    const Factorisation fresh(structure.value());
+    for (const double factor : {0.0, 1e-308, 1e-300, 1e-160, 1e-8, 1e8, 1e160, 1e300}) {
+        for (const std::size_t column : {std::size_t{0}, n / 2, n - 1}) {
+            sparse::Matrix<double> other = matrix;
+            for (auto e = static_cast<std::size_t>(other.start[column]);
+                 e < static_cast<std::size_t>(other.start[column + 1]); ++e) {
+                other.value[e] *= factor;
+            }
+            for (const bool forces : {true, false}) {
+                const Factorisation factorisation(structure.value(), ApproximateInverse(other));
+                std::vector<double> a(n, 1.0);
+                std::vector<double> b = a;
+                forces ? factorisation.solve_forces(a) : factorisation.solve_velocities(a);
+                forces ? fresh.solve_forces(b) : fresh.solve_velocities(b);
+                double off = 0;
+                double size = 0;
+                for (std::size_t i = 0; i < n; ++i) {
+                    BOOST_TEST(std::isfinite(a[i]), "factor " << factor << " column " << column);
+                    off = std::max(off, std::abs(a[i] - b[i]));
+                    size = std::max(size, std::abs(b[i]));
+                }
+                BOOST_TEST(off <= 1e-9 * size, "factor " << factor << " column " << column << " forces " << forces
+                                                         << ": " << off << " of " << size);
+            }
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

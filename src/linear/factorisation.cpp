@@ -163,7 +163,8 @@ struct Factorisation::Implementation {
             }
             if (enough && k > 0 && change < 0.1 * previous) {
                 const double left = change * change / previous;
-                if (largest(r) <= 100 * left) {
+                // A direction across the residual also makes a small step: the residual has to tell the same.
+                if (largest(r) * std::max(size, size_of_rhs) <= 100 * left * size_of_rhs) {
                     deliver();
                     if (enough(rhs, left * down)) {
                         error = left * down;

@@ -198,7 +198,8 @@ struct Factorisation::Implementation {
                 double left = std::numeric_limits<double>::infinity();
                 if (k > 0 && change < 0.1 * previous) {
                     const double next = change * change / previous;
-                    left = largest(r) <= 100 * next ? next : left;
+                    // A direction across the residual also makes a small step: the residual has to tell the same.
+                    left = largest(r) * std::max(size, size_of_rhs) <= 100 * next * size_of_rhs ? next : left;
                 }
                 deliver();
                 if (enough(rhs, left * down)) {

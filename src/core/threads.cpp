@@ -1,7 +1,9 @@
 #include <isostat/core/threads.hpp>
+#include <isostat/core/work.hpp>
 
 #include <sched.h>
 
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cstdint>
@@ -20,6 +22,7 @@ struct Errand::Task {
     enum Stage : int { waiting, begun, done };
     std::function<void()> work;
     std::exception_ptr failure;
+    std::array<long, work_kinds> counted{};
     std::atomic<int> stage{waiting};
 
     explicit Task(std::function<void()> w) : work(std::move(w)) {}
@@ -28,11 +31,13 @@ struct Errand::Task {
         return stage.compare_exchange_strong(expected, begun, std::memory_order_acq_rel);
     }
     void perform() {
+        std::array<long, work_kinds>* const before = count_work_in(&counted);
         try {
             work();
         } catch (...) {
             failure = std::current_exception();
         }
+        count_work_in(before);
         work = nullptr;
         stage.store(done, std::memory_order_release);
         stage.notify_all();
@@ -288,6 +293,11 @@ void Errand::finish() {
             pause_briefly();
         } else {
             task->stage.wait(Task::begun, std::memory_order_acquire);
+        }
+    }
+    for (std::size_t k = 0; k < work_kinds; ++k) {
+        if (task->counted[k] != 0) {
+            count_work(static_cast<Work>(k), task->counted[k]);
         }
     }
     if (task->failure) {

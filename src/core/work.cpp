@@ -1,6 +1,7 @@
 #include <isostat/core/work.hpp>
 
 #include <atomic>
+#include <utility>
 
 namespace isostat {
 
@@ -8,6 +9,8 @@ namespace {
 
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables): counters of the process, read by reports only
 std::array<std::atomic<long>, work_kinds> counters{};
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+thread_local std::array<long, work_kinds>* elsewhere = nullptr;
 
 } // namespace
 
@@ -34,7 +37,15 @@ const char* to_string(Work kind) {
 }
 
 void count_work(Work kind, long amount) {
-    counters[static_cast<std::size_t>(kind)].fetch_add(amount, std::memory_order_relaxed);
+    if (elsewhere != nullptr) {
+        (*elsewhere)[static_cast<std::size_t>(kind)] += amount;
+    } else {
+        counters[static_cast<std::size_t>(kind)].fetch_add(amount, std::memory_order_relaxed);
+    }
+}
+
+std::array<long, work_kinds>* count_work_in(std::array<long, work_kinds>* counts) {
+    return std::exchange(elsewhere, counts);
 }
 
 std::array<long, work_kinds> work_done() {

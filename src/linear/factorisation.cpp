@@ -21,11 +21,17 @@ constexpr double cancelled = 1e-12;     ///< of the square of an image: as much 
 constexpr double residual_left = 1e-12; ///< of the size of the unknowns and the right-hand side
 
 double largest(std::span<const double> x) {
-    double value = 0;
-    for (const double c : x) {
-        value = std::max(value, std::abs(c));
+    std::array<double, 4> value{}; // chains that do not wait for each other
+    std::size_t i = 0;
+    for (; i + 4 <= x.size(); i += 4) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            value[k] = std::max(value[k], std::abs(x[i + k]));
+        }
     }
-    return value;
+    for (; i < x.size(); ++i) {
+        value[0] = std::max(value[0], std::abs(x[i]));
+    }
+    return std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
 }
 
 /// A direction and its image under the matrix.
@@ -34,11 +40,40 @@ struct Direction {
     double square = 0; ///< of the image
 };
 
-void subtract(Direction& from, const Direction& what, double factor) {
-    for (std::size_t i = 0; i < from.step.size(); ++i) {
-        from.step[i] -= factor * what.step[i];
-        from.image[i] -= factor * what.image[i];
+/// Directions with their factors, all in one sweep.
+template <std::size_t count>
+void subtract(Direction& from, const std::array<const Direction*, count>& what,
+              const std::array<double, count>& factor) {
+    const auto sweep = [&](double* to, const std::array<const double*, count>& terms) {
+        for (std::size_t i = 0; i < from.step.size(); ++i) {
+            double value = to[i];
+            for (std::size_t k = 0; k < count; ++k) {
+                value -= factor[k] * terms[k][i];
+            }
+            to[i] = value;
+        }
+    };
+    std::array<const double*, count> steps{};
+    std::array<const double*, count> images{};
+    for (std::size_t k = 0; k < count; ++k) {
+        steps[k] = what[k]->step.data();
+        images[k] = what[k]->image.data();
     }
+    sweep(from.step.data(), steps);
+    sweep(from.image.data(), images);
+}
+
+/// What is left of a direction when its image is made orthogonal to those of the last `count` ones, which are so to
+/// each other. Returns the square of the image taken out.
+template <std::size_t count> double orthogonalise(Direction& now, const std::array<const Direction*, count>& earlier) {
+    std::array<double, count> factor{};
+    double taken_out = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        factor[k] = dot(now.image, earlier[k]->image) / earlier[k]->square;
+        taken_out += factor[k] * factor[k] * earlier[k]->square;
+    }
+    subtract<count>(now, earlier, factor);
+    return taken_out;
 }
 
 } // namespace
@@ -122,13 +157,11 @@ struct Factorisation::Implementation {
             pass(side, now.step);
             now.image.resize(n);
             multiply(side, now.step, now.image);
-            double taken_out = 0;
-            for (std::size_t back = 1; back < kept_directions && back <= k; ++back) {
-                const Direction& earlier = directions[(k - back) % kept_directions];
-                const double factor = dot(now.image, earlier.image) / earlier.square;
-                subtract(now, earlier, factor);
-                taken_out += factor * factor * earlier.square;
-            }
+            const auto back = [&](std::size_t steps) { return &directions[(k - steps) % kept_directions]; };
+            const double taken_out = k == 0   ? 0.0
+                                     : k == 1 ? orthogonalise<1>(now, {back(1)})
+                                     : k == 2 ? orthogonalise<2>(now, {back(1), back(2)})
+                                              : orthogonalise<3>(now, {back(1), back(2), back(3)});
             now.square = dot(now.image, now.image);
             if (now.square < cancelled * taken_out) { // rounding is left: it is no longer the image of what is left
                 multiply(side, now.step, now.image);
@@ -161,14 +194,17 @@ struct Factorisation::Implementation {
                 }
                 return deliver();
             }
-            if (enough && k > 0 && change < 0.1 * previous) {
-                const double left = change * change / previous;
-                if (largest(r) <= 100 * left) {
-                    deliver();
-                    if (enough(rhs, left * down)) {
-                        error = left * down;
-                        return true;
-                    }
+            if (enough) {
+                double left = std::numeric_limits<double>::infinity();
+                if (k > 0 && change < 0.1 * previous) {
+                    const double next = change * change / previous;
+                    // A direction across the residual also makes a small step: the residual has to tell the same.
+                    left = largest(r) * std::max(size, size_of_rhs) <= 100 * next * size_of_rhs ? next : left;
+                }
+                deliver();
+                if (enough(rhs, left * down)) {
+                    error = left * down;
+                    return true;
                 }
             }
             previous = change;

@@ -370,6 +370,7 @@ template <int Dim> class Follower {
         arc.closed = closed;
         arc.power = power;
         arc.tangent = std::move(tangent);
+        arc.opening = std::move(opening_);
         arc.steps = steps_;
         arc.factorisations = factorisations_;
         arc.passes = passes_;
@@ -487,12 +488,13 @@ template <int Dim> class Follower {
     Packing<Dim> q_;
     std::size_t size_;
     Vector rhs_, y_, mechanism_, tangent_, curvature_;
+    Vector opening_; ///< velocity at the start that opens the contact at unit rate
     std::size_t fastest_ = 0;
     std::optional<Failure> failure_;
-    bool predicted_ = false;  ///< what follows belongs to q_
-    bool moved_ = false;      ///< q_ is no longer the start
-    double s_event_ = 0;      ///< predicted distance of the first event
-    std::size_t event_ = 0;   ///< and its candidate
+    bool predicted_ = false; ///< what follows belongs to q_
+    bool moved_ = false;     ///< q_ is no longer the start
+    double s_event_ = 0;     ///< predicted distance of the first event
+    std::size_t event_ = 0;  ///< and its candidate
     std::vector<Contact> active_;
     Vector start_gap_, start_rate_; ///< of the active candidates at q_
     Acceleration acceleration_;
@@ -555,7 +557,14 @@ template <int Dim> void Follower<Dim>::begin() {
             failure_ = renew();
         }
     }
-    predicted_ = !failure_ && predict();
+    if (!failure_) {
+        opening_ = tangent_;
+        const double rate = 1 / gap_rate(q_, opened_, opening_);
+        for (double& c : opening_) {
+            c *= rate;
+        }
+        predicted_ = predict();
+    }
 }
 
 template <int Dim> bool Follower<Dim>::predict() {

@@ -23,19 +23,21 @@ template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coo
 
 /// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
 constexpr double accuracy = 1e-12;
-/// Elsewhere they are as accurate as the record of the force that opens asks for, and as the choice of it does: the
-/// estimated error times `safety` changes neither.
+/// Elsewhere they are as accurate as the choice of what opens asks for, and as the record of its force does: the
+/// estimated error times `safety` changes neither. Where the velocity of its arc is at hand, the record is made better
+/// with that (`better_force`), and asks for less.
 constexpr double recorded_accuracy = 1e-8;
+constexpr double accuracy_with_velocity = 1e-3;
 constexpr double safety = 30;
 
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
   public:
     /// `guess`: forces in the same slots.
-    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const Load<Dim>& load,
-                const std::vector<double>& guess, OpeningRule rule)
-        : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)),
-          load_(load) {
+    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, const ApproximateInverse& approximate, const Load<Dim>& load,
+                const std::vector<double>& guess, OpeningRule rule, CandidateList<Dim>& candidates,
+                const ArcOptions& options)
+        : packing(std::move(p)), structure(std::move(s)), factorisation(structure, approximate), load_(load) {
         const DofMap<Dim>& dofs = structure.dofs();
         force = on_dofs(load.external_force(packing), dofs);
         const std::vector<double> unit = on_dofs(load.unit_force(packing), dofs);
@@ -46,14 +48,29 @@ template <int Dim> class PlainVertex {
             }
         }
         const sparse::Matrix<double>& h = structure.matrix();
-        backbone_ = sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
+        Promised<std::vector<unsigned char>> backbone([&h, this, loaded = std::move(loaded)] {
+            return sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
+        });
         load_on_dofs_ = force;
         error_ = safety * factorisation.solve_forces_until(force, guess, [&](std::span<const double> f, double error) {
+            if (backbone.pending()) {
+                backbone_ = backbone.take();
+            }
             error_ = safety * error;
+            if (rule != OpeningRule::most_negative) {
+                return false;
+            }
             const std::size_t chosen = most_negative(f);
-            return rule == OpeningRule::most_negative &&
-                   (chosen == f.size() || error_ <= recorded_accuracy * std::abs(f[chosen])) && clear(f, chosen);
+            if (!departure_ && chosen < f.size() && structure.contacts()[chosen].kind != ContactKind::held) {
+                depart(approximate, ContactId(chosen), candidates, options);
+            }
+            const bool begun = departure_ && departure_->opened == ContactId(chosen);
+            const double enough = begun ? accuracy_with_velocity : recorded_accuracy;
+            return (chosen == f.size() || error_ <= enough * std::abs(f[chosen])) && clear(f, chosen);
         });
+        if (backbone.pending()) {
+            backbone_ = backbone.take();
+        }
     }
 
     Packing<Dim> packing;
@@ -70,9 +87,42 @@ template <int Dim> class PlainVertex {
         }
         return infinitesimal_;
     }
+    /// The arc that opens what has the most negative force, begun before that was known to the end; nothing when it is
+    /// another one. Its factors stay with this vertex.
+    struct Departure {
+        ContactId opened;
+        Factorisation factorisation;
+        Promised<std::unique_ptr<ArcDeparture<Dim>>> arc;
+    };
+    [[nodiscard]] Departure* departure(const Opening& opening) {
+        // Fresh factors, if solving asked for some, are better.
+        const bool useful = departure_ && departure_->opened == opening.contact && !opening.infinitesimal &&
+                            opening.direction > 0 && !factorisation.is_fresh();
+        if (!useful) {
+            departure_.reset();
+        }
+        return departure_.get();
+    }
     [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, std::uint64_t random_bits) {
         const auto chosen = stage(true, rule, random_bits);
         return chosen ? chosen : stage(false, rule, random_bits);
+    }
+    /// The force in a contact whose opening at unit rate moves the grains at `velocity` (on coordinates): f + v . (F -
+    /// H f), whose error is the product of those of f and v.
+    [[nodiscard]] double better_force(std::size_t l, const std::vector<double>& velocity) const {
+        std::vector<double> rest = load_on_dofs_;
+        const sparse::Matrix<double>& h = structure.matrix();
+        for (std::size_t c = 0; c < force.size(); ++c) {
+            for (auto e = static_cast<std::size_t>(h.start[c]); e < static_cast<std::size_t>(h.start[c + 1]); ++e) {
+                rest[static_cast<std::size_t>(h.row[e])] -= h.value[e] * force[c];
+            }
+        }
+        double power = 0;
+        for (std::size_t mu = 0; mu < rest.size(); ++mu) {
+            power +=
+                rest[mu] * velocity[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))];
+        }
+        return force[l] - power; // the approach velocity is minus the rate
     }
     /// Whether the force in a contact is compressive.
     [[nodiscard]] bool compressive(std::size_t l) {
@@ -83,6 +133,14 @@ template <int Dim> class PlainVertex {
     }
 
   private:
+    void depart(const ApproximateInverse& approximate, ContactId opened, CandidateList<Dim>& candidates,
+                const ArcOptions& options) {
+        departure_.reset(new Departure{opened, Factorisation(structure, approximate), {}});
+        departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>([this, opened, &candidates, options] {
+            return std::make_unique<ArcDeparture<Dim>>(packing, structure, departure_->factorisation, opened, +1,
+                                                       PowerLoad<Dim>{&load_, false, false}, candidates, options);
+        });
+    }
     void refine() {
         std::vector<double> better = load_on_dofs_;
         factorisation.solve_forces_from(better, force, accuracy);
@@ -178,7 +236,8 @@ template <int Dim> class PlainVertex {
     std::vector<unsigned char> backbone_;
     std::vector<double> infinitesimal_;
     std::vector<double> load_on_dofs_;
-    double error_ = 0; ///< of the finite forces, with a margin; 0: they are as accurate as they get
+    double error_ = 0;                     ///< of the finite forces, with a margin; 0: they are as accurate as they get
+    std::unique_ptr<Departure> departure_; ///< last: it uses the rest
 };
 
 /// When new factors are due: as soon as an arc costs more than the average since the last ones, their making included,
@@ -196,7 +255,8 @@ class Wear {
     void renew() { *this = {}; }
 
   private:
-    static inline const double factorisation_in_passes = std::getenv("FP") ? std::atof(std::getenv("FP")) : 50;
+    /// Less than KLU takes (50 at n = 1936, 4900): with two threads it is done beside the arcs.
+    static constexpr double factorisation_in_passes = 40;
     double last_ = 0;
     double sum_ = 0;
     int exchanges_ = 0;
@@ -278,6 +338,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         if (auto stop = calls.begin(record)) {
             return *stop;
         }
+        const int force_passes = factorisation->passes();
         const PowerLoad<Dim> power{&load, opening.infinitesimal, first && kind == "limit"};
         const auto attempt = [&](const Factorisation& factors) {
             return follow_arc(*packing, *structure, factors, opening.contact, opening.direction, power, candidates,
@@ -288,7 +349,11 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         if (opening.infinitesimal) {
             block = Factorisation::of_moving_block(*structure, static_cast<int>(opening.contact.index()));
         }
-        auto arc = attempt(block ? *block : *factorisation);
+        auto* departure = here ? here->departure(opening) : nullptr;
+        if (departure != nullptr) {
+            factorisation = &departure->factorisation;
+        }
+        auto arc = departure != nullptr ? departure->arc.take()->follow() : attempt(block ? *block : *factorisation);
         if ((!arc.ok() || arc.value().closed == record.opened) && (block || !factorisation->is_fresh())) {
             arc = attempt(Factorisation(*structure));
         }
@@ -296,6 +361,9 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
             return arc.failure();
         }
         Arc<Dim>& path = arc.value();
+        if (departure != nullptr) {
+            record.force = here->better_force(opening.contact.index(), path.opening);
+        }
         record.closed = path.closed;
         record.power_turn = path.kind == ArcEnd::power_turn;
         record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
@@ -317,7 +385,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
                            fmt::format("the contacts are structurally singular at the end of {}", names())};
         }
         std::optional<ApproximateInverse> approximate;
-        wear.add((path.passes + factorisation->passes()) * factorisation->approximate().relative_cost(),
+        wear.add((path.passes + force_passes) * factorisation->approximate().relative_cost(),
                  factorisation->approximate().exchanges());
         if (auto renewed = renewal.after(next->slot(), next->matrix())) {
             approximate = std::move(renewed);
@@ -335,7 +403,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         }
         const std::vector<double> guess = here ? std::move(here->force) : std::vector<double>();
         here = std::make_unique<PlainVertex<Dim>>(std::move(path.end), std::move(unproved), *approximate, load, guess,
-                                                  options.rule);
+                                                  options.rule, candidates, arc_options);
         packing = &here->packing;
         structure = &here->structure;
         factorisation = &here->factorisation;

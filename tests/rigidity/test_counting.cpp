@@ -1,6 +1,7 @@
 // Counting, the gate, and the identities of statics on crafted packings.
 #include "support/crafted.hpp"
 
+#include <isostat/core/threads.hpp>
 #include <isostat/exact/independent_columns.hpp>
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -137,6 +138,34 @@ BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices)
     State<2> special = one_disk(1, 1);
     special.contacts = {left(0), right(0), left(0), top(0)};
     BOOST_TEST(!IsostaticStructure<2>::prove(special.packing, special.contacts).ok());
+}
+
+BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded) {
+    for (const int count : {1, 2}) {
+        set_threads(count);
+        const State<2> state = two_disks(1, 2, 1, 1);
+        auto regular = RankProof<2>::begin(state.packing, state.contacts);
+        BOOST_TEST_REQUIRE(regular.ok());
+        BOOST_TEST((regular.value().unproved().evidence() == RegularityEvidence::none));
+        BOOST_TEST(regular.value().is_regular());
+        const auto proved = regular.value().conclude();
+        BOOST_TEST_REQUIRE(proved.ok());
+        BOOST_TEST((proved.value().evidence() == RegularityEvidence::elimination));
+        BOOST_TEST(&proved.value().matrix() == &regular.value().unproved().matrix());
+        // Disk 2 between two fixed ones in one line, tilted: singular, but not by its pattern.
+        State<2> strut;
+        strut.packing.walls = Walls<2>::none();
+        strut.packing.radius = {1, 1, 1};
+        strut.packing.q = {-2, -1, 2, 1, 0, 0, 0, 0};
+        strut.packing.fixed = {1, 1, 0};
+        strut.contacts = {pair(0, 2), pair(1, 2)};
+        auto singular = RankProof<2>::begin(strut.packing, strut.contacts);
+        BOOST_TEST_REQUIRE(singular.ok());
+        BOOST_TEST(!singular.value().is_regular());
+        BOOST_TEST_REQUIRE(!singular.value().conclude().ok());
+        BOOST_TEST((singular.value().conclude().failure().kind == FailureKind::not_isostatic));
+    }
+    set_threads(1);
 }
 
 BOOST_AUTO_TEST_CASE(the_rounded_and_the_exact_matrix_have_the_same_pattern) {

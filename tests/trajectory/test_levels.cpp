@@ -1,6 +1,8 @@
 // The level `arcs`: every arc of a run with its own proof, and what a path follower that misses contacts would meet.
 #include "support/crafted.hpp"
 
+#include <isostat/core/threads.hpp>
+#include <isostat/core/work.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
@@ -63,6 +65,39 @@ BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
         BOOST_TEST(!plain.records.arcs[k].certificate.has_value());
         BOOST_TEST((plain.records.arcs[k].closed == proved.records.arcs[k].closed));
         BOOST_TEST(plain.records.arcs[k].displacement == proved.records.arcs[k].displacement);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run) {
+    for (const CertifyLevel level : {CertifyLevel::plain, CertifyLevel::decisions}) {
+        RunOptions options;
+        options.certify = level;
+        const State<2> start = prepared(100, 4);
+        const Played one = play(start, +1, 8, {}, options);
+        BOOST_TEST_REQUIRE(one.records.arcs.size() > 20U);
+        for (const int count : {2, 3, 2}) { // whoever begins an errand first
+            set_threads(count);
+            const auto before = work_done();
+            const Played several = play(start, +1, 8, {}, options);
+            const auto after = work_done();
+            set_threads(1);
+            const auto alone = work_done();
+            (void)play(start, +1, 8, {}, options);
+            const auto alone_after = work_done();
+            for (std::size_t k = 0; k < work_kinds; ++k) {
+                BOOST_TEST(after[k] - before[k] == alone_after[k] - alone[k], to_string(static_cast<Work>(k)));
+            }
+            BOOST_TEST((one.state.packing.q == several.state.packing.q));
+            BOOST_TEST_REQUIRE(one.records.arcs.size() == several.records.arcs.size());
+            for (std::size_t k = 0; k < one.records.arcs.size(); ++k) {
+                const ArcRecord<2>& a = one.records.arcs[k];
+                const ArcRecord<2>& b = several.records.arcs[k];
+                BOOST_TEST((a.opened == b.opened && a.closed == b.closed));
+                BOOST_TEST(a.force == b.force);
+                BOOST_TEST(a.strain == b.strain);
+                BOOST_TEST(a.displacement == b.displacement);
+            }
+        }
     }
 }
 

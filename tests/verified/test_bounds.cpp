@@ -220,6 +220,23 @@ BOOST_AUTO_TEST_CASE(an_exactly_collinear_strut_is_never_proved_regular) {
     BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
 }
 
+BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_regular) {
+    const State<2> state = nearly_collinear(1e-10); // too near for the first route
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(structure.ok());
+    const Factorisation factorisation(structure.value());
+    for (const bool worth : {false, true}) {
+        InverseBoundCache cache;
+        int asked = 0;
+        const InverseBound bound = bound_inverse(structure.value(), factorisation, cache, 100, [&] {
+            ++asked;
+            return worth;
+        });
+        BOOST_TEST(asked == 1);
+        BOOST_TEST((bound.verdict == (worth ? Verdict::proved : Verdict::undecided)));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {
     // Two disks: the true vertex is known in closed form.
     const State<2> state = two_disks(1, 2, 1, 1);

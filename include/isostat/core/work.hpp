@@ -37,6 +37,10 @@ const char* to_string(Work kind);
 /// results cannot depend on it.
 void count_work(Work kind, long amount = 1);
 
+/// From now on this thread counts there, and not for the process (null: again for the process). Returns where it
+/// counted. Errands use it: work that nobody waited for is not counted, so that counters do not depend on threads.
+std::array<long, work_kinds>* count_work_in(std::array<long, work_kinds>* counts);
+
 /// Since the start of the process, in the order of `Work`.
 std::array<long, work_kinds> work_done();
 

@@ -7,6 +7,7 @@
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/packing/load.hpp>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -44,10 +45,12 @@ template <int Dim> struct Arc {
     Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
     double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as good as t
     std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
-    double displacement = 0;     ///< largest displacement of a coordinate
-    int steps = 0;               ///< predictor steps
-    int factorisations = 0;      ///< structures proved and factorised along the way (long arcs only)
-    int passes = 0;              ///< applications of the factors
+    std::vector<double>
+        opening;             ///< velocity at the start, on coordinates, that opens the contact at unit rate: a guess
+    double displacement = 0; ///< largest displacement of a coordinate
+    int steps = 0;           ///< predictor steps
+    int factorisations = 0;  ///< structures proved and factorised along the way (long arcs only)
+    int passes = 0;          ///< applications of the factors
 };
 
 /// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows

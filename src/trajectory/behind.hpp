@@ -36,6 +36,7 @@ template <class Job, class Result> class Behind {
             full = jobs_.size() > most_;
         }
         if (idle) {
+            errand_.finish(); // it has nothing left to do
             errand_ = Errand([this] { serve(); });
         }
         if (full || threads() < 2) {

@@ -123,6 +123,7 @@ template <int Dim> class Run {
         std::vector<Count> counts;
         double min_gap = 0;
         Contact min_gap_contact;
+        double seconds = 0; ///< of its certificate, at level `arcs`
     };
     std::optional<ProvedArc> prove_arc(const Vertex<Dim>& from, PlainArrival<Dim>& arrival, const Opening& opening,
                                        const Load<Dim>& load);
@@ -139,10 +140,12 @@ template <int Dim> class Run {
     };
     std::optional<Failure> go_ahead(Way& way, const Load<Dim>& load);
     /// Nothing that one arc is steered by depends on what is proved of another.
-    [[nodiscard]] bool steers_ahead() const { return options_.certify == CertifyLevel::decisions && !perturbs(); }
+    [[nodiscard]] bool steers_ahead() const { return !perturbs(); }
     [[nodiscard]] Failure too_far(const ArcRecord<Dim>& record) const;
-    void certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
-                 const Load<Dim>& load, ArcRecord<Dim>& record);
+    /// Returns the seconds that it took.
+    double certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
+                   const Load<Dim>& load, ArcRecord<Dim>& record) const;
+    void tally(const ArcCertificate& certificate, double seconds);
     std::optional<Failure> rearrange_plainly(Opening opening, const std::string& kind, const Load<Dim>& load);
     std::optional<Failure> report(int arcs);
 
@@ -366,8 +369,8 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
 
 /// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
 template <int Dim>
-void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
-                       const Load<Dim>& load, ArcRecord<Dim>& record) {
+double Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
+                         const Load<Dim>& load, ArcRecord<Dim>& record) const {
     const auto begin = std::chrono::steady_clock::now();
     // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
     const Factorisation first(from.structure);
@@ -377,7 +380,10 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     };
     record.certificate = certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
                                      PowerLoad<Dim>{&load, opening.infinitesimal, at_limit}, candidates_);
-    const ArcCertificate& certificate = *record.certificate;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <int Dim> void Run<Dim>::tally(const ArcCertificate& certificate, double seconds) {
     ArcTally& tally = counters_.arcs;
     const bool proved = certificate.verdict == Verdict::proved;
     (proved ? tally.certified : tally.undecided)++;
@@ -391,7 +397,7 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     };
     lower(tally.tube_margin, certificate.tube_margin);
     lower(tally.gap_margin, certificate.gap_margin);
-    tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    tally.seconds += seconds;
 }
 
 template <int Dim> std::string kind_of(const Vertex<Dim>& at, const Opening& opening) {
@@ -610,6 +616,9 @@ std::optional<typename Run<Dim>::ProvedArc> Run<Dim>::prove_arc(const Vertex<Dim
         return std::nullopt;
     }
     arc.decision = std::move(decision.value());
+    if (options_.certify == CertifyLevel::arcs) {
+        arc.seconds = certify(from, *arc.vertex, opening, record.kind == "limit", load, record);
+    }
     return arc;
 }
 
@@ -622,6 +631,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     const int before = way.arcs;
     const long step = counters_.steps;
     int steered = 0;
+    if (options_.certify == CertifyLevel::arcs) {
+        (void)start.structure.ordering(); // made at the first call: both sides may ask for it
+    }
     // Of the proofs, until they end:
     std::unique_ptr<Vertex<Dim>> last;
     OpeningDecision decision;
@@ -660,6 +672,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
             }
             record_.min_gap = arc->min_gap;
             record_.min_gap_contact = arc->min_gap_contact;
+            if (arc->record.certificate) {
+                tally(*arc->record.certificate, arc->seconds);
+            }
             observer_.on_arc(arc->record);
             counters_.tally.structural_ties += arc->decision.opening && arc->decision.opening->straight_strut ? 1 : 0;
             if (std::abs(arc->record.strain) > options_.max_strain) {
@@ -812,7 +827,8 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         }
         resting.clear();
         if (options_.certify == CertifyLevel::arcs) {
-            certify(*from, *next, way.opening, at_limit, load, record);
+            const double seconds = certify(*from, *next, way.opening, at_limit, load, record);
+            tally(*record.certificate, seconds);
         }
         const auto axis = static_cast<std::size_t>(load.loaded_axis);
         const double reference = load.reference_length[axis];

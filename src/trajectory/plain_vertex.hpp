@@ -1,0 +1,248 @@
+#pragma once
+// A vertex on the way at level `plain`: private to the room.
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/core/threads.hpp>
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/motion/arc.hpp>
+#include <isostat/statics/decisions.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace isostat {
+
+template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
+    std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
+    for (std::size_t mu = 0; mu < force.size(); ++mu) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        force[mu] = k < on_coordinates.size() ? on_coordinates[k] : 0.0;
+    }
+    return force;
+}
+
+/// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
+constexpr double accuracy = 1e-12;
+/// Elsewhere they are as accurate as the choice of what opens asks for, and as the record of its force does: the
+/// estimated error times `safety` changes neither. Where the velocity of its arc is at hand, the record is made better
+/// with that (`better_force`), and asks for less.
+constexpr double recorded_accuracy = 1e-8;
+constexpr double accuracy_with_velocity = 1e-3;
+constexpr double safety = 30;
+
+/// A vertex on the way. Nothing is proved of it.
+template <int Dim> class PlainVertex {
+  public:
+    /// `guess`: forces in the same slots.
+    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, const ApproximateInverse& approximate, const Load<Dim>& load,
+                const std::vector<double>& guess, OpeningRule rule, CandidateList<Dim>& candidates,
+                const ArcOptions& options)
+        : packing(std::move(p)), structure(std::move(s)), factorisation(structure, approximate), load_(load) {
+        const DofMap<Dim>& dofs = structure.dofs();
+        force = on_dofs(load.external_force(packing), dofs);
+        const std::vector<double> unit = on_dofs(load.unit_force(packing), dofs);
+        std::vector<int> loaded;
+        for (std::size_t mu = 0; mu < force.size(); ++mu) {
+            if (force[mu] != 0 || unit[mu] != 0) {
+                loaded.push_back(static_cast<int>(mu));
+            }
+        }
+        const sparse::Matrix<double>& h = structure.matrix();
+        Promised<std::vector<unsigned char>> backbone([&h, this, loaded = std::move(loaded)] {
+            return sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
+        });
+        load_on_dofs_ = force;
+        error_ = safety * factorisation.solve_forces_until(force, guess, [&](std::span<const double> f, double error) {
+            if (backbone.pending()) {
+                backbone_ = backbone.take();
+            }
+            error_ = safety * error;
+            if (rule != OpeningRule::most_negative) {
+                return false;
+            }
+            const std::size_t chosen = most_negative(f);
+            if (!departure_ && chosen < f.size() && structure.contacts()[chosen].kind != ContactKind::held) {
+                depart(approximate, ContactId(chosen), candidates, options);
+            }
+            const bool begun = departure_ && departure_->opened == ContactId(chosen);
+            const double enough = begun ? accuracy_with_velocity : recorded_accuracy;
+            return (chosen == f.size() || error_ <= enough * std::abs(f[chosen])) && clear(f, chosen);
+        });
+        if (backbone.pending()) {
+            backbone_ = backbone.take();
+        }
+    }
+
+    Packing<Dim> packing;
+    IsostaticStructure<Dim> structure;
+    Factorisation factorisation;
+    std::vector<double> force; ///< finite forces
+
+    [[nodiscard]] bool is_structural_zero(std::size_t l) const { return backbone_[l] == 0; }
+    /// Forces of the infinitesimal loads.
+    [[nodiscard]] const std::vector<double>& infinitesimal() {
+        if (infinitesimal_.empty()) {
+            infinitesimal_ = on_dofs(load_.infinitesimal, structure.dofs());
+            factorisation.solve_forces_from(infinitesimal_, {}, accuracy);
+        }
+        return infinitesimal_;
+    }
+    /// The arc that opens what has the most negative force, begun before that was known to the end; nothing when it is
+    /// another one. Its factors stay with this vertex.
+    struct Departure {
+        ContactId opened;
+        Factorisation factorisation;
+        Promised<std::unique_ptr<ArcDeparture<Dim>>> arc;
+    };
+    [[nodiscard]] Departure* departure(const Opening& opening) {
+        // Fresh factors, if solving asked for some, are better.
+        const bool useful = departure_ && departure_->opened == opening.contact && !opening.infinitesimal &&
+                            opening.direction > 0 && !factorisation.is_fresh();
+        if (!useful) {
+            departure_.reset();
+        }
+        return departure_.get();
+    }
+    [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, std::uint64_t random_bits) {
+        const auto chosen = stage(true, rule, random_bits);
+        return chosen ? chosen : stage(false, rule, random_bits);
+    }
+    /// The force in a contact whose opening at unit rate moves the grains at `velocity` (on coordinates): f + v . (F -
+    /// H f), whose error is the product of those of f and v.
+    [[nodiscard]] double better_force(std::size_t l, const std::vector<double>& velocity) const {
+        std::vector<double> rest = load_on_dofs_;
+        const sparse::Matrix<double>& h = structure.matrix();
+        for (std::size_t c = 0; c < force.size(); ++c) {
+            for (auto e = static_cast<std::size_t>(h.start[c]); e < static_cast<std::size_t>(h.start[c + 1]); ++e) {
+                rest[static_cast<std::size_t>(h.row[e])] -= h.value[e] * force[c];
+            }
+        }
+        double power = 0;
+        for (std::size_t mu = 0; mu < rest.size(); ++mu) {
+            power +=
+                rest[mu] * velocity[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))];
+        }
+        return force[l] - power; // the approach velocity is minus the rate
+    }
+    /// Whether the force in a contact is compressive.
+    [[nodiscard]] bool compressive(std::size_t l) {
+        if (error_ > 0 && std::abs(force[l]) <= error_) {
+            refine();
+        }
+        return force[l] > 0;
+    }
+
+  private:
+    void depart(const ApproximateInverse& approximate, ContactId opened, CandidateList<Dim>& candidates,
+                const ArcOptions& options) {
+        departure_.reset(new Departure{opened, Factorisation(structure, approximate), {}});
+        departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>([this, opened, &candidates, options] {
+            return std::make_unique<ArcDeparture<Dim>>(packing, structure, departure_->factorisation, opened, +1,
+                                                       PowerLoad<Dim>{&load_, false, false}, candidates, options);
+        });
+    }
+    void refine() {
+        std::vector<double> better = load_on_dofs_;
+        factorisation.solve_forces_from(better, force, accuracy);
+        force = std::move(better);
+        error_ = 0;
+    }
+    [[nodiscard]] std::size_t most_negative(std::span<const double> f) const {
+        std::size_t best = f.size();
+        double smallest = 0;
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            const double size = signed_size(f, l);
+            if (size < smallest && !is_structural_zero(l)) {
+                smallest = size;
+                best = l;
+            }
+        }
+        return best;
+    }
+    /// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is
+    /// none for all.
+    [[nodiscard]] bool clear(std::span<const double> f, std::size_t chosen) const {
+        const double bar = chosen < f.size() ? signed_size(f, chosen) + 2 * error_ : error_;
+        if (chosen < f.size() && bar >= error_) {
+            return false; // it may be 0
+        }
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            if (l != chosen && signed_size(f, l) <= bar && !is_structural_zero(l)) {
+                return false;
+            }
+        }
+        return true;
+    }
+    [[nodiscard]] double signed_size(std::span<const double> f, std::size_t l) const {
+        return structure.contacts()[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l];
+    }
+
+    /// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
+    std::optional<Opening> stage(bool finite, OpeningRule rule, std::uint64_t random_bits) {
+        if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
+            return std::nullopt;
+        }
+        const std::vector<double>& f = finite ? force : infinitesimal();
+        const auto& contacts = structure.contacts();
+        const auto size = [&](std::size_t l) { return contacts[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l]; };
+        std::vector<std::size_t> negative;
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            if (is_structural_zero(l) != finite && size(l) < 0) {
+                negative.push_back(l);
+            }
+        }
+        if (negative.empty()) {
+            return std::nullopt;
+        }
+        std::size_t best = negative.front();
+        if (rule == OpeningRule::random) {
+            std::sort(negative.begin(), negative.end(),
+                      [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
+            best = negative[random_bits % negative.size()];
+        } else {
+            double smallest = std::numeric_limits<double>::infinity();
+            for (const std::size_t l : negative) {
+                const double key = rule == OpeningRule::least_negative ? -size(l)
+                                   : rule == OpeningRule::steepest     ? size(l) / mechanism_norm(l)
+                                                                       : size(l);
+                if (key < smallest) {
+                    smallest = key;
+                    best = l;
+                }
+            }
+        }
+        Opening opening;
+        opening.contact = ContactId(best);
+        opening.infinitesimal = !finite;
+        opening.force = {f[best], std::numeric_limits<double>::infinity()};
+        opening.direction = contacts[best].kind == ContactKind::held && f[best] >= 0 ? -1 : +1;
+        opening.margin = 0;
+        opening.rung = Rung::none;
+        return opening;
+    }
+
+    double mechanism_norm(std::size_t l) {
+        std::vector<double> v(force.size(), 0.0);
+        v[l] = 1;
+        factorisation.solve_velocities(v);
+        double square = 0;
+        for (const double c : v) {
+            square += c * c;
+        }
+        return std::sqrt(square);
+    }
+
+    const Load<Dim>& load_;
+    std::vector<unsigned char> backbone_;
+    std::vector<double> infinitesimal_;
+    std::vector<double> load_on_dofs_;
+    double error_ = 0;                     ///< of the finite forces, with a margin; 0: they are as accurate as they get
+    std::unique_ptr<Departure> departure_; ///< last: it uses the rest
+};
+
+} // namespace isostat

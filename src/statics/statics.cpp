@@ -35,7 +35,7 @@ std::vector<int> nonzero_rows(const std::vector<double>& force) {
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
                       const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
-                      const VertexEnclosure* vertex, const Statics* near)
+                      const VertexEnclosure* vertex, const Statics* near, std::vector<double> forces)
     : structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
       sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
       ladder_(packing, structure, factorisation, inverse, options, vertex) {
@@ -49,7 +49,7 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
         return std::vector<double>(x.begin(), x.end());
     };
     ladder_.add(on_dofs(load.external_force(packing), dofs), follows ? stress * (1 + 4 * u) : 0,
-                near != nullptr ? near->guess(sigma_) : std::vector<double>());
+                forces.empty() && near != nullptr ? near->guess(sigma_) : std::move(forces));
     ladder_.add(on_dofs(load.unit_force(packing), dofs), follows ? 1 : 0, known(unit));
     ladder_.add(on_dofs(load.infinitesimal, dofs), 0, known(infinitesimal_part));
     loaded_rows_ = nonzero_rows(on_dofs(load.fixed_force(packing), dofs));

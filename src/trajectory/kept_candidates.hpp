@@ -12,8 +12,8 @@ namespace isostat {
 /// contacts, and the list is the same for many of them.
 class KeptCandidates {
   public:
-    /// One flag per candidate: 1 when it is in `contacts`. Cost: two comparisons of lists, and a search per contact that
-    /// is not where it was at the last call. \pre `candidates` sorted. Valid until the next call.
+    /// One flag per candidate: 1 when it is in `contacts`. Cost: two comparisons of lists, and a search per contact
+    /// that is not where it was at the last call. \pre `candidates` sorted. Valid until the next call.
     const std::vector<unsigned char>& of(const std::vector<Contact>& candidates, const std::vector<Contact>& contacts);
 
   private:

@@ -394,6 +394,10 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         } else {
             approximate = factorisation->approximate().exchanged(next->slot(), next->matrix());
         }
+        std::optional<ExchangedContacts<Dim>> to_prove;
+        if (calls.arrived) {
+            to_prove = *next;
+        }
         auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
         if (wear.out()) {
             renewal.begin(*approximate, unproved.shared_matrix());
@@ -412,6 +416,10 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
         }
         if (auto stop = calls.end(record, *packing)) {
             return *stop;
+        }
+        if (to_prove) {
+            calls.arrived({record, opening, *packing, std::move(*to_prove), std::move(*approximate),
+                           std::move(path.tangent), here->force});
         }
         if (record.power_turn) { // the ends of a straight strut carry one force there: only a proof orders them
             return PlainEnd<Dim>{here->packing, structure->contacts(), opening.contact};

@@ -17,12 +17,25 @@ template <int Dim> struct PlainEnd {
     ContactId fresh_hold; ///< valid: the last arc ended at a power turn, and holds this coordinate
 };
 
+/// The end of an arc: what a proof of it starts from. Nothing is proved of any of it.
+template <int Dim> struct PlainArrival {
+    ArcRecord<Dim> record;
+    Opening opening; ///< that the arc started with
+    Packing<Dim> packing;
+    ExchangedContacts<Dim> contacts;
+    ApproximateInverse approximate;
+    std::vector<double> tangent;
+    std::vector<double> forces; ///< finite, as the choice of the next opening needs them
+};
+
 /// What steering needs from the run, and tells it.
 template <int Dim> struct PlainCalls {
     /// Before each arc: counts it, or says why the run stops here.
     std::function<std::optional<Failure>(ArcRecord<Dim>&)> begin;
     /// After each arc.
     std::function<std::optional<Failure>(ArcRecord<Dim>&, const Packing<Dim>&)> end;
+    /// After each arc too, if it is set.
+    std::function<void(PlainArrival<Dim>)> arrived;
     /// For the rule `random`.
     std::function<std::uint64_t()> random_bits;
 };

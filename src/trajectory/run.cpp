@@ -1,3 +1,4 @@
+#include "trajectory/behind.hpp"
 #include "trajectory/plain.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/ties.hpp"
@@ -105,10 +106,46 @@ template <int Dim> class Run {
     std::optional<Failure> rearrange(Opening opening, const std::string& kind, double stress, const LimitLoad& limit);
     Result<std::unique_ptr<Vertex<Dim>>> follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
                                                 const Load<Dim>& load, const LimitLoad& limit, ArcRecord<Dim>& record);
+    using Tell = std::function<void(DecisionKind, double margin, Rung, bool perturbed)>;
     std::optional<Failure> check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
-                                     const Load<Dim>& load, ArcRecord<Dim>& record);
-    void certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
-                 const Load<Dim>& load, ArcRecord<Dim>& record);
+                                     const Load<Dim>& load, ArcRecord<Dim>& record, bool& descends,
+                                     const Tell& tell) const;
+    /// An arc that was steered ahead, and then proved.
+    struct ProvedArc {
+        struct Count {
+            DecisionKind kind;
+            double margin;
+            Rung rung;
+        };
+        std::unique_ptr<Vertex<Dim>> vertex;
+        ArcRecord<Dim> record;
+        OpeningDecision decision;
+        std::vector<Count> counts;
+        double min_gap = 0;
+        Contact min_gap_contact;
+        double seconds = 0; ///< of its certificate, at level `arcs`
+    };
+    std::optional<ProvedArc> prove_arc(const Vertex<Dim>& from, PlainArrival<Dim>& arrival, const Opening& opening,
+                                       const Load<Dim>& load);
+    /// Where a rearrangement is.
+    struct Way {
+        std::unique_ptr<Vertex<Dim>> here; ///< null: at `vertex_`
+        Opening opening;
+        std::string kind;
+        int arcs = 0;
+        ContactId last_hold;
+        bool ended = false;                ///< no force is negative at `here`
+        bool by_steps = false;             ///< the next arc is one that must be proved before going on
+        std::unique_ptr<Vertex<Dim>> anew; ///< when it ended and is there: the same vertex, proved from nothing
+    };
+    std::optional<Failure> go_ahead(Way& way, const Load<Dim>& load);
+    /// Nothing that one arc is steered by depends on what is proved of another.
+    [[nodiscard]] bool steers_ahead() const { return !perturbs(); }
+    [[nodiscard]] Failure too_far(const ArcRecord<Dim>& record) const;
+    /// Returns the seconds that it took.
+    double certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
+                   const Load<Dim>& load, ArcRecord<Dim>& record) const;
+    void tally(const ArcCertificate& certificate, double seconds);
     std::optional<Failure> rearrange_plainly(Opening opening, const std::string& kind, const Load<Dim>& load);
     std::optional<Failure> report(int arcs);
 
@@ -127,7 +164,6 @@ template <int Dim> class Run {
     double margin_ = infinity; ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
     std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
-    bool descends_ = false;        ///< the work of the last arc was proved positive
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
@@ -259,7 +295,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
 
 template <int Dim>
 std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
-                                           const Load<Dim>& load, ArcRecord<Dim>& record) {
+                                           const Load<Dim>& load, ArcRecord<Dim>& record, bool& descends,
+                                           const Tell& tell) const {
     const std::vector<double> force = load.external_force(from.packing);
     double work = 0;
     double size = 0;
@@ -277,7 +314,7 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     // The stored ends are that far from the true ones: so much of the work is not known.
     const double unknown =
         (force_norm * (from.enclosure.distance() + to.enclosure.distance()) + terms * 0x1p-52 * size) * (1 + 1e-10);
-    descends_ = work > unknown;
+    descends = work > unknown;
     if (load.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided,
                        fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
@@ -306,11 +343,11 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
             }
             record.perturbed.push_back(
                 {"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
-            count(DecisionKind::power, f.margin(), to.statics.rung(), &record, true);
+            tell(DecisionKind::power, f.margin(), to.statics.rung(), true);
             return std::nullopt;
         }
         if (order.decided && order.sign > 0) {
-            count(DecisionKind::power, order.margin, order.rung, &record);
+            tell(DecisionKind::power, order.margin, order.rung, false);
             return std::nullopt;
         }
     }
@@ -325,15 +362,15 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
                                                                to_string<Dim>(record.opened),
                                                                to_string<Dim>(record.closed), f.value, f.radius)};
         }
-        count(DecisionKind::power, f.margin(), to.statics.rung(), &record);
+        tell(DecisionKind::power, f.margin(), to.statics.rung(), false);
     }
     return std::nullopt;
 }
 
 /// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
 template <int Dim>
-void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
-                       const Load<Dim>& load, ArcRecord<Dim>& record) {
+double Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
+                         const Load<Dim>& load, ArcRecord<Dim>& record) const {
     const auto begin = std::chrono::steady_clock::now();
     // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
     const Factorisation first(from.structure);
@@ -343,7 +380,10 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     };
     record.certificate = certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
                                      PowerLoad<Dim>{&load, opening.infinitesimal, at_limit}, candidates_);
-    const ArcCertificate& certificate = *record.certificate;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <int Dim> void Run<Dim>::tally(const ArcCertificate& certificate, double seconds) {
     ArcTally& tally = counters_.arcs;
     const bool proved = certificate.verdict == Verdict::proved;
     (proved ? tally.certified : tally.undecided)++;
@@ -357,7 +397,7 @@ void Run<Dim>::certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Ope
     };
     lower(tally.tube_margin, certificate.tube_margin);
     lower(tally.gap_margin, certificate.gap_margin);
-    tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    tally.seconds += seconds;
 }
 
 template <int Dim> std::string kind_of(const Vertex<Dim>& at, const Opening& opening) {
@@ -525,6 +565,180 @@ template <int Dim> Result<bool> Run<Dim>::choose_start() {
     return chosen;
 }
 
+template <int Dim> Failure Run<Dim>::too_far(const ArcRecord<Dim>& record) const {
+    return {FailureKind::cap_reached,
+            fmt::format("|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails here (cap max_strain = {:.6g})",
+                        std::abs(record.strain), record.stress, options_.max_strain)};
+}
+
+/// What `follow`, `check_arc` and `decide_opening` ask of an arc that was steered ahead. Nothing when one of them does
+/// not agree: the arc is then done again, step by step.
+template <int Dim>
+std::optional<typename Run<Dim>::ProvedArc> Run<Dim>::prove_arc(const Vertex<Dim>& from, PlainArrival<Dim>& arrival,
+                                                                const Opening& opening, const Load<Dim>& load) {
+    ProvedArc arc;
+    arc.record = arrival.record;
+    ArcRecord<Dim>& record = arc.record;
+    record.force = opening.force.value;
+    record.margin = infinity;
+    record.decided_by = Rung::combinatorial;
+    const auto tell = [&arc](DecisionKind kind, double margin, Rung rung, bool /*perturbed*/) {
+        arc.counts.push_back({kind, margin, rung});
+        arc.record.margin = std::min(arc.record.margin, margin);
+        arc.record.decided_by = std::max(arc.record.decided_by, rung);
+    };
+    tell(DecisionKind::opening, opening.margin, opening.rung, false);
+    LadderOptions ladder;
+    ladder.first_accuracy = enough_to_decide;
+    auto made = Vertex<Dim>::proved(from, std::move(arrival), load, bound_cache_, ladder);
+    if (!made.ok()) {
+        return std::nullopt;
+    }
+    arc.vertex = std::move(made.value());
+    const auto gaps = arc.vertex->check_gaps(candidates_, kept_);
+    if (!gaps.ok() || gaps.value().negative) {
+        return std::nullopt;
+    }
+    tell(DecisionKind::gaps, gaps.value().margin, gaps.value().rung, false);
+    arc.min_gap = gaps.value().smallest;
+    arc.min_gap_contact = gaps.value().where;
+    bool descends = false;
+    const auto unproved = check_arc(from, *arc.vertex, opening, load, record, descends, tell);
+    if (unproved || (record.power_turn && record.closed == record.opened)) {
+        return std::nullopt;
+    }
+    const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
+    record.strain = reference > 0 ? (reference - arc.vertex->packing.length(load.loaded_axis)) / reference : 0;
+    auto decision =
+        decide_opening(arc.vertex->statics, record.stress, options_.rule,
+                       record.power_turn ? opening.contact : ContactId(), bits_for(options_.rule_seed, record.step));
+    if (!decision.ok()) {
+        return std::nullopt;
+    }
+    arc.decision = std::move(decision.value());
+    if (options_.certify == CertifyLevel::arcs) {
+        arc.seconds = certify(from, *arc.vertex, opening, record.kind == "limit", load, record);
+    }
+    return arc;
+}
+
+/// Steers as at level `plain`, and proves every vertex behind, in the same order. What was steered beyond a vertex that
+/// decides otherwise is thrown away.
+template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Load<Dim>& load) {
+    constexpr std::size_t most_waiting = 6;
+    const Vertex<Dim>& start = way.here ? *way.here : *vertex_;
+    const double stress = sigma_of(load);
+    const int before = way.arcs;
+    const long step = counters_.steps;
+    int steered = 0;
+    if (options_.certify == CertifyLevel::arcs) {
+        (void)start.structure.ordering(); // made at the first call: both sides may ask for it
+    }
+    // Of the proofs, until they end:
+    std::unique_ptr<Vertex<Dim>> last;
+    OpeningDecision decision;
+    decision.opening = way.opening;
+    ContactId last_hold;
+    Behind<PlainArrival<Dim>, ProvedArc> proofs(
+        [&](PlainArrival<Dim>& arrival) -> std::optional<ProvedArc> {
+            const std::optional<Opening>& due = decision.opening;
+            if (!due || due->contact != arrival.opening.contact || due->direction != arrival.opening.direction ||
+                due->infinitesimal != arrival.opening.infinitesimal) {
+                return std::nullopt;
+            }
+            const bool held = arrival.record.power_turn;
+            auto arc = prove_arc(last ? *last : start, arrival, *due, load);
+            if (arc) {
+                last_hold = held ? due->contact : ContactId();
+                last = std::move(arc->vertex);
+                decision = arc->decision;
+            }
+            return arc;
+        },
+        most_waiting);
+    // Here:
+    std::optional<Failure> failure;
+    const auto stopped = [this] { return options_.stop != nullptr && options_.stop->load(); };
+    const auto record = [&] {
+        while (!failure && !stopped()) {
+            auto arc = proofs.next();
+            if (!arc) {
+                return;
+            }
+            ++way.arcs;
+            ++counters_.steps;
+            for (const auto& [kind, margin, rung] : arc->counts) {
+                count(kind, margin, rung);
+            }
+            record_.min_gap = arc->min_gap;
+            record_.min_gap_contact = arc->min_gap_contact;
+            if (arc->record.certificate) {
+                tally(*arc->record.certificate, arc->seconds);
+            }
+            observer_.on_arc(arc->record);
+            counters_.tally.structural_ties += arc->decision.opening && arc->decision.opening->straight_strut ? 1 : 0;
+            if (std::abs(arc->record.strain) > options_.max_strain) {
+                failure = too_far(arc->record);
+            }
+        }
+    };
+    PlainCalls<Dim> calls;
+    calls.begin = [&](ArcRecord<Dim>& arc) -> std::optional<Failure> {
+        record();
+        if (failure || stopped() || proofs.ended() || before + steered >= options_.max_arcs) {
+            return Failure{FailureKind::interrupted, "no farther ahead"};
+        }
+        arc.step = step + ++steered;
+        arc.equilibrium = counters_.equilibria;
+        arc.arc = before + steered;
+        arc.stress = stress;
+        return std::nullopt;
+    };
+    calls.end = [](ArcRecord<Dim>&, const Packing<Dim>&) { return std::optional<Failure>(); };
+    calls.arrived = [&](PlainArrival<Dim> arrival) { proofs.hand_out(std::move(arrival)); };
+    calls.random_bits = [&] { return bits_for(options_.rule_seed, step + steered); };
+    CandidateList<Dim> candidates = candidates_;
+    auto end = steer_plainly(start, way.opening, way.kind, load, options_, candidates, calls);
+    // The equilibrium, if it is one, is proved anew from nothing while the last proofs go on.
+    std::unique_ptr<Vertex<Dim>> anew;
+    CandidateList<Dim> listed;
+    InverseBoundCache cache;
+    if (end.ok() && !end.value().fresh_hold.valid() && !proofs.ended()) {
+        auto made = Vertex<Dim>::make(end.value().packing, end.value().contacts, load, cache);
+        if (made.ok()) {
+            anew = std::move(made.value());
+            listed = find_candidates(anew->packing, candidate_fraction);
+        }
+    }
+    proofs.finish();
+    record();
+    if (failure) {
+        return failure;
+    }
+    const int proved = way.arcs - before;
+    way.by_steps = proved == 0;
+    if (proved == 0 || stopped()) {
+        way.by_steps = true;
+        return std::nullopt;
+    }
+    way.here = std::move(last);
+    if (decision.opening) {
+        way.opening = *decision.opening;
+        way.kind = kind_of(*way.here, way.opening);
+        return std::nullopt;
+    }
+    count(DecisionKind::equilibrium, decision.margin, decision.rung, nullptr, decision.perturbed);
+    zeros_ = decision.zeros;
+    way.last_hold = last_hold;
+    way.ended = true;
+    if (anew && proved == steered) {
+        way.anew = std::move(anew);
+        candidates_ = std::move(listed);
+        bound_cache_ = std::move(cache);
+    }
+    return std::nullopt;
+}
+
 template <int Dim>
 std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress,
                                            const LimitLoad& limit) {
@@ -535,55 +749,66 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         return rearrange_plainly(opening, kind, load);
     }
     fresh_caches(vertex_->packing);
-    std::unique_ptr<Vertex<Dim>> here;
-    const Vertex<Dim>* from = vertex_.get();
-    std::string arc_kind = kind;
-    int arcs = 0;
-    ContactId last_hold;
+    Way way;
+    way.opening = std::move(opening);
+    way.kind = kind;
+    bool descends = false;          // the work of the last arc was proved positive
     std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located
-    while (true) {
-        if (options_.stop != nullptr && options_.stop->load()) {
-            return Failure{FailureKind::interrupted,
-                           fmt::format("stopped after {} arcs of a rearrangement at sigma = {:.17g}", arcs, stress)};
+    while (!way.ended) {
+        if (steers_ahead() && !way.by_steps && resting.empty()) {
+            if (auto failure = go_ahead(way, load)) {
+                return failure;
+            }
+            continue;
         }
-        if (arcs >= options_.max_arcs) {
+        way.by_steps = false;
+        const Vertex<Dim>* from = way.here ? way.here.get() : vertex_.get();
+        if (options_.stop != nullptr && options_.stop->load()) {
+            return Failure{
+                FailureKind::interrupted,
+                fmt::format("stopped after {} arcs of a rearrangement at sigma = {:.17g}", way.arcs, stress)};
+        }
+        if (way.arcs >= options_.max_arcs) {
             return Failure{FailureKind::cap_reached,
                            fmt::format("no equilibrium after {} arcs at sigma = {:.17g}: the sample fails here (cap "
                                        "max_arcs)",
-                                       arcs, stress)};
+                                       way.arcs, stress)};
         }
-        ++arcs;
+        ++way.arcs;
         ArcRecord<Dim> record;
         record.step = ++counters_.steps;
         record.equilibrium = counters_.equilibria;
-        record.arc = arcs;
-        record.kind = arc_kind;
-        record.opened = from->structure.contacts()[opening.contact.index()];
+        record.arc = way.arcs;
+        record.kind = way.kind;
+        record.opened = from->structure.contacts()[way.opening.contact.index()];
         record.stress = stress;
-        record.force = opening.force.value;
+        record.force = way.opening.force.value;
         record.margin = infinity;
         record.decided_by = Rung::combinatorial;
-        if (arcs == 1) {
+        if (way.arcs == 1) {
             take_log(*vertex_, record.perturbed);
         }
-        count(DecisionKind::opening, opening.margin, opening.rung, &record, opening.perturbed);
-        const bool at_limit = arcs == 1 && kind == "limit";
-        const std::string where = fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arcs, stress);
-        auto made = follow(*from, opening, at_limit, load, limit, record);
+        count(DecisionKind::opening, way.opening.margin, way.opening.rung, &record, way.opening.perturbed);
+        const bool at_limit = way.arcs == 1 && kind == "limit";
+        const std::string where = fmt::format("arc {} of the rearrangement at sigma = {:.17g}", way.arcs, stress);
+        auto made = follow(*from, way.opening, at_limit, load, limit, record);
         if (!made.ok()) {
             return located(made.failure(), where);
         }
         std::unique_ptr<Vertex<Dim>> next = std::move(made.value());
-        const auto unproved = check_arc(*from, *next, opening, load, record);
+        const auto unproved = check_arc(*from, *next, way.opening, load, record, descends,
+                                        [&](DecisionKind about, double margin, Rung rung, bool perturbed) {
+                                            count(about, margin, rung, &record, perturbed);
+                                        });
         const bool turned_back = record.power_turn && record.closed == record.opened;
-        if (arc_kind == "release" && !descends_ && (turned_back || unproved)) {
+        if (way.kind == "release" && !descends && (turned_back || unproved)) {
             // It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released
             // once more it would do so for ever.
-            resting.push_back(opening.contact);
+            resting.push_back(way.opening.contact);
             --counters_.steps;
-            --arcs;
-            auto again = decide_opening(here->statics, stress, options_.rule, std::span<const ContactId>(resting),
-                                        bits_for(options_.rule_seed, counters_.steps), first_order(*here));
+            --way.arcs;
+            auto again = decide_opening(way.here->statics, stress, options_.rule, std::span<const ContactId>(resting),
+                                        bits_for(options_.rule_seed, counters_.steps), first_order(*way.here));
             if (!again.ok()) {
                 return located(again.failure(), where);
             }
@@ -593,8 +818,8 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
                                            "power turn is located: whether and where it moves is not decided",
                                            where, to_string<Dim>(record.opened))};
             }
-            opening = *again.value().opening;
-            arc_kind = kind_of(*here, opening);
+            way.opening = *again.value().opening;
+            way.kind = kind_of(*way.here, way.opening);
             continue;
         }
         if (unproved) {
@@ -602,12 +827,13 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         }
         resting.clear();
         if (options_.certify == CertifyLevel::arcs) {
-            certify(*from, *next, opening, at_limit, load, record);
+            const double seconds = certify(*from, *next, way.opening, at_limit, load, record);
+            tally(*record.certificate, seconds);
         }
         const auto axis = static_cast<std::size_t>(load.loaded_axis);
         const double reference = load.reference_length[axis];
         record.strain = reference > 0 ? (reference - next->packing.length(load.loaded_axis)) / reference : 0;
-        const ContactId fresh_hold = record.power_turn ? opening.contact : ContactId();
+        const ContactId fresh_hold = record.power_turn ? way.opening.contact : ContactId();
         auto decision = decide_opening(next->statics, stress, options_.rule, fresh_hold,
                                        bits_for(options_.rule_seed, counters_.steps), first_order(*next));
         take_log(*next, record.perturbed);
@@ -616,33 +842,32 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             return located(decision.failure(), where);
         }
         counters_.tally.structural_ties += decision.value().opening && decision.value().opening->straight_strut ? 1 : 0;
-        here = std::move(next);
-        from = here.get();
+        way.here = std::move(next);
         if (std::abs(record.strain) > options_.max_strain) {
-            return Failure{FailureKind::cap_reached,
-                           fmt::format("|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails here (cap max_strain = "
-                                       "{:.6g})",
-                                       std::abs(record.strain), stress, options_.max_strain)};
+            return too_far(record);
         }
         if (!decision.value().opening) {
             count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
                   decision.value().perturbed);
             zeros_ = decision.value().zeros;
-            last_hold = fresh_hold;
+            way.last_hold = fresh_hold;
             break;
         }
-        opening = *decision.value().opening;
-        arc_kind = kind_of(*here, opening);
+        way.opening = *decision.value().opening;
+        way.kind = kind_of(*way.here, way.opening);
     }
     // The equilibrium itself is proved anew, from nothing that the way to it left: full exact elimination, fresh
     // factors and bound. A resumed run starts from the same bits.
-    fresh_caches(here->packing);
-    // The load is again the stored one, if the forces allow it.
-    auto anew = make_vertex(here->packing, here->structure.contacts(), load, LimitLoad{});
-    if (!anew.ok()) {
-        return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+    if (way.anew == nullptr) {
+        fresh_caches(way.here->packing);
+        // The load is again the stored one, if the forces allow it.
+        auto anew = make_vertex(way.here->packing, way.here->structure.contacts(), load, LimitLoad{});
+        if (!anew.ok()) {
+            return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
+        }
+        way.anew = std::move(anew.value());
     }
-    vertex_ = std::move(anew.value());
+    vertex_ = std::move(way.anew);
     auto gaps = vertex_->check_gaps(candidates_, kept_, perturbs());
     if (!gaps.ok()) {
         return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
@@ -663,7 +888,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     record_.min_gap = gaps.value().smallest;
     record_.min_gap_contact = gaps.value().where;
     if (!perturbs()) { // otherwise `still_equilibrium` insists on the answer
-        auto again = decide_opening(vertex_->statics, stress, options_.rule, last_hold, 0);
+        auto again = decide_opening(vertex_->statics, stress, options_.rule, way.last_hold, 0);
         if (!again.ok() || again.value().opening) {
             return Failure{
                 FailureKind::undecided,
@@ -678,7 +903,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();
-    return report(arcs);
+    return report(way.arcs);
 }
 
 /// Level `plain`: the way is steered without bounds, the end is proved. When the proof finds a negative force there,

@@ -1,5 +1,7 @@
 #include "trajectory/vertex.hpp"
 
+#include "trajectory/plain.hpp"
+
 #include <isostat/motion/arc.hpp>
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
 
@@ -26,10 +28,11 @@ Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load
 
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
-                    const InverseBound& bound, const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near)
+                    const InverseBound& bound, const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near,
+                    std::vector<double> forces)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near) {}
+      statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near, std::move(forces)) {}
 
 template <int Dim> double Vertex<Dim>::cost_of_solves(int arc_passes) const {
     constexpr double proofs = 3; // passes of the bound and the enclosure
@@ -102,23 +105,52 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     const ApproximateInverse approximate =
         from.factors_are_worn(arc_passes) ? from.factorisation.approximate().renewed(next->matrix())
                                           : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
+    const bool taken_over = approximate.exchanges() > 0;
+    auto made = prove(from, packing, std::move(*next), approximate, tangent, {}, load, cache, options);
+    if (!made.ok()) {
+        return made.failure();
+    }
+    if (made.value() == nullptr) {
+        return anew();
+    }
+    if (taken_over) {
+        made.value()->cost_before_ = from.cost_before_ + from.cost_of_solves(arc_passes);
+    }
+    return made;
+}
+
+template <int Dim>
+Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::proved(const Vertex& from, PlainArrival<Dim> arrival,
+                                                         const Load<Dim>& load, InverseBoundCache& cache,
+                                                         LadderOptions options) {
+    auto made = prove(from, arrival.packing, arrival.contacts, std::move(arrival.approximate), arrival.tangent,
+                      std::move(arrival.forces), load, cache, options);
+    if (made.ok() && made.value() == nullptr) {
+        return make(std::move(arrival.packing), arrival.contacts.contacts(), load, cache);
+    }
+    return made;
+}
+
+/// Nothing when no bound was proved in doubles.
+template <int Dim>
+Result<std::unique_ptr<Vertex<Dim>>>
+Vertex<Dim>::prove(const Vertex& from, Packing<Dim> packing, ExchangedContacts<Dim> next,
+                   ApproximateInverse approximate, const std::vector<double>& tangent, std::vector<double> forces,
+                   const Load<Dim>& load, InverseBoundCache& cache, LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
     for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {
         mechanism[mu] = tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
     }
-    auto proved = carry_bound(from.structure, from.inverse, *next, approximate, std::move(mechanism));
-    if (!proved) {
-        proved = bound_exchanged(*next, approximate, cache);
+    auto bound = carry_bound(from.structure, from.inverse, next, approximate, std::move(mechanism));
+    if (!bound) {
+        bound = bound_exchanged(next, approximate, cache);
     }
-    if (!proved) {
-        return anew();
+    if (!bound) {
+        return std::unique_ptr<Vertex>();
     }
-    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing),
-                                              IsostaticStructure<Dim>::exchanged(std::move(*next), proved->proof),
-                                              approximate, proved->bound, load, options, from.statics));
-    if (approximate.exchanges() > 0) {
-        vertex->cost_before_ = from.cost_before_ + from.cost_of_solves(arc_passes);
-    }
+    std::unique_ptr<Vertex> vertex(
+        new Vertex(std::move(packing), IsostaticStructure<Dim>::exchanged(std::move(next), bound->proof),
+                   std::move(approximate), bound->bound, load, options, from.statics, std::move(forces)));
     if (auto failure = vertex->lacking()) {
         return *failure;
     }

@@ -30,6 +30,8 @@ template <int Dim> struct FirstOrderVertex {
     std::vector<std::pair<Contact, Enclosure>> touching;
 };
 
+template <int Dim> struct PlainArrival;
+
 /// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
 /// other.
 template <int Dim> class Vertex {
@@ -47,6 +49,10 @@ template <int Dim> class Vertex {
                                                      const Contact& closed, const std::vector<double>& tangent,
                                                      const Load<Dim>& load, InverseBoundCache& cache, int arc_passes,
                                                      LadderOptions options = {});
+    /// The same for an arc that was steered without proof, whose end has exchanged contacts, an operator close to the
+    /// inverse and forces already: guesses, all but the configuration and the contacts.
+    static Result<std::unique_ptr<Vertex>> proved(const Vertex& from, PlainArrival<Dim> arrival, const Load<Dim>& load,
+                                                  InverseBoundCache& cache, LadderOptions options);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -80,7 +86,11 @@ template <int Dim> class Vertex {
     /// Nothing is proved unless the proof is concluded.
     Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load, InverseBoundCache& cache);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
-           const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near);
+           const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near, std::vector<double> forces);
+    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, Packing<Dim> packing, ExchangedContacts<Dim> next,
+                                                 ApproximateInverse approximate, const std::vector<double>& tangent,
+                                                 std::vector<double> forces, const Load<Dim>& load,
+                                                 InverseBoundCache& cache, LadderOptions options);
     /// What every vertex needs, or why not.
     std::optional<Failure> lacking();
     /// Cost of the solves of this vertex and of the arc from it, in passes of fresh factors.

@@ -204,6 +204,7 @@ ISOSTAT_WIDE
 bool BlockCholesky::factorise(double shift) {
     place_.resize(blocks_);
     work_.resize(blocks_);
+    pivot_.resize(blocks_);
     int* const place = place_.data(); // of each row in the column in work
     Block* const work = work_.data();
     Block* const value = value_.data(); // not through `this`, which every store might change
@@ -290,6 +291,7 @@ bool BlockCholesky::factorise(double shift) {
             return false;
         }
         const double l11 = std::sqrt(d1);
+        pivot_[j] = {l00, l10, l11};
         const double by00 = 1 / l00;
         const double by11 = 1 / l11;
         for (std::size_t k = 0; k < count; ++k) {
@@ -313,13 +315,57 @@ double BlockCholesky::error_bound(double shift) const {
         ++entries[row];
         diagonal[row] += h_->value[e] * h_->value[e];
     }
-    double sum = 0;
+    std::vector<double> relative(n); // gamma_{t_k}
+    double trace = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const auto block = static_cast<std::size_t>(position_[i / 2]);
         const int row_of_l = 2 * (across_start_[block + 1] - across_start_[block] + 1); // zeros in blocks counted too
-        sum += gamma(entries[i] + row_of_l + 4.0) * (2 * diagonal[i] + shift);
+        relative[i] = gamma(entries[i] + row_of_l + 4.0);
+        trace += relative[i] * (2 * diagonal[i] + shift);
     }
+    constexpr double good_enough = 0.01; // of the shift
+    const double sum = trace < good_enough * shift ? trace : std::min(trace, largest_row(relative, shift));
     return sum * 1.01 + 1e-290; // 1.01: second order in gamma and the rounding of this sum; 1e-290: underflow
+}
+
+/// Largest gamma_{t_k} (|B||B|^T 1 + s + |L||L|^T 1)_k: less than the trace by about the number of rows.
+double BlockCholesky::largest_row(const std::vector<double>& relative, double shift) const {
+    const sparse::Matrix<double>& h = *h_;
+    std::vector<double> of_b(relative.size(), 0.0);
+    for (std::size_t l = 0; l < static_cast<std::size_t>(h.cols); ++l) {
+        double sum = 0;
+        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+            sum += std::abs(h.value[e]);
+        }
+        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+            of_b[static_cast<std::size_t>(h.row[e])] += std::abs(h.value[e]) * sum;
+        }
+    }
+    std::vector<std::array<double, 2>> of_l(blocks_, {0.0, 0.0});
+    for (std::size_t j = 0; j < blocks_; ++j) {
+        const auto& [l00, l10, l11] = pivot_[j];
+        double first = l00 + std::abs(l10); // sums of the two columns
+        double second = l11;
+        for (auto k = static_cast<std::size_t>(start_[j]); k < static_cast<std::size_t>(start_[j + 1]); ++k) {
+            const std::array<double, 4>& l = value_[k].value;
+            first += std::abs(l[0]) + std::abs(l[1]);
+            second += std::abs(l[2]) + std::abs(l[3]);
+        }
+        of_l[j][0] += l00 * first;
+        of_l[j][1] += std::abs(l10) * first + l11 * second;
+        for (auto k = static_cast<std::size_t>(start_[j]); k < static_cast<std::size_t>(start_[j + 1]); ++k) {
+            const std::array<double, 4>& l = value_[k].value;
+            std::array<double, 2>& row = of_l[static_cast<std::size_t>(row_[k])];
+            row[0] += std::abs(l[0]) * first + std::abs(l[2]) * second;
+            row[1] += std::abs(l[1]) * first + std::abs(l[3]) * second;
+        }
+    }
+    double largest = 0;
+    for (std::size_t i = 0; i < relative.size(); ++i) {
+        const double l = of_l[static_cast<std::size_t>(position_[i / 2])][i % 2];
+        largest = std::max(largest, relative[i] * (of_b[i] + shift + l));
+    }
+    return largest;
 }
 
 } // namespace isostat

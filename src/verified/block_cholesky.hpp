@@ -42,6 +42,7 @@ class BlockCholesky {
 
     void arrange(const std::vector<int>& order);
     void analyse();
+    [[nodiscard]] double largest_row(const std::vector<double>& relative, double shift) const;
 
     const sparse::Matrix<double>* h_ = nullptr;
     std::size_t blocks_ = 0;
@@ -54,6 +55,7 @@ class BlockCholesky {
     std::vector<int> across_start_;             ///< by row of L:
     std::vector<int> column_, across_;          ///< columns of its entries, and their places in `row_`
     std::vector<Block> value_, work_;
+    std::vector<std::array<double, 3>> pivot_; ///< diagonal blocks of L: (0, 0), (1, 0), (1, 1)
     std::vector<int> place_, next_, next_row_;
 };
 

@@ -177,7 +177,7 @@ template <int Dim> double ForceLadder<Dim>::Implementation::stored_uncertainty()
 }
 
 /// The bound of a solution at the place of the rung becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H* - H|),
-/// |H* x - F*| <= |H x - F| + |H* - H| |x| + |F* - F|.
+/// |H* x - F*| <= |H x - F| + |(H* - H) x| + |F* - F|.
 template <int Dim> void ForceLadder<Dim>::Implementation::inflate(const Part& part, ForceSolution& s) const {
     if (vertex == nullptr) {
         return;
@@ -189,8 +189,11 @@ template <int Dim> void ForceLadder<Dim>::Implementation::inflate(const Part& pa
         s.bound = std::numeric_limits<double>::infinity();
         return;
     }
-    const double residual =
-        s.bound * sigma + here.uncertainty * norm_above(s.value) * (1 + 4 * u) + part.rate * here.away;
+    double turned = here.uncertainty * norm_above(s.value) * (1 + 4 * u); // bound of |(H* - H) x|
+    if (rung == Rung::double_bound) {
+        turned = std::min(turned, turn_of_forces(*packing, structure->contacts(), s.value) * here.away);
+    }
+    const double residual = s.bound * sigma + turned + part.rate * here.away;
     s.bound = residual / left * (1 + 16 * u);
 }
 

@@ -44,6 +44,20 @@ double rounding_of_entries(const sparse::Matrix<double>& h) {
     return 5.01 * u * std::sqrt(column_norm * row_norm);
 }
 
+/// Factors of degrees of freedom, powers of two: a wall has so many contacts that the rounding of its row would drown
+/// the small singular values of the rest.
+std::vector<double> scales_of(const sparse::Matrix<double>& h) {
+    constexpr double many = 16; // squares of unit normals: more contacts than a disk mostly has
+    std::vector<double> scale(static_cast<std::size_t>(h.rows), 0.0);
+    for (std::size_t e = 0; e < h.row.size(); ++e) {
+        scale[static_cast<std::size_t>(h.row[e])] += h.value[e] * h.value[e];
+    }
+    for (double& c : scale) {
+        c = c > many ? std::ldexp(1.0, -static_cast<int>(std::ceil(0.5 * std::log2(c)))) : 1.0;
+    }
+    return scale;
+}
+
 /// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
 double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int iterations) {
     double lambda = 0;
@@ -120,9 +134,14 @@ struct CholeskyOutcome {
     double entry_error = 0; ///< |H - fl(H)|
 };
 
-CholeskyOutcome by_cholesky(const sparse::Matrix<double>& h, const ApproximateInverse& inverse,
+CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const ApproximateInverse& inverse,
                             InverseBoundCache& cache) {
-    const auto n = static_cast<std::size_t>(h.rows);
+    const auto n = static_cast<std::size_t>(unscaled.rows);
+    sparse::Matrix<double> h = unscaled;
+    const std::vector<double> scale = scales_of(h);
+    for (std::size_t e = 0; e < h.row.size(); ++e) {
+        h.value[e] *= scale[static_cast<std::size_t>(h.row[e])]; // exact: sigma_min(S H) <= sigma_min(H) for S <= 1
+    }
     int iterations = 1; // of a good guess: a shift that is too large only costs a second factorisation
     if (cache.vector.size() != n || !std::isfinite(norm(cache.vector)) || norm(cache.vector) == 0) {
         cache.vector.resize(n);
@@ -134,7 +153,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& h, const ApproximateIn
     }
     count_work(Work::inverse_bounds);
     CholeskyOutcome outcome;
-    outcome.entry_error = rounding_of_entries(h);
+    outcome.entry_error = rounding_of_entries(unscaled); // scaled it is smaller
     outcome.estimated = estimate(inverse, cache.vector, iterations);
     double shift = 0.5 * outcome.estimated;
     if (std::isfinite(shift) && shift > 0) {

@@ -1,5 +1,7 @@
 // Proved bounds against a reference in 100 digits: the bound is never below the error, and it is not useless.
+#include "oracle/random.hpp"
 #include "support/crafted.hpp"
+#include "verified/vertex_bounds.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
@@ -290,6 +292,48 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
         BOOST_TEST(step.radius < 1.6 * std::sqrt(square));
         BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, proved.value(), bound).radius);
     }
+}
+
+BOOST_AUTO_TEST_CASE(forces_turn_with_their_contacts_within_the_bound_and_reach_a_good_part_of_it) {
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    const DofMap<2> dofs(state.packing);
+    const sparse::Matrix<double> h = contact_matrix(state.packing, dofs, state.contacts);
+    oracle::Random random(5);
+    std::vector<double> x(state.contacts.size());
+    for (double& c : x) {
+        c = random.real(-1, 1);
+    }
+    x[7] = 20; // the worst disks are at one of its ends
+    const double rate = turn_of_forces(state.packing, state.contacts, x);
+    double largest = 0;
+    const int disks = state.packing.disk_count();
+    for (int trial = 0; trial < 4 * disks + 100; ++trial) {
+        Packing<2> moved = state.packing;
+        double square = 0;
+        for (int k = 0; k < 2 * disks; ++k) {
+            if (trial >= 4 * disks || k / 2 == trial / 4) { // one disk in some direction, then all
+                const double step = 1e-7 * random.real(-1, 1);
+                moved.q[static_cast<std::size_t>(k)] += step;
+                square += step * step;
+            }
+        }
+        const sparse::Matrix<double> other = contact_matrix(moved, dofs, state.contacts);
+        BOOST_TEST_REQUIRE((other.row == h.row));
+        std::vector<double> change(x.size(), 0.0);
+        for (std::size_t l = 0; l < x.size(); ++l) {
+            for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+                change[static_cast<std::size_t>(h.row[e])] += (other.value[e] - h.value[e]) * x[l];
+            }
+        }
+        double size = 0;
+        for (const double c : change) {
+            size += c * c;
+        }
+        const double ratio = std::sqrt(size / square) / rate;
+        BOOST_TEST(ratio < 1);
+        largest = std::max(largest, ratio);
+    }
+    BOOST_TEST(largest > 0.3);
 }
 
 BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_includes_the_correction) {

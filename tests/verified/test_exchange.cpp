@@ -197,6 +197,48 @@ BOOST_AUTO_TEST_CASE(a_shifted_cholesky_factorisation_ends_below_the_smallest_ei
     BOOST_TEST(det(15.9 * low) > 0);
 }
 
+/// Bidiagonal: H H^T has 2 on its diagonal (1 in the first row) and -1 beside it.
+sparse::Matrix<double> chain(int n) {
+    sparse::Matrix<double> h;
+    h.rows = h.cols = n;
+    h.start = {0};
+    for (int l = 0; l < n; ++l) {
+        h.row.push_back(l);
+        h.value.push_back(1);
+        if (l + 1 < n) {
+            h.row.push_back(l + 1);
+            h.value.push_back(-1);
+        }
+        h.start.push_back(static_cast<int>(h.row.size()));
+    }
+    return h;
+}
+
+BOOST_AUTO_TEST_CASE(the_rounding_of_a_cholesky_factorisation_is_within_its_bound_and_does_not_add_up_over_the_rows) {
+    int above = 0;
+    for (const int n : {40, 41, 60, 61, 80, 100, 101, 120, 160, 200, 200000, 200001}) {
+        const double half = std::sin(std::acos(-1.0) / (2.0 * (2.0 * n + 1)));
+        const double smallest = 4 * half * half; // eigenvalue of H H^T, in closed form
+        const sparse::Matrix<double> h = chain(n);
+        FillOrder order;
+        BlockCholesky cholesky;
+        cholesky.set(h, order);
+        double low = 0.5 * smallest;
+        double high = 2 * smallest;
+        for (int k = 0; k < (n < 1000 ? 200 : 30) && std::nextafter(low, high) < high; ++k) {
+            const double middle = 0.5 * (low + high);
+            (cholesky.factorise(middle) ? low : high) = middle;
+        }
+        BOOST_TEST_REQUIRE(cholesky.factorise(low));
+        const double bound = cholesky.error_bound(low);
+        BOOST_TEST(low - bound < smallest);
+        BOOST_TEST(low - bound > 0.99 * smallest);
+        BOOST_TEST(high + bound > smallest);
+        above += low > smallest * (1 + 0x1p-51) ? 1 : 0;
+    }
+    BOOST_TEST(above > 0); // where the bound is needed
+}
+
 BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_takes_them_to_rounding) {
     Exchange from(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state);
     int compared = 0;

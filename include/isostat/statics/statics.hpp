@@ -29,7 +29,7 @@ template <int Dim> class Statics {
     /// solves start; not used afterwards.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
             const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
-            const VertexEnclosure* vertex = nullptr, const Statics* near = nullptr);
+            const VertexEnclosure* vertex = nullptr, const Statics* near = nullptr, std::vector<double> forces = {});
 
     /// Finite part at the loaded stress sigma (taken as exact).
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;

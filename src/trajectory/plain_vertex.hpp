@@ -141,10 +141,11 @@ template <int Dim> class PlainVertex {
     void depart(const ApproximateInverse& approximate, ContactId opened, CandidateList<Dim>& candidates,
                 const ArcOptions& options) {
         departure_.reset(new Departure{opened, Factorisation(structure, approximate), {}});
-        departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>([this, opened, &candidates, options] {
-            return std::make_unique<ArcDeparture<Dim>>(packing, structure, departure_->factorisation, opened, +1,
-                                                       PowerLoad<Dim>{&load_, false, false}, candidates, options);
-        });
+        departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>(
+            [this, &factors = departure_->factorisation, opened, &candidates, options] {
+                return std::make_unique<ArcDeparture<Dim>>(packing, structure, factors, opened, +1,
+                                                           PowerLoad<Dim>{&load_, false, false}, candidates, options);
+            });
     }
     void refine() {
         std::vector<double> better = load_on_dofs_;

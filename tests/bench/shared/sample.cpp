@@ -11,10 +11,24 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 }
 
-double cpu_milliseconds() {
+namespace {
+double milliseconds_of(clockid_t clock) {
     timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    clock_gettime(clock, &t);
     return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+} // namespace
+
+double cpu_milliseconds() {
+    return milliseconds_of(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double process_milliseconds() {
+    return milliseconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double wall_milliseconds() {
+    return milliseconds_of(CLOCK_MONOTONIC);
 }
 
 double Sample::median() const {

@@ -7,6 +7,10 @@ namespace bench {
 
 /// CPU milliseconds of this thread: other processes disturb it little.
 double cpu_milliseconds();
+/// CPU milliseconds of all threads of this process.
+double process_milliseconds();
+/// For what several threads do: only a quiet machine measures it.
+double wall_milliseconds();
 
 /// Measurements of one quantity, in the order in which they were made. NaN for what an empty one is asked.
 class Sample {

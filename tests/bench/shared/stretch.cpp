@@ -2,6 +2,7 @@
 
 #include "bench/shared/references.hpp"
 
+#include <isostat/core/threads.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
@@ -46,7 +47,8 @@ class Watcher final : public RunObserver<2> {
         }
     }
     void on_equilibrium(const EquilibriumRecord<2>&, const State<2>& state, const std::vector<double>&) override {
-        const double begin = cpu_milliseconds();
+        const double begin = time();
+        const double process_begin = process_milliseconds();
         if (seen_++ % options_.reference_every == 0) {
             const auto matrix = matrix_of(state);
             klu.add(milliseconds([&] { bench::klu(matrix); }).median());
@@ -56,11 +58,13 @@ class Watcher final : public RunObserver<2> {
         if (options_.visit) {
             options_.visit(state);
         }
-        lost += cpu_milliseconds() - begin;
+        lost += time() - begin;
+        process_lost += process_milliseconds() - process_begin;
     }
+    [[nodiscard]] double time() const { return options_.threads > 1 ? wall_milliseconds() : cpu_milliseconds(); }
 
     Sample klu, umfpack;
-    double lost = 0;
+    double lost = 0, process_lost = 0;
     std::atomic<bool> stop = false;
 
   private:
@@ -88,10 +92,14 @@ Stretch run_stretch(const State<2>& from, const StretchOptions& options) {
     RunOptions run;
     run.certify = options.level;
     run.stop = &watcher.stop;
-    const double begin = cpu_milliseconds();
+    set_threads(options.threads);
+    const double begin = watcher.time();
+    const double process_begin = process_milliseconds();
     const SegmentOutcome outcome = run_segment<2>(state, segment, 0, run, out.counters, watcher);
-    const double total = cpu_milliseconds() - begin - watcher.lost;
-    out.milliseconds_per_arc = total / static_cast<double>(std::max(1L, out.counters.steps));
+    const auto arcs = static_cast<double>(std::max(1L, out.counters.steps));
+    out.milliseconds_per_arc = (watcher.time() - begin - watcher.lost) / arcs;
+    out.cpu_per_arc = (process_milliseconds() - process_begin - watcher.process_lost) / arcs;
+    set_threads(1);
     out.klu = watcher.klu.median();
     out.umfpack = watcher.umfpack.median();
     if (outcome.failure && outcome.failure->kind != FailureKind::interrupted) {
@@ -107,6 +115,9 @@ bool same_events(const Stretch& a, const Stretch& b) {
 
 Sample Stretches::per_arc() const {
     return collect(runs, &Stretch::milliseconds_per_arc);
+}
+Sample Stretches::cpu_per_arc() const {
+    return collect(runs, &Stretch::cpu_per_arc);
 }
 Sample Stretches::klu() const {
     return collect(runs, &Stretch::klu);

@@ -21,6 +21,7 @@ struct StretchOptions {
     isostat::CertifyLevel level = isostat::CertifyLevel::decisions;
     int equilibria = 30;
     long arcs = 0;            ///< ends after this many arcs, wherever that is; 0: at the last equilibrium
+    int threads = 1;          ///< one: CPU time of the thread; more: time on the wall
     int reference_every = 10; ///< equilibria from one measurement of the units to the next
     /// Called at every equilibrium; its time is not the run's.
     std::function<void(const isostat::State<2>&)> visit;
@@ -31,6 +32,7 @@ struct Stretch {
     std::vector<isostat::ArcRecord<2>> arcs;
     isostat::State<2> last;          ///< last equilibrium where the units were measured
     double milliseconds_per_arc = 0; ///< all of the run, equilibria included, shared out among its arcs
+    double cpu_per_arc = 0;          ///< the same of all threads together, CPU time
     double klu = 0, umfpack = 0;     ///< medians over the equilibria: one analysis + factorisation, milliseconds
     std::string failure;             ///< empty: completed
 };
@@ -38,7 +40,7 @@ struct Stretch {
 /// Whether the same contacts open and close, in the same order.
 bool same_events(const Stretch& a, const Stretch& b);
 
-/// CPU time of this thread; the time that the units and `visit` take is not counted.
+/// The time that the units and `visit` take is not counted. With several threads the units are still those of one.
 Stretch run_stretch(const isostat::State<2>& from, const StretchOptions& options);
 
 /// Repeats of the same stretch.
@@ -46,6 +48,7 @@ struct Stretches {
     std::vector<Stretch> runs;
     [[nodiscard]] const Stretch& front() const { return runs.front(); }
     [[nodiscard]] Sample per_arc() const;
+    [[nodiscard]] Sample cpu_per_arc() const;
     [[nodiscard]] Sample klu() const;
     [[nodiscard]] Sample umfpack() const;
 };

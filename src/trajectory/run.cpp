@@ -4,6 +4,7 @@
 #include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
 
+#include <isostat/core/work.hpp>
 #include <isostat/motion/arc.hpp>
 #include <isostat/preparation/backbone.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -139,8 +141,8 @@ template <int Dim> class Run {
         std::unique_ptr<Vertex<Dim>> anew; ///< when it ended and is there: the same vertex, proved from nothing
     };
     std::optional<Failure> go_ahead(Way& way, const Load<Dim>& load);
-    /// Nothing that one arc is steered by depends on what is proved of another.
-    [[nodiscard]] bool steers_ahead() const { return !perturbs(); }
+    /// The other rules choose by differences that steering does not resolve.
+    [[nodiscard]] bool steers_ahead() const { return !perturbs() && options_.rule == OpeningRule::most_negative; }
     [[nodiscard]] Failure too_far(const ArcRecord<Dim>& record) const;
     /// Returns the seconds that it took.
     double certify(const Vertex<Dim>& from, const Vertex<Dim>& to, const Opening& opening, bool at_limit,
@@ -258,6 +260,10 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
                                            bound_cache_, fresh ? 0 : path.passes, ladder);
         if (made.ok()) {
             perturb_at(*made.value(), load, limit);
+        }
+        if (!made.ok() && !fresh && !next_to && !from.factorisation.is_fresh()) {
+            fresh.emplace(from.structure); // old factors may also have ended it badly
+            continue;
         }
         if (!made.ok()) {
             return located(made.failure(), fmt::format("at the end of the arc that opens {} and closes {}",
@@ -622,8 +628,30 @@ std::optional<typename Run<Dim>::ProvedArc> Run<Dim>::prove_arc(const Vertex<Dim
     return arc;
 }
 
+using WorkCounts = std::array<long, work_kinds>;
+
+/// While it lives this thread counts its work there.
+class CountingIn {
+  public:
+    explicit CountingIn(WorkCounts* counts) : before_(count_work_in(counts)) {}
+    CountingIn(const CountingIn&) = delete;
+    CountingIn& operator=(const CountingIn&) = delete;
+    ~CountingIn() { count_work_in(before_); }
+
+  private:
+    WorkCounts* before_;
+};
+
+void add_work(const WorkCounts& counts) {
+    for (std::size_t k = 0; k < work_kinds; ++k) {
+        if (counts[k] != 0) {
+            count_work(static_cast<Work>(k), counts[k]);
+        }
+    }
+}
+
 /// Steers as at level `plain`, and proves every vertex behind, in the same order. What was steered beyond a vertex that
-/// decides otherwise is thrown away.
+/// decides otherwise is thrown away, and its work not counted: how much of it there is depends on the threads.
 template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Load<Dim>& load) {
     constexpr std::size_t most_waiting = 6;
     const Vertex<Dim>& start = way.here ? *way.here : *vertex_;
@@ -639,6 +667,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     OpeningDecision decision;
     decision.opening = way.opening;
     ContactId last_hold;
+    WorkCounts by_proofs{};
     Behind<PlainArrival<Dim>, ProvedArc> proofs(
         [&](PlainArrival<Dim>& arrival) -> std::optional<ProvedArc> {
             const std::optional<Opening>& due = decision.opening;
@@ -646,6 +675,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
                 due->infinitesimal != arrival.opening.infinitesimal) {
                 return std::nullopt;
             }
+            const CountingIn counting(&by_proofs);
             const bool held = arrival.record.power_turn;
             auto arc = prove_arc(last ? *last : start, arrival, *due, load);
             if (arc) {
@@ -659,7 +689,10 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     // Here:
     std::optional<Failure> failure;
     const auto stopped = [this] { return options_.stop != nullptr && options_.stop->load(); };
+    WorkCounts* const outside = count_work_in(nullptr);
+    count_work_in(outside);
     const auto record = [&] {
+        const CountingIn counting(outside); // what the observer does belongs to the run
         while (!failure && !stopped()) {
             auto arc = proofs.next();
             if (!arc) {
@@ -682,8 +715,11 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
             }
         }
     };
+    WorkCounts by_steering{};
+    std::vector<WorkCounts> before_arc;
     PlainCalls<Dim> calls;
     calls.begin = [&](ArcRecord<Dim>& arc) -> std::optional<Failure> {
+        before_arc.push_back(by_steering);
         record();
         if (failure || stopped() || proofs.ended() || before + steered >= options_.max_arcs) {
             return Failure{FailureKind::interrupted, "no farther ahead"};
@@ -698,12 +734,17 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     calls.arrived = [&](PlainArrival<Dim> arrival) { proofs.hand_out(std::move(arrival)); };
     calls.random_bits = [&] { return bits_for(options_.rule_seed, step + steered); };
     CandidateList<Dim> candidates = candidates_;
-    auto end = steer_plainly(start, way.opening, way.kind, load, options_, candidates, calls);
+    auto end = [&] {
+        const CountingIn counting(&by_steering);
+        return steer_plainly(start, way.opening, way.kind, load, options_, candidates, calls);
+    }();
     // The equilibrium, if it is one, is proved anew from nothing while the last proofs go on.
     std::unique_ptr<Vertex<Dim>> anew;
     CandidateList<Dim> listed;
     InverseBoundCache cache;
+    WorkCounts by_anew{};
     if (end.ok() && !end.value().fresh_hold.valid() && !proofs.ended()) {
+        const CountingIn counting(&by_anew);
         auto made = Vertex<Dim>::make(end.value().packing, end.value().contacts, load, cache);
         if (made.ok()) {
             anew = std::move(made.value());
@@ -716,6 +757,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
         return failure;
     }
     const int proved = way.arcs - before;
+    add_work(by_proofs);
+    add_work(proved < steered ? before_arc[static_cast<std::size_t>(proved)] : by_steering);
     way.by_steps = proved == 0;
     if (proved == 0 || stopped()) {
         way.by_steps = true;
@@ -732,6 +775,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     way.last_hold = last_hold;
     way.ended = true;
     if (anew && proved == steered) {
+        add_work(by_anew);
         way.anew = std::move(anew);
         candidates_ = std::move(listed);
         bound_cache_ = std::move(cache);

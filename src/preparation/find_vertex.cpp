@@ -88,6 +88,11 @@ template <int Dim> class VertexSearch {
         ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), large, options_.stop);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
+        if (large && options_.max_programmes > 0) {
+            if (auto vertex = descend(programme, weight)) {
+                return succeed(std::move(*vertex));
+            }
+        }
         while (programmes_ < options_.max_programmes) {
             const ProgrammeStep step = programme.solve(packing_, weight);
             ++programmes_;
@@ -102,10 +107,7 @@ template <int Dim> class VertexSearch {
             if (!worth_an_attempt(step)) {
                 continue;
             }
-            const Stopwatch watch;
-            auto polished = polish(scale_.to_user(packing_, radius_), step.contacts, load_, newton_.iterations);
-            newton_.seconds += watch.seconds();
-            newton_.cpu_seconds += watch.cpu_seconds();
+            auto polished = attempt(step.contacts);
             if (polished.ok()) {
                 return succeed(std::move(polished.value()));
             }
@@ -133,6 +135,36 @@ template <int Dim> class VertexSearch {
     }
 
   private:
+    /// The descent, then Newton and the proofs. Nothing: the programmes go on from where it ended.
+    std::optional<Polished<Dim>> descend(ContactProgramme<Dim>& programme, double weight) {
+        const Stage stage("interior descent", options_);
+        const ProgrammeStep end = programme.descend(packing_, weight, [&](const ProgrammeStep& step) {
+            stage.progress(static_cast<double>(step.iterations) / (50.0 + static_cast<double>(step.iterations)),
+                           fmt::format("step {}: {} changes, {:.1e} radii", step.iterations, step.changes,
+                                       step.largest / scale_.mean_radius()));
+        });
+        PreparationStage entry = stage.finish();
+        entry.completed = end.outcome == ProgrammeStep::Outcome::optimal;
+        entry.iterations = end.iterations;
+        entry.contacts = static_cast<int>(end.contacts.size());
+        entry.solid_fraction = packing_.solid_fraction();
+        report_.stages.push_back(entry);
+        if (!entry.completed || end.bounds != 0) {
+            return std::nullopt;
+        }
+        contacts_ = entry.contacts;
+        auto polished = attempt(end.contacts);
+        return polished.ok() ? std::optional(std::move(polished.value())) : std::nullopt;
+    }
+
+    Result<Polished<Dim>> attempt(const std::vector<Contact>& contacts) {
+        const Stopwatch watch;
+        auto polished = polish(scale_.to_user(packing_, radius_), contacts, load_, newton_.iterations);
+        newton_.seconds += watch.seconds();
+        newton_.cpu_seconds += watch.cpu_seconds();
+        return polished;
+    }
+
     Result<Polished<Dim>> finish(const std::vector<Contact>& contacts) {
         const Stopwatch watch;
         PivotLimits limits;

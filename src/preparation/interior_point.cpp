@@ -20,6 +20,11 @@ constexpr int most_corrections = 4;
 constexpr double reach_farther = 0.3;
 constexpr double near_centre = 10;
 constexpr double worth_it = 0.03;
+/// Descent: products aimed at are never below this share of the present ones; a step below the next share of the
+/// way is blocked, and then aims at so many times the present products.
+constexpr double least_centre = 0.1;
+constexpr double blocked_below = 0.2;
+constexpr double blocked_centre = 3;
 
 /// Constraints in one list: the rows, then x_k >= -bound, then x_k <= bound. Slack s >= 0, multiplier z >= 0.
 class Iteration {
@@ -47,6 +52,28 @@ class Iteration {
             s_[rows_ + k] = s_[rows_ + columns_ + k] = p_.bound[k];
             z_[rows_ + k] = z_[rows_ + columns_ + k] = start_force * start_slack / p_.bound[k];
         }
+    }
+
+    /// At x = 0 with given slacks and multipliers of the rows; those of the bounds at the mean product.
+    void start_from(const InteriorPoint& point) {
+        std::copy(point.slack.begin(), point.slack.end(), s_.begin());
+        std::copy(point.force.begin(), point.force.end(), z_.begin());
+        const double centre = mean_row_product();
+        for (std::size_t k = 0; k < columns_; ++k) {
+            z_[rows_ + k] = z_[rows_ + columns_ + k] = centre / p_.bound[k];
+        }
+    }
+    void read(InteriorPoint& point) const {
+        std::copy_n(s_.begin(), rows_, point.slack.begin());
+        std::copy_n(z_.begin(), rows_, point.force.begin());
+    }
+    [[nodiscard]] const std::vector<double>& x() const { return x_; }
+    [[nodiscard]] double mean_row_product() const {
+        double sum = 0;
+        for (std::size_t l = 0; l < rows_; ++l) {
+            sum += s_[l] * z_[l];
+        }
+        return sum / static_cast<double>(rows_);
     }
 
     [[nodiscard]] double mean_product() const {
@@ -106,6 +133,25 @@ class Iteration {
             target_[l] = centre - s_[l] * z_[l] - (correct ? ds_[l] * dz_[l] : 0.0);
         }
         return towards_target(matrix);
+    }
+
+    /// Mehrotra's direction, centred again where that makes longer steps.
+    bool predict_and_correct(CliqueMatrix& matrix, double product, double least) {
+        if (!direction(matrix, 0, false)) {
+            return false;
+        }
+        const double share = product_after(slack_step(), force_step()) / product;
+        return aim(matrix, std::max(share * share * share, least) * product, true);
+    }
+
+    /// Direction towards `centre`, centred again where that makes longer steps.
+    bool aim(CliqueMatrix& matrix, double centre, bool correct) {
+        if (!direction(matrix, centre, correct)) {
+            return false;
+        }
+        for (int k = 0; k < most_corrections && centre_more(matrix, centre); ++k) {
+        }
+        return true;
     }
 
     /// A direction with longer steps than the present one, when there is one: products that a longer step would leave
@@ -241,16 +287,8 @@ ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, cons
             result.converged = true;
             break;
         }
-        if (!iteration.factorise(matrix) || !iteration.direction(matrix, 0, false)) {
+        if (!iteration.factorise(matrix) || !iteration.predict_and_correct(matrix, product, 0)) {
             break;
-        }
-        const double affine = iteration.product_after(iteration.slack_step(), iteration.force_step());
-        const double share = affine / product;
-        const double centre = share * share * share * product;
-        if (!iteration.direction(matrix, centre, true)) {
-            break;
-        }
-        for (int k = 0; k < most_corrections && iteration.centre_more(matrix, centre); ++k) {
         }
         iteration.advance(iteration.slack_step(), iteration.force_step());
         if (!iteration.finite()) {
@@ -260,6 +298,42 @@ ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, cons
     if (result.converged) {
         iteration.read(result);
     }
+    return result;
+}
+
+struct InteriorDescent::Matrix {
+    std::vector<int> start, column; ///< what `clique` refers to
+    CliqueMatrix clique;
+    explicit Matrix(const BoxedProgramme& p) : start(p.start), column(p.column), clique(p.cost.size(), start, column) {}
+};
+
+InteriorDescent::InteriorDescent(const BoxedProgramme& pattern) : matrix_(std::make_unique<Matrix>(pattern)) {}
+
+InteriorDescent::~InteriorDescent() = default;
+
+InteriorStep InteriorDescent::step(const BoxedProgramme& programme, InteriorPoint& point) {
+    InteriorStep result;
+    CliqueMatrix& matrix = matrix_->clique;
+    Iteration iteration(programme);
+    iteration.start_from(point);
+    result.product = iteration.mean_row_product();
+    const double product = iteration.mean_product();
+    result.violation = iteration.residuals();
+    if (!iteration.factorise(matrix) || !iteration.predict_and_correct(matrix, product, least_centre)) {
+        return result;
+    }
+    if (std::min(iteration.slack_step(), iteration.force_step()) < blocked_below &&
+        !iteration.aim(matrix, blocked_centre * product, false)) {
+        return result;
+    }
+    iteration.advance(iteration.slack_step(), iteration.force_step());
+    if (!iteration.finite()) {
+        return result;
+    }
+    iteration.read(point);
+    iteration.read(result.active);
+    result.x = iteration.x();
+    result.done = true;
     return result;
 }
 

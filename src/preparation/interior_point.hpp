@@ -4,6 +4,7 @@
 /// pivots that grows with the packing, this needs some thirty sparse factorisations (22 at n = 10 000).
 
 #include <atomic>
+#include <memory>
 #include <vector>
 
 namespace isostat::preparation {
@@ -33,5 +34,39 @@ struct ActiveSet {
 /// complementary: the active set is then the basis of the simplex method. It is a proposal: nothing is proved.
 /// Cost: O(n^1.5) per iteration for planar contact graphs, O(n log n) memory.
 ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, const std::atomic<bool>* stop);
+
+/// Slacks and multipliers of the rows, > 0, kept from step to step while the programme changes.
+struct InteriorPoint {
+    std::vector<double> slack;
+    std::vector<double> force;
+};
+
+/// What one step of a descent did.
+struct InteriorStep {
+    bool done = false;     ///< otherwise nothing was changed and the rest means nothing
+    double product = 0;    ///< mean slack x force of the rows before the step
+    double violation = 0;  ///< largest |A x - lower - slack| before the step
+    std::vector<double> x; ///< the displacement
+    ActiveSet active;      ///< as after the step; without x
+};
+
+/// Steps of the same method for a programme that is another one, with the same pattern, at every step.
+///
+/// A direction that is blocked (some product is far below the mean, usual after the programme has changed) is replaced
+/// by one towards products above the mean.
+class InteriorDescent {
+  public:
+    explicit InteriorDescent(const BoxedProgramme& pattern);
+    ~InteriorDescent();
+    InteriorDescent(const InteriorDescent&) = delete;
+    InteriorDescent& operator=(const InteriorDescent&) = delete;
+
+    /// From x = 0; updates `point`. Cost: a factorisation, some solves.
+    InteriorStep step(const BoxedProgramme& programme, InteriorPoint& point);
+
+  private:
+    struct Matrix;
+    std::unique_ptr<Matrix> matrix_;
+};
 
 } // namespace isostat::preparation

@@ -1,6 +1,7 @@
 #include "preparation/programme.hpp"
 
 #include "preparation/neighbours.hpp"
+#include "preparation/programme_rows.hpp"
 
 #include <isostat/core/work.hpp>
 
@@ -10,22 +11,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace isostat::preparation {
 
 namespace {
 
-constexpr double objective_scale = 256;
 constexpr double tolerance = 1e-9;
 /// Walls collect the displacements of all the disks in front of them.
 constexpr double wall_trust = 10;
 /// Complementarity products at the end of the interior-point method: multipliers of rattlers are of order 1e-5 in the
 /// scale of the objective, gaps that matter 1e-6.
 constexpr double interior_tolerance = 1e-14;
-/// Contacts that change from one programme to the next: a pivot each (3 ms at n = 10 000) is cheaper below this than
-/// some 27 factorisations (1.8 s).
-constexpr long few_changes = 500;
 /// Share of a complete contact list above which overlapping pairs are worth being the first basis.
 constexpr double dense_enough = 0.9;
 
@@ -44,34 +40,6 @@ class StopHandler : public ClpEventHandler {
 };
 
 } // namespace
-
-template <int Dim> struct ContactProgramme<Dim>::Rows {
-    std::vector<Contact> contact;
-    std::vector<double> gap;
-    std::vector<int> row, column;
-    std::vector<double> value;
-
-    void add(const Packing<Dim>& packing, const Contact& c) {
-        const GapGradient<Dim> g = gap_gradient(packing, c);
-        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            row.push_back(static_cast<int>(contact.size()));
-            column.push_back(g.coordinate[k]);
-            value.push_back(g.value[k]);
-        }
-        contact.push_back(c);
-        gap.push_back(isostat::gap(packing, c));
-    }
-
-    /// First entry of each row, and the end.
-    [[nodiscard]] std::vector<int> starts() const {
-        std::vector<int> start(contact.size() + 1, 0);
-        for (const int r : row) {
-            ++start[static_cast<std::size_t>(r) + 1];
-        }
-        std::partial_sum(start.begin(), start.end(), start.begin());
-        return start;
-    }
-};
 
 template <int Dim>
 ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust, bool large,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <set>
 
@@ -100,6 +101,12 @@ BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_sa
         const Outcome outcome = run(options);
         must_be_vertex(outcome);
         BOOST_TEST(outcome.report.stages[2].name == "relaxation at 1e-02");
+        const auto descent = std::find_if(outcome.report.stages.begin(), outcome.report.stages.end(),
+                                          [](const auto& stage) { return stage.name == "interior descent"; });
+        BOOST_REQUIRE((descent != outcome.report.stages.end()));
+        BOOST_TEST(descent->completed);
+        BOOST_TEST(descent->iterations > 10);
+        BOOST_TEST(outcome.report.programmes <= 3); // what the descent leaves to the programmes
         fraction += outcome.report.solid_fraction / samples;
         rattlers += outcome.report.rattlers / (1000.0 * samples);
     }

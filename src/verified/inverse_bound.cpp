@@ -1,6 +1,7 @@
 #include "verified/block_cholesky.hpp"
 #include "verified/extended_cholesky.hpp"
 #include "verified/regularity_prover.hpp"
+#include "verified/row_scales.hpp"
 
 #include <isostat/core/work.hpp>
 #include <isostat/verified/inverse_bound.hpp>
@@ -42,20 +43,6 @@ double rounding_of_entries(const sparse::Matrix<double>& h) {
     }
     const double row_norm = *std::max_element(row_sum.begin(), row_sum.end());
     return 5.01 * u * std::sqrt(column_norm * row_norm);
-}
-
-/// Factors of degrees of freedom, powers of two: a wall has so many contacts that the rounding of its row would drown
-/// the small singular values of the rest.
-std::vector<double> scales_of(const sparse::Matrix<double>& h) {
-    constexpr double many = 16; // squares of unit normals: more contacts than a disk mostly has
-    std::vector<double> scale(static_cast<std::size_t>(h.rows), 0.0);
-    for (std::size_t e = 0; e < h.row.size(); ++e) {
-        scale[static_cast<std::size_t>(h.row[e])] += h.value[e] * h.value[e];
-    }
-    for (double& c : scale) {
-        c = c > many ? std::ldexp(1.0, -static_cast<int>(std::ceil(0.5 * std::log2(c)))) : 1.0;
-    }
-    return scale;
 }
 
 /// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
@@ -138,7 +125,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
                             InverseBoundCache& cache) {
     const auto n = static_cast<std::size_t>(unscaled.rows);
     sparse::Matrix<double> h = unscaled;
-    const std::vector<double> scale = scales_of(h);
+    const std::vector<double> scale = row_scales(h);
     for (std::size_t e = 0; e < h.row.size(); ++e) {
         h.value[e] *= scale[static_cast<std::size_t>(h.row[e])]; // exact: sigma_min(S H) <= sigma_min(H) for S <= 1
     }

@@ -3,6 +3,7 @@
 #include "oracle/random.hpp"
 #include "support/crafted.hpp"
 #include "verified/block_cholesky.hpp"
+#include "verified/row_scales.hpp"
 
 #include <isostat/io/state_file.hpp>
 #include <isostat/motion/arc.hpp>
@@ -237,6 +238,41 @@ BOOST_AUTO_TEST_CASE(the_rounding_of_a_cholesky_factorisation_is_within_its_boun
         above += low > smallest * (1 + 0x1p-51) ? 1 : 0;
     }
     BOOST_TEST(above > 0); // where the bound is needed
+}
+
+BOOST_AUTO_TEST_CASE(rows_of_walls_are_scaled_down_by_powers_of_two_and_no_others) {
+    oracle::Random random(9);
+    sparse::Matrix<double> h;
+    h.rows = 40;
+    h.cols = 600;
+    h.start = {0};
+    std::vector<double> sum(40, 0.0);
+    for (int l = 0; l < h.cols; ++l) {
+        for (int k = 0; k < h.rows; ++k) {
+            if (random.integer(40) < k) { // few entries in the first rows, all columns in the last
+                h.row.push_back(k);
+                h.value.push_back(random.real(-1, 1));
+                sum[static_cast<std::size_t>(k)] += h.value.back() * h.value.back();
+            }
+        }
+        h.start.push_back(static_cast<int>(h.row.size()));
+    }
+    const std::vector<double> scale = row_scales(h);
+    BOOST_TEST_REQUIRE(scale.size() == sum.size());
+    int small = 0;
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+        int exponent = 0;
+        BOOST_TEST(std::frexp(scale[k], &exponent) == 0.5);
+        BOOST_TEST(scale[k] <= 1);
+        BOOST_TEST(((scale[k] < 1) == (sum[k] > 16)));
+        if (scale[k] < 1) {
+            ++small;
+            BOOST_TEST(sum[k] * scale[k] * scale[k] <= 1);
+            BOOST_TEST(sum[k] * scale[k] * scale[k] > 0.25);
+        }
+    }
+    BOOST_TEST(small > 5);
+    BOOST_TEST(small < 39);
 }
 
 BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_takes_them_to_rounding) {

@@ -55,6 +55,24 @@ Dip lowest_point(double h0, double d0, double h1, double d1, double s) {
     return {low * s, h0 + low * (c1 + low * (c2 + low * c3))};
 }
 
+/// Displacement from `at` that the candidates still allow.
+template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+    if (candidates.reference.size() != at.q.size()) {
+        return -1;
+    }
+    const double unit = 1 / candidates.reach; // squares neither under- nor overflow, whatever the units are
+    double moved = 0;
+    for (std::size_t k = 0; k + Dim <= at.q.size(); k += Dim) {
+        double square = 0;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double d = unit * (at.q[k + a] - candidates.reference[k + a]);
+            square += d * d;
+        }
+        moved = std::max(moved, square);
+    }
+    return candidates.reach * (0.5 - std::sqrt(moved));
+}
+
 template <int Dim> class Follower {
   public:
     Follower(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
@@ -312,12 +330,10 @@ template <int Dim> class Follower {
     }
 
     void list_candidates() {
-        reach_left_ = reach_left();
-        if (!(reach_left_ >= 0.25 * candidates_.reach)) {
-            candidates_ = find_candidates(q_, candidate_fraction);
-            reach_left_ = reach_left();
+        if (renew_candidates(candidates_, q_)) {
             active_.clear();
         }
+        reach_left_ = reach_left(candidates_, q_);
         if (active_.empty()) {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
@@ -335,24 +351,6 @@ template <int Dim> class Follower {
     }
     /// Its gap is 0 at the start, and grows.
     [[nodiscard]] bool leaves(const Contact& c) const { return c == opened_ || listed(options_.leaving, c); }
-
-    /// Displacement that the candidate list still allows.
-    double reach_left() const {
-        if (candidates_.reference.size() != q_.q.size()) {
-            return -1;
-        }
-        const double unit = 1 / candidates_.reach; // squares neither under- nor overflow, whatever the units are
-        double moved = 0;
-        for (std::size_t k = 0; k + Dim <= q_.q.size(); k += Dim) {
-            double square = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
-                const double d = unit * (q_.q[k + a] - candidates_.reference[k + a]);
-                square += d * d;
-            }
-            moved = std::max(moved, square);
-        }
-        return candidates_.reach * (0.5 - std::sqrt(moved));
-    }
 
     Arc<Dim> finish(Packing<Dim> end, ArcEnd kind, Contact closed, double power, Vector tangent) {
         Arc<Dim> arc;
@@ -775,6 +773,14 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
 
 } // namespace
 
+template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+    if (reach_left(candidates, at) >= 0.25 * candidates.reach) {
+        return false;
+    }
+    candidates = find_candidates(at, candidate_fraction);
+    return true;
+}
+
 template <int Dim> struct ArcDeparture<Dim>::Implementation {
     Follower<Dim> follower;
 };
@@ -801,6 +807,7 @@ Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<
     return ArcDeparture<Dim>(start, structure, factorisation, opened, direction, power, candidates, options).follow();
 }
 
+template bool renew_candidates<2>(CandidateList<2>&, const Packing<2>&);
 template class ArcDeparture<2>;
 template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId,
                                       int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);

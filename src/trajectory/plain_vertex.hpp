@@ -140,6 +140,7 @@ template <int Dim> class PlainVertex {
   private:
     void depart(const ApproximateInverse& approximate, ContactId opened, CandidateList<Dim>& candidates,
                 const ArcOptions& options) {
+        renew_candidates(candidates, packing); // not by an errand that may be dropped
         departure_.reset(new Departure{opened, Factorisation(structure, approximate), {}});
         departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>(
             [this, &factors = departure_->factorisation, opened, &candidates, options] {

@@ -71,9 +71,13 @@ Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<
                             const Factorisation& factorisation, ContactId opened, int direction,
                             const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options);
 
+/// Candidates anew, when less than a quarter of their reach is left at a configuration; whether they were. What every
+/// step of an arc begins with.
+template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at);
+
 /// An arc of which tangent, curvature and the candidates at the start are worked out: the part that can be done beside
 /// other work on the same vertex. `follow` is then what `follow_arc` is. What the constructor refers to must outlive
-/// it, and the candidates must not be used elsewhere meanwhile. Cost: about half the solves of a short arc.
+/// it. The candidates are made anew only when `renew_candidates` would. Cost: about half the solves of a short arc.
 template <int Dim> class ArcDeparture {
   public:
     ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
@@ -89,6 +93,7 @@ template <int Dim> class ArcDeparture {
     std::unique_ptr<Implementation> implementation_;
 };
 
+extern template bool renew_candidates<2>(CandidateList<2>&, const Packing<2>&);
 extern template class ArcDeparture<2>;
 extern template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
                                              ContactId, int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);

@@ -26,7 +26,7 @@ template <int Dim> class Statics {
     /// answer is about the true vertex that it encloses, without it about the stored configuration (ForceLadder). Cost:
     /// 2 solves, and 2 for each part asked for.
     /// `near`: the statics of a neighbouring vertex with the contacts in the same places, whose forces are where the
-    /// solves start; not used afterwards.
+    /// solves start; not used afterwards. `forces`: empty, or a better guess of the finite parts.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
             const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
             const VertexEnclosure* vertex = nullptr, const Statics* near = nullptr, std::vector<double> forces = {});

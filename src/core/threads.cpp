@@ -1,6 +1,7 @@
 #include <isostat/core/threads.hpp>
 #include <isostat/core/work.hpp>
 
+#include <mpfr.h>
 #include <sched.h>
 
 #include <array>
@@ -194,6 +195,7 @@ void Pool::serve() {
             spins = 0;
         }
     }
+    mpfr_free_cache2(MPFR_FREE_LOCAL_CACHE); // constants that MPFR keeps for each thread, and leaves behind
 }
 
 namespace {

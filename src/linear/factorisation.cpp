@@ -275,6 +275,7 @@ std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStruc
         return std::nullopt;
     }
     Factorisation block;
+    // NOLINTNEXTLINE(modernize-make-unique): an aggregate
     block.implementation_.reset(new Implementation{structure.shared_matrix(),
                                                    ApproximateInverse::of_block(h, std::move(rows), std::move(columns)),
                                                    true,

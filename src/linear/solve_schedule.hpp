@@ -36,7 +36,7 @@ class SolveSchedule {
         std::vector<Step> steps;
         std::vector<int> index;
         std::vector<double> value;
-        void run(std::span<double> x, const std::vector<int>& in, const std::vector<int>& out) const;
+        void run(std::span<double> rhs, const std::vector<int>& in, const std::vector<int>& out) const;
     };
     /// Block by block the first triangle, which also takes the entries of the blocks before, and the second.
     static Program make(const Lines& first, const Lines& second, const Lines& beside, const std::vector<int>& blocks,

@@ -6,7 +6,8 @@
 
 // This file is compiled without errno, traps and changes of the rounding mode (src/CMakeLists.txt): no value depends on
 // them, and each keeps compilers from using vector units for square roots or selections.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Not under ThreadSanitizer: resolvers of clones run before it is ready.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define ISOSTAT_FOR_EACH_UNIT [[gnu::target_clones("avx512f", "avx2", "default")]]
 #else
 #define ISOSTAT_FOR_EACH_UNIT

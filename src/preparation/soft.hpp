@@ -88,7 +88,7 @@ template <int Dim> class SoftDynamics {
     void move(std::size_t first, std::size_t last, double dt, const std::array<double, Dim>& stretch, double& fastest);
     void refresh_pairs();
     void renumber(bool in_patches);
-    Sums sums_of(const Patch& patch) const;
+    [[nodiscard]] Sums sums_of(const Patch& patch) const;
     void turn(Patch& patch, Sums sums, double dt);
     void count_contacts();
     void publish_lengths();

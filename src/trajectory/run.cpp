@@ -794,7 +794,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     }
     fresh_caches(vertex_->packing);
     Way way;
-    way.opening = std::move(opening);
+    way.opening = opening;
     way.kind = kind;
     bool descends = false;          // the work of the last arc was proved positive
     std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located

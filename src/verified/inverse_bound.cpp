@@ -149,8 +149,9 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
         }
         BlockCholesky& cholesky = *cache.workspace;
         cholesky.set(h, cache.order);
-        for (int attempt = 0; attempt < 4; ++attempt, shift /= 8) {
+        for (int attempt = 0; attempt < 4; ++attempt) {
             if (!cholesky.factorise(shift)) {
+                shift /= 8;
                 continue;
             }
             const double square = shift - cholesky.error_bound(shift);
@@ -180,7 +181,8 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
     }
     const double estimated = first.estimated;
     const double entry_error = first.entry_error;
-    for (double square = 0.5 * estimated; square > 1e-24 && std::isfinite(square); square /= 64) {
+    double square = 0.5 * estimated;
+    while (square > 1e-24 && std::isfinite(square)) {
         const double proved = shifted_cholesky_double_double(h, square);
         const double sigma = proved > 0 ? std::sqrt(proved) * (1 - 4 * u) - entry_error : 0;
         if (sigma > 0) {
@@ -189,6 +191,7 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
         if (proved > 0) {
             break; // the entries themselves are not known well enough
         }
+        square /= 64;
     }
     return h.rows <= row_limit ? by_rows(h, factorisation) : InverseBound{};
 }

@@ -760,7 +760,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     add_work(by_proofs);
     add_work(proved < steered ? before_arc[static_cast<std::size_t>(proved)] : by_steering);
     way.by_steps = proved == 0;
-    if (proved == 0 || stopped()) {
+    if (proved == 0 || (stopped() && proofs.next())) { // what was proved after the stop is not recorded
         way.by_steps = true;
         return std::nullopt;
     }

@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 
 namespace isostat {
 
@@ -73,20 +74,6 @@ template <std::size_t count> void add_each(const double* const* v, const double*
     }
 }
 
-/// x += sum of factor v.
-void add_all(const Several& v, const std::vector<double>& factor, std::span<double> x) {
-    std::size_t k = 0;
-    for (; k + width <= v.size(); k += width) {
-        add_each<width>(v.data() + k, factor.data() + k, x);
-    }
-    switch (v.size() - k) {
-    case 3: add_each<3>(v.data() + k, factor.data() + k, x); break;
-    case 2: add_each<2>(v.data() + k, factor.data() + k, x); break;
-    case 1: add_each<1>(v.data() + k, factor.data() + k, x); break;
-    default: break;
-    }
-}
-
 template <std::size_t count> void dot_each(const double* const* v, std::span<const double> x, double* product) {
     constexpr std::size_t lanes = 4;
     std::array<std::array<double, lanes>, count> sum{};
@@ -108,19 +95,29 @@ template <std::size_t count> void dot_each(const double* const* v, std::span<con
     }
 }
 
+/// sweep(number, first) for groups of four, and one of what is left.
+template <class Sweep> void in_groups(std::size_t size, Sweep sweep) {
+    std::size_t first = 0;
+    for (; first + width <= size; first += width) {
+        sweep(std::integral_constant<std::size_t, width>(), first);
+    }
+    switch (size - first) {
+    case 3: sweep(std::integral_constant<std::size_t, 3>(), first); break;
+    case 2: sweep(std::integral_constant<std::size_t, 2>(), first); break;
+    case 1: sweep(std::integral_constant<std::size_t, 1>(), first); break;
+    default: break;
+    }
+}
+
+/// x += sum of factor v.
+void add_all(const Several& v, const std::vector<double>& factor, std::span<double> x) {
+    in_groups(v.size(), [&](auto count, std::size_t k) { add_each<count>(v.data() + k, factor.data() + k, x); });
+}
+
 /// v . x of each.
 void dot_all(const Several& v, std::span<const double> x, std::vector<double>& product) {
     product.resize(v.size());
-    std::size_t k = 0;
-    for (; k + width <= v.size(); k += width) {
-        dot_each<width>(v.data() + k, x, product.data() + k);
-    }
-    switch (v.size() - k) {
-    case 3: dot_each<3>(v.data() + k, x, product.data() + k); break;
-    case 2: dot_each<2>(v.data() + k, x, product.data() + k); break;
-    case 1: dot_each<1>(v.data() + k, x, product.data() + k); break;
-    default: break;
-    }
+    in_groups(v.size(), [&](auto count, std::size_t k) { dot_each<count>(v.data() + k, x, product.data() + k); });
 }
 
 } // namespace

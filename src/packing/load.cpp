@@ -66,7 +66,17 @@ std::vector<double> generic_infinitesimal(const std::vector<double>& radius, uns
     return g;
 }
 
+template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
+    std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
+    for (std::size_t mu = 0; mu < force.size(); ++mu) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
+        force[mu] = k < on_coordinates.size() ? on_coordinates[k] : 0.0;
+    }
+    return force;
+}
+
 template struct Load<2>;
+template std::vector<double> on_dofs<2>(const std::vector<double>&, const DofMap<2>&);
 template double potential<2>(const Packing<2>&, const Load<2>&);
 template std::vector<double> generic_infinitesimal<2>(const std::vector<double>&, unsigned long long);
 

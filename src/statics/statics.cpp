@@ -11,15 +11,6 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
-    std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
-    for (std::size_t mu = 0; mu < force.size(); ++mu) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
-        force[mu] = k < on_coordinates.size() ? on_coordinates[k] : 0.0;
-    }
-    return force;
-}
-
 std::vector<int> nonzero_rows(const std::vector<double>& force) {
     std::vector<int> rows;
     for (std::size_t mu = 0; mu < force.size(); ++mu) {

@@ -17,24 +17,6 @@
 
 namespace isostat {
 
-template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
-    std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
-    for (std::size_t mu = 0; mu < force.size(); ++mu) {
-        const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
-        force[mu] = k < on_coordinates.size() ? on_coordinates[k] : 0.0;
-    }
-    return force;
-}
-
-/// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
-constexpr double accuracy = 1e-12;
-/// Elsewhere they are as accurate as the choice of what opens asks for, and as the record of its force does: the
-/// estimated error times `safety` changes neither. Where the velocity of its arc is at hand, the record is made better
-/// with that (`better_force`), and asks for less.
-constexpr double recorded_accuracy = 1e-8;
-constexpr double accuracy_with_velocity = 1e-3;
-constexpr double safety = 30;
-
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
   public:
@@ -138,6 +120,15 @@ template <int Dim> class PlainVertex {
     }
 
   private:
+    /// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
+    static constexpr double accuracy = 1e-12;
+    /// Elsewhere they are as accurate as the choice of what opens asks for, and as the record of its force does: the
+    /// estimated error times `safety` changes neither. Where the velocity of its arc is at hand, the record is made
+    /// better with that (`better_force`), and asks for less.
+    static constexpr double recorded_accuracy = 1e-8;
+    static constexpr double accuracy_with_velocity = 1e-3;
+    static constexpr double safety = 30;
+
     void depart(const ApproximateInverse& approximate, ContactId opened, CandidateList<Dim>& candidates,
                 const ArcOptions& options) {
         renew_candidates(candidates, packing); // not by an errand that may be dropped
@@ -191,7 +182,7 @@ template <int Dim> class PlainVertex {
         }
         const std::vector<double>& f = finite ? force : infinitesimal();
         const auto& contacts = structure.contacts();
-        const auto size = [&](std::size_t l) { return contacts[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l]; };
+        const auto size = [&](std::size_t l) { return signed_size(f, l); };
         std::vector<std::size_t> negative;
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             if (is_structural_zero(l) != finite && size(l) < 0) {

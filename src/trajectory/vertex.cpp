@@ -13,16 +13,10 @@
 
 namespace isostat {
 
-namespace {
-
-constexpr int row_limit = 20000; ///< above, a bound of the inverse row by row takes too long
-
-} // namespace
-
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load, InverseBoundCache& cache)
     : packing(std::move(p)), structure(proof.unproved()), factorisation(structure),
-      inverse(bound_inverse(structure, factorisation, cache, row_limit, [&] { return proof.is_regular(); })),
+      inverse(bound_inverse(structure, factorisation, cache, [&] { return proof.is_regular(); })),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
 

@@ -170,7 +170,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
 
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, int row_limit, const std::function<bool()>& worth_more) {
+                           InverseBoundCache& cache, const std::function<bool()>& worth_more, int row_limit) {
     const sparse::Matrix<double>& h = structure.matrix();
     const CholeskyOutcome first = by_cholesky(h, factorisation.approximate(), cache);
     if (first.bound.verdict == Verdict::proved) {
@@ -208,7 +208,7 @@ std::optional<ProvedExchange> bound_exchanged(const ExchangedContacts<Dim>& cont
 
 template std::optional<ProvedExchange> bound_exchanged<2>(const ExchangedContacts<2>&, const ApproximateInverse&,
                                                           InverseBoundCache&);
-template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&, int,
-                                       const std::function<bool()>&);
+template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&,
+                                       const std::function<bool()>&, int);
 
 } // namespace isostat

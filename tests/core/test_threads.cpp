@@ -1,6 +1,6 @@
 // Work in pieces on several threads.
 
-#include <isostat/core/threads.hpp>
+#include "support/threads.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -12,18 +12,7 @@
 #include <thread>
 #include <vector>
 
-namespace {
-
 using namespace isostat;
-
-struct Threads {
-    explicit Threads(int count) { set_threads(count); }
-    Threads(const Threads&) = delete;
-    Threads& operator=(const Threads&) = delete;
-    ~Threads() { set_threads(1); }
-};
-
-} // namespace
 
 BOOST_AUTO_TEST_SUITE(core)
 

@@ -122,7 +122,7 @@ namespace {
 double entries_of_factors(const ApproximateInverse& inverse, const sparse::Matrix<double>& h, int slot) {
     const double extra = inverse.exchanged(slot, h).relative_cost() - 1;
     BOOST_REQUIRE(extra > 0); // many grains move
-    return h.rows / (3 * extra);
+    return h.rows / (6 * extra);
 }
 
 /// Contact `slot` between the grains of contact `other`, in another direction.

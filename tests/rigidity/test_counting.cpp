@@ -1,7 +1,7 @@
 // Counting, the gate, and the identities of statics on crafted packings.
 #include "support/crafted.hpp"
+#include "support/threads.hpp"
 
-#include <isostat/core/threads.hpp>
 #include <isostat/exact/independent_columns.hpp>
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -142,7 +142,7 @@ BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices)
 
 BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded) {
     for (const int count : {1, 2}) {
-        set_threads(count);
+        const Threads threads(count);
         const State<2> state = two_disks(1, 2, 1, 1);
         auto regular = RankProof<2>::begin(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(regular.ok());
@@ -165,7 +165,6 @@ BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded) {
         BOOST_TEST_REQUIRE(!singular.value().conclude().ok());
         BOOST_TEST((singular.value().conclude().failure().kind == FailureKind::not_isostatic));
     }
-    set_threads(1);
 }
 
 BOOST_AUTO_TEST_CASE(the_rounded_and_the_exact_matrix_have_the_same_pattern) {

@@ -1,4 +1,5 @@
 // Jobs done in order behind the thread that hands them out.
+#include "support/threads.hpp"
 #include "trajectory/behind.hpp"
 
 #include <boost/test/unit_test.hpp>
@@ -6,17 +7,6 @@
 #include <stdexcept>
 
 using namespace isostat;
-
-namespace {
-
-struct Threads {
-    explicit Threads(int count) { set_threads(count); }
-    Threads(const Threads&) = delete;
-    Threads& operator=(const Threads&) = delete;
-    ~Threads() { set_threads(1); }
-};
-
-} // namespace
 
 BOOST_AUTO_TEST_SUITE(trajectory)
 

@@ -1,7 +1,7 @@
 // The level `arcs`: every arc of a run with its own proof, and what a path follower that misses contacts would meet.
 #include "support/crafted.hpp"
+#include "support/threads.hpp"
 
-#include <isostat/core/threads.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/preparation/preparation.hpp>
 
@@ -76,11 +76,12 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run) {
         const Played one = play(start, +1, 8, {}, options);
         BOOST_TEST_REQUIRE(one.records.arcs.size() > 20U);
         for (const int count : {2, 3, 2}) { // whoever begins an errand first
-            set_threads(count);
             const auto before = work_done();
-            const Played several = play(start, +1, 8, {}, options);
+            const Played several = [&] {
+                const Threads threads(count);
+                return play(start, +1, 8, {}, options);
+            }();
             const auto after = work_done();
-            set_threads(1);
             const auto alone = work_done();
             (void)play(start, +1, 8, {}, options);
             const auto alone_after = work_done();

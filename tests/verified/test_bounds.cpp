@@ -228,7 +228,7 @@ BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_r
     for (const bool worth : {false, true}) {
         InverseBoundCache cache;
         int asked = 0;
-        const InverseBound bound = bound_inverse(structure.value(), factorisation, cache, 100, [&] {
+        const InverseBound bound = bound_inverse(structure.value(), factorisation, cache, [&] {
             ++asked;
             return worth;
         });

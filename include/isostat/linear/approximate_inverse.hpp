@@ -24,8 +24,8 @@ class ApproximateInverse {
     explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
 
     /// New factors, of a matrix with nearly the same columns in the same places: the order of the columns is taken
-    /// over, and with it most of the analysis, until the factors have filled up by a fifth. Columns exchanged before come
-    /// last, where they fill least. Cost: half of that of the constructor.
+    /// over, and with it most of the analysis, until the factors have filled up by a fifth. Columns exchanged before
+    /// come last, where they fill least. Cost: half of that of the constructor.
     [[nodiscard]] ApproximateInverse renewed(const sparse::Matrix<double>& matrix) const;
 
     /// Of a block that moves by itself: the square submatrix of the given rows (degrees of freedom) and columns

@@ -38,7 +38,8 @@ class Factorisation {
     /// from the rate of convergence: fewer passes with factors taken over.
     void solve_forces_from(std::span<double> rhs, std::span<const double> guess, double accuracy) const;
     /// The same, ending as soon as `enough` says so of the forces so far and their largest error, as estimated
-    /// (infinity where it is not, as after the first pass). Asked after each pass with factors taken over. Returns the estimate; 0 when the forces are as accurate as they get.
+    /// (infinity where it is not, as after the first pass). Asked after each pass with factors taken over. Returns the
+    /// estimate; 0 when the forces are as accurate as they get.
     double solve_forces_until(std::span<double> rhs, std::span<const double> guess,
                               const std::function<bool(std::span<const double>, double)>& enough) const;
     /// Solves G v = dV in place: velocities with given approach velocities.

@@ -43,8 +43,12 @@ template <int Dim> double potential(const Packing<Dim>& packing, const Load<Dim>
 template <int Dim>
 std::vector<double> generic_infinitesimal(const std::vector<double>& radius, unsigned long long seed);
 
+/// Forces on coordinates (as above, or on the disks only) as forces on degrees of freedom: what the contacts carry.
+template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs);
+
 extern template struct Load<2>;
 extern template double potential<2>(const Packing<2>&, const Load<2>&);
+extern template std::vector<double> on_dofs<2>(const std::vector<double>&, const DofMap<2>&);
 extern template std::vector<double> generic_infinitesimal<2>(const std::vector<double>&, unsigned long long);
 
 } // namespace isostat

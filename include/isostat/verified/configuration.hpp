@@ -17,7 +17,7 @@ struct VertexEnclosure {
     double radius = 0;
     std::vector<double> correction; ///< empty on the rung double_bound; else one per coordinate of q
     double max_gap = 0;             ///< largest |gap| of the contacts at the stored configuration, as computed
-    double lipschitz = 0; ///< of the derivative of the constraints (V4 (a)), where it was computed; else 0
+    double lipschitz = 0;           ///< of the derivative of the constraints (V4 (a)), where it was computed; else 0
     Rung rung = Rung::double_bound;
 
     /// The true vertex is within this distance (2-norm, all coordinates) of the *stored* configuration: `radius` is

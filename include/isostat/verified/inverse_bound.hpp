@@ -54,8 +54,8 @@ struct InverseBoundCache {
 /// proved yet, `worth_more` is asked first, and false ends it with `undecided`.
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                           InverseBoundCache& cache, int row_limit = 20000,
-                           const std::function<bool()>& worth_more = {});
+                           InverseBoundCache& cache, const std::function<bool()>& worth_more = {},
+                           int row_limit = 20000);
 
 /// A bound of the inverse that is at the same time the proof that the exchanged matrix is regular.
 struct ProvedExchange {
@@ -87,6 +87,6 @@ extern template std::optional<ProvedExchange> carry_bound<2>(const IsostaticStru
                                                              const ExchangedContacts<2>&, const ApproximateInverse&,
                                                              std::vector<double>, double);
 extern template InverseBound bound_inverse<2>(const IsostaticStructure<2>&, const Factorisation&, InverseBoundCache&,
-                                              int, const std::function<bool()>&);
+                                              const std::function<bool()>&, int);
 
 } // namespace isostat

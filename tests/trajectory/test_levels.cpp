@@ -118,6 +118,8 @@ BOOST_AUTO_TEST_CASE(plain_steering_claims_nothing_and_its_equilibria_are_proved
         BOOST_TEST((arc.opened == proved.records.arcs[k].opened));
         BOOST_TEST((arc.closed == proved.records.arcs[k].closed));
         BOOST_TEST((proved.records.arcs[k].decided_by != Rung::none));
+        // In units of the load on a wall.
+        BOOST_TEST(std::abs(arc.force - proved.records.arcs[k].force) <= 1e-7 * start.packing.length(0));
     }
     for (std::size_t k = 0; k < plain.records.equilibria.size(); ++k) {
         const EquilibriumRecord<2>& e = plain.records.equilibria[k];

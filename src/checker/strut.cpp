@@ -22,40 +22,113 @@ Vector outward(const State<2>& state, const Contact& c, std::size_t disk) {
     return {x / length, y / length};
 }
 
-/// The disks that hang together with `first` when the contacts a and b are cut; nothing when a wall does, or a disk
-/// that is fixed, finitely loaded, or has a coordinate held earlier.
-std::optional<std::vector<unsigned char>> group(const Place& place, int first, std::size_t a, std::size_t b) {
-    const State<2>& state = *place.state;
-    const Problem& problem = place.evidence->problem;
-    const auto free = [&](int disk) {
-        for (int k = 2 * disk; k < 2 * disk + 2; ++k) {
-            const int dof = problem.dof_of[static_cast<std::size_t>(k)];
+/// The place without the disks that carry no force at the turn (S4 (c)): movable ones that just two contacts hold, the
+/// two at an angle. What they weigh, and what was put on them, rests on the others.
+struct Bare {
+    std::vector<bool> movable;     ///< disks: free, without a finite load, and not held by an earlier coordinate
+    std::vector<bool> left_out;    ///< contacts
+    std::vector<Vector> load;      ///< on the disks
+    std::vector<double> load_room; ///< how far that may be off
+
+    explicit Bare(const Place& place) {
+        const State<2>& state = *place.state;
+        const Problem& problem = place.evidence->problem;
+        const auto disks = static_cast<std::size_t>(problem.disks);
+        movable.assign(disks, true);
+        left_out.assign(state.contacts.size(), false);
+        load.assign(disks, Vector{});
+        load_room.assign(disks, 0);
+        for (std::size_t k = 0; k < 2 * disks; ++k) {
+            const int dof = problem.dof_of[k];
             if (dof < 0) {
-                return false;
+                movable[k / 2] = false;
+                continue;
             }
-            const Range& load = place.evidence->finite_load[static_cast<std::size_t>(dof)];
-            if (load.lower != 0 || load.upper != 0) {
-                return false;
+            const Range& finite = place.evidence->finite_load[static_cast<std::size_t>(dof)];
+            if (finite.lower != 0 || finite.upper != 0) {
+                movable[k / 2] = false;
+            }
+            if (!state.load.infinitesimal.empty()) {
+                load[k / 2][k % 2] = state.load.infinitesimal[k];
             }
         }
-        return true;
-    };
-    std::vector<unsigned char> inside(static_cast<std::size_t>(problem.disks), 0);
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const auto coordinate = static_cast<std::size_t>(state.contacts[l].i);
+            if (state.contacts[l].kind == ContactKind::held && static_cast<int>(l) != place.fresh &&
+                coordinate < 2 * disks) {
+                movable[coordinate / 2] = false;
+            }
+        }
+        while (sweep(state)) {
+        }
+    }
+
+  private:
+    /// Leaves out every disk that can be; false when there was none.
+    bool sweep(const State<2>& state) {
+        std::vector<std::vector<std::size_t>> around(movable.size());
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const Contact& c = state.contacts[l];
+            if (left_out[l] || c.kind == ContactKind::held) {
+                continue;
+            }
+            around[static_cast<std::size_t>(c.i)].push_back(l);
+            if (c.kind == ContactKind::disk_disk) {
+                around[static_cast<std::size_t>(c.j)].push_back(l);
+            }
+        }
+        bool any = false;
+        for (std::size_t disk = 0; disk < movable.size(); ++disk) {
+            const std::vector<std::size_t>& two = around[disk];
+            if (!movable[disk] || two.size() != 2 || left_out[two[0]] || left_out[two[1]]) {
+                continue;
+            }
+            const Vector n = outward(state, state.contacts[two[0]], disk);
+            const Vector m = outward(state, state.contacts[two[1]], disk);
+            const double sine = n[0] * m[1] - n[1] * m[0];
+            if (std::abs(sine) < 1e-4) { // far above turn_tolerance: not one line at the turn either
+                continue;
+            }
+            // The disk presses on what it touches with p n and q m, its own load p n + q m.
+            const Vector& g = load[disk];
+            const double p = (g[0] * m[1] - g[1] * m[0]) / sine;
+            const double q = (n[0] * g[1] - n[1] * g[0]) / sine;
+            const double room = 2 * (load_room[disk] + turn_tolerance * (std::abs(p) + std::abs(q))) / std::abs(sine);
+            give(state.contacts[two[0]], disk, {p * n[0], p * n[1]}, room);
+            give(state.contacts[two[1]], disk, {q * m[0], q * m[1]}, room);
+            left_out[two[0]] = left_out[two[1]] = true;
+            any = true;
+        }
+        return any;
+    }
+
+    void give(const Contact& c, std::size_t from, const Vector& force, double room) {
+        if (c.kind == ContactKind::disk_disk) {
+            const auto to = static_cast<std::size_t>(static_cast<std::size_t>(c.i) == from ? c.j : c.i);
+            load[to][0] += force[0];
+            load[to][1] += force[1];
+            load_room[to] += room;
+        }
+    }
+};
+
+/// The disks that hang together with `first` when the contacts a and b are cut; nothing when a wall does, or a disk
+/// that is not movable.
+std::optional<std::vector<unsigned char>> group(const State<2>& state, const Bare& bare, int first, std::size_t a,
+                                                std::size_t b) {
+    std::vector<unsigned char> inside(bare.movable.size(), 0);
     std::vector<int> open{first};
     inside[static_cast<std::size_t>(first)] = 1;
     while (!open.empty()) {
         const int disk = open.back();
         open.pop_back();
-        if (!free(disk)) {
+        if (!bare.movable[static_cast<std::size_t>(disk)]) {
             return std::nullopt;
         }
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
-            const bool held = c.kind == ContactKind::held;
-            if (l == a || l == b || static_cast<int>(l) == place.fresh) {
-                continue;
-            }
-            if (held ? c.i / 2 != disk : c.i != disk && (c.kind != ContactKind::disk_disk || c.j != disk)) {
+            if (l == a || l == b || bare.left_out[l] || c.kind == ContactKind::held ||
+                (c.i != disk && (c.kind != ContactKind::disk_disk || c.j != disk))) {
                 continue;
             }
             if (c.kind != ContactKind::disk_disk) {
@@ -102,8 +175,12 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     if (first.kind == ContactKind::held || second.kind == ContactKind::held) {
         return std::nullopt;
     }
+    const Bare bare(place);
+    if (bare.left_out[a] || bare.left_out[b]) {
+        return std::nullopt;
+    }
     for (const int disk : {first.i, first.kind == ContactKind::disk_disk ? first.j : -1}) {
-        const auto inside = disk < 0 ? std::nullopt : group(place, disk, a, b);
+        const auto inside = disk < 0 ? std::nullopt : group(state, bare, disk, a, b);
         const auto here = inside ? end_of(first, *inside) : std::nullopt;
         const auto there = inside ? end_of(second, *inside) : std::nullopt;
         if (!here || !there) {
@@ -116,10 +193,11 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
         for (std::size_t k = 0; k < 2; ++k) {
             double load = 0;
             double size = 0;
-            for (std::size_t i = 0; i < inside->size() && !state.load.infinitesimal.empty(); ++i) {
+            for (std::size_t i = 0; i < inside->size(); ++i) {
                 if ((*inside)[i] != 0) {
-                    load += state.load.infinitesimal[2 * i + k];
-                    size += std::abs(state.load.infinitesimal[2 * i + k]);
+                    load += bare.load[i][k];
+                    size += std::abs(bare.load[i][k]);
+                    room += bare.load_room[i];
                 }
             }
             along += 0.5 * load * (n[k] - m[k]);

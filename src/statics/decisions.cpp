@@ -109,7 +109,7 @@ std::string shown(const Enclosure& e) {
 /// located.
 template <int Dim, class Expression>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Expression expression, OpeningRule rule,
-                     std::uint64_t random_bits, std::span<const ContactId> zero_holds = {},
+                     std::uint64_t random_bits, const Turn<Dim>* turn = nullptr,
                      PerturbedStatics<Dim>* perturbed = nullptr) {
     if (rule == OpeningRule::random) {
         // Ordered by identity, so that the choice does not depend on the order of the contact list.
@@ -151,8 +151,7 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
         std::vector<TieDecision> settled;
         bool strut = false;
         std::optional<std::size_t> better;
-        const auto mates = !zero_holds.empty() && by_force ? strut_mates(statics, negative[best].contact, zero_holds)
-                                                           : std::vector<StrutMate>();
+        const auto mates = turn != nullptr && by_force ? turn->mates(negative[best].contact) : std::vector<StrutMate>();
         for (std::size_t k = 0; k < negative.size() && !better; ++k) {
             if (k == best) {
                 continue;
@@ -242,19 +241,34 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         e.minus_magnitude = is_held(statics, l);
         return e;
     };
-    std::vector<ContactId> at_zero(zero_holds.begin(), zero_holds.end()); // holds without a force: they tie no strut
+    ZeroHolds zero; // they tie no strut
+    if (finite) {
+        if (!zero_holds.empty()) {
+            zero.fresh = zero_holds[0];
+            zero.others.assign(zero_holds.begin() + 1, zero_holds.end());
+        }
+        for (std::size_t l = 0; l < statics.structure().contacts().size(); ++l) {
+            if (is_held(statics, ContactId(l)) && statics.is_structural_zero(ContactId(l)) && !zero.has(ContactId(l))) {
+                zero.others.push_back(ContactId(l));
+            }
+        }
+    }
+    std::optional<Turn<Dim>> turn;
+    if (zero.fresh) {
+        turn.emplace(statics, zero);
+    }
+    bool without_force = false; // contacts whose force is 0 at the turn itself
     std::vector<Contender> negative;
     double margin = infinity;
     std::vector<Contender> doubtful; // forces whose signs the enclosures do not prove
     for (std::size_t index = 0; index < statics.structure().contacts().size(); ++index) {
         const ContactId l(index);
-        if (statics.is_structural_zero(l) == finite) {
-            if (finite && is_held(statics, l)) {
-                at_zero.push_back(l);
-            }
+        if (statics.is_structural_zero(l) == finite ||
+            std::find(zero_holds.begin(), zero_holds.end(), l) != zero_holds.end()) {
             continue;
         }
-        if (std::find(zero_holds.begin(), zero_holds.end(), l) != zero_holds.end()) {
+        if (turn && turn->carries_nothing(l)) {
+            without_force = true;
             continue;
         }
         Enclosure f = value(l);
@@ -320,7 +334,8 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
         } else if (order.sign > 0) {
             margin = std::min(margin, order.margin);
         } else if (is_held(statics, d.contact)) {
-            at_zero.push_back(d.contact);
+            zero.others.push_back(d.contact);
+            turn.reset();
             zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
         } else {
             zeros += (zeros.empty() ? "" : ", ") + name(statics, d.contact);
@@ -332,12 +347,20 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
                            fmt::format("the {}force is exactly 0, and not for a structural reason, in: {}",
                                        finite ? "" : "infinitesimal ", zeros)};
         }
+        if (without_force) {
+            return Failure{
+                FailureKind::undecided,
+                "every force is positive but those of contacts that carry nothing at the power turn: what the "
+                "infinitesimal loads make of them there is not followed"};
+        }
         decision.margin = margin;
         decision.rung = statics.rung();
         return decision;
     }
-    Result<Opening> picked =
-        pick(statics, negative, expression, rule, random_bits, finite ? at_zero : std::vector<ContactId>(), perturbed);
+    if (!turn && !zero.others.empty()) {
+        turn.emplace(statics, zero);
+    }
+    Result<Opening> picked = pick(statics, negative, expression, rule, random_bits, turn ? &*turn : nullptr, perturbed);
     if (!picked.ok()) {
         return picked.failure();
     }

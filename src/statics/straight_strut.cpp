@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -85,10 +87,11 @@ struct ContactGraph {
 };
 
 template <int Dim> struct Disks {
-    std::vector<unsigned char> free; ///< every coordinate moves, carries no finite load and is not held
+    std::vector<unsigned char> free; ///< every coordinate moves, carries no finite load and is not held with a force
+    std::vector<unsigned char> held; ///< with an infinitesimal force that is not known
     std::size_t count = 0;
 
-    Disks(const Statics<Dim>& statics, std::span<const ContactId> zero_holds) {
+    Disks(const Statics<Dim>& statics, const ZeroHolds& zero) {
         const auto& contacts = statics.structure().contacts();
         const DofMap<Dim>& dofs = statics.structure().dofs();
         for (const Contact& c : contacts) {
@@ -113,15 +116,142 @@ template <int Dim> struct Disks {
             tie(dofs.coordinate_of(row));
         }
         for (std::size_t l = 0; l < contacts.size(); ++l) {
-            if (contacts[l].kind == ContactKind::held &&
-                std::find(zero_holds.begin(), zero_holds.end(), ContactId(l)) == zero_holds.end()) {
+            if (contacts[l].kind == ContactKind::held && !zero.has(ContactId(l))) {
                 tie(contacts[l].i);
+            }
+        }
+        held.assign(count, 0);
+        for (const ContactId l : zero.others) {
+            const auto disk = static_cast<std::size_t>(contacts[l.index()].i) / Dim;
+            if (zero.fresh && disk < count && !statics.is_structural_zero(l)) {
+                held[disk] = 1;
             }
         }
     }
 };
 
-template <int Dim> ContactGraph graph_of(const Statics<Dim>& statics, const Disks<Dim>& disks) {
+/// Forces of unit contacts and infinitesimal loads on one disk.
+template <int Dim> using Vector = std::array<double, Dim>;
+
+/// The force on the disk of a unit force in the contact.
+template <int Dim> Vector<Dim> push(const Statics<Dim>& statics, std::size_t contact, std::size_t disk) {
+    const sparse::Matrix<double>& h = statics.structure().matrix();
+    const DofMap<Dim>& dofs = statics.structure().dofs();
+    Vector<Dim> on{};
+    for (int e = h.start[contact]; e < h.start[contact + 1]; ++e) {
+        const auto s = static_cast<std::size_t>(e);
+        const auto coordinate = static_cast<std::size_t>(dofs.coordinate_of(h.row[s]));
+        if (coordinate / Dim == disk) {
+            on[coordinate % Dim] += h.value[s];
+        }
+    }
+    return on;
+}
+
+/// What the infinitesimal loads come to when the disks that carry no finite force at the turn are taken away with their
+/// contacts (S4 (c)): free disks that two contacts, not in one line, hold. Each is done once, in an order in which two
+/// contacts are left of it.
+template <int Dim> struct Bare {
+    static_assert(Dim == 2);
+    std::vector<unsigned char> gone; ///< of contacts
+    std::vector<Vector<Dim>> load;   ///< of each disk: its own, and what the disks that are gone press on it with
+    std::vector<double> error;       ///< of the latter, in length
+
+    Bare(const Statics<Dim>& statics, const Disks<Dim>& disks, const ZeroHolds& zero)
+        : gone(statics.structure().contacts().size(), 0), load(disks.count), error(disks.count, 0) {
+        const DofMap<Dim>& dofs = statics.structure().dofs();
+        const std::vector<double>& g = statics.infinitesimal_force();
+        for (std::size_t row = 0; row < g.size(); ++row) {
+            const auto coordinate = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(row)));
+            if (coordinate / Dim < disks.count) {
+                load[coordinate / Dim][coordinate % Dim] = g[row];
+            }
+        }
+        const auto& contacts = statics.structure().contacts();
+        for (const ContactId l : zero.others) {
+            const auto coordinate = static_cast<std::size_t>(contacts[l.index()].i);
+            if (coordinate / Dim < disks.count) {
+                // Structurally 0 in the finite forces wherever the mechanism stands: as solved, at the moved turn too.
+                const Enclosure part = statics.infinitesimal(l);
+                load[coordinate / Dim][coordinate % Dim] -=
+                    part.value * push(statics, l.index(), coordinate / Dim)[coordinate % Dim];
+                error[coordinate / Dim] += part.radius;
+            }
+        }
+        std::vector<std::vector<std::size_t>> at(disks.count);
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            if (contacts[l].kind != ContactKind::held) {
+                at[static_cast<std::size_t>(contacts[l].i)].push_back(l);
+                if (contacts[l].kind == ContactKind::disk_disk) {
+                    at[static_cast<std::size_t>(contacts[l].j)].push_back(l);
+                }
+            }
+        }
+        std::vector<std::size_t> open;
+        for (std::size_t i = 0; i < disks.count; ++i) {
+            if (disks.free[i] != 0 && disks.held[i] == 0) {
+                open.push_back(i);
+            }
+        }
+        while (!open.empty()) {
+            const std::size_t i = open.back();
+            open.pop_back();
+            std::erase_if(at[i], [&](std::size_t l) { return gone[l] != 0; });
+            if (at[i].size() == 2 && take_away(statics, i, at[i][0], at[i][1])) {
+                for (const std::size_t l : at[i]) {
+                    const int j = contacts[l].kind != ContactKind::disk_disk     ? -1
+                                  : static_cast<std::size_t>(contacts[l].i) == i ? contacts[l].j
+                                                                                 : contacts[l].i;
+                    const auto other = static_cast<std::size_t>(j);
+                    if (j >= 0 && disks.free[other] != 0 && disks.held[other] == 0) {
+                        open.push_back(other);
+                    }
+                }
+            }
+        }
+    }
+
+  private:
+    /// False when the two contacts may be in one line at the turn.
+    bool take_away(const Statics<Dim>& statics, std::size_t disk, std::size_t a, std::size_t b) {
+        const Vector<Dim> n = push(statics, a, disk);
+        const Vector<Dim> m = push(statics, b, disk);
+        const double cross = n[0] * m[1] - n[1] * m[0];
+        // The turn is located, and the normals are known, to far less: those of a strut fail by many orders.
+        constexpr double well_apart = 0x1p-16;
+        if (!(std::abs(cross) > well_apart)) {
+            return false;
+        }
+        const Vector<Dim>& g = load[disk];
+        const double in_a = (g[0] * m[1] - g[1] * m[0]) / cross;
+        const double in_b = (n[0] * g[1] - n[1] * g[0]) / cross;
+        // Singular values of two unit columns: the smaller is at least |cross| / sqrt 2.
+        const double doubt = 2 * statics.normal_uncertainty() + 0x1p-44;
+        const double wrong =
+            2 * (error[disk] + doubt * (std::abs(in_a) + std::abs(in_b) + std::abs(g[0]) + std::abs(g[1]))) /
+            std::abs(cross);
+        pass_on(statics, a, disk, in_a, wrong + doubt * std::abs(in_a));
+        pass_on(statics, b, disk, in_b, wrong + doubt * std::abs(in_b));
+        return true;
+    }
+
+    void pass_on(const Statics<Dim>& statics, std::size_t contact, std::size_t from, double force, double wrong) {
+        gone[contact] = 1;
+        const Contact& c = statics.structure().contacts()[contact];
+        if (c.kind != ContactKind::disk_disk) {
+            return;
+        }
+        const auto to = static_cast<std::size_t>(static_cast<std::size_t>(c.i) == from ? c.j : c.i);
+        const Vector<Dim> on = push(statics, contact, to);
+        for (std::size_t k = 0; k < Dim; ++k) {
+            load[to][k] -= force * on[k];
+        }
+        error[to] += wrong;
+    }
+};
+
+template <int Dim>
+ContactGraph graph_of(const Statics<Dim>& statics, const Disks<Dim>& disks, const std::vector<unsigned char>& gone) {
     const auto& contacts = statics.structure().contacts();
     ContactGraph graph;
     graph.ground = disks.count;
@@ -134,7 +264,7 @@ template <int Dim> ContactGraph graph_of(const Statics<Dim>& statics, const Disk
     };
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
-        if (c.kind == ContactKind::held) {
+        if (c.kind == ContactKind::held || gone[l] != 0) {
             continue;
         }
         const std::size_t a = node(c.i);
@@ -152,32 +282,34 @@ template <int Dim> ContactGraph graph_of(const Statics<Dim>& statics, const Disk
 /// f_b - f_a per unit of the infinitesimal loads, the disks `inside` being cut off by the contacts a and b.
 template <int Dim>
 Enclosure excess_over(const Statics<Dim>& statics, std::size_t a, std::size_t b,
-                      const std::vector<unsigned char>& inside) {
-    const sparse::Matrix<double>& h = statics.structure().matrix();
-    const DofMap<Dim>& dofs = statics.structure().dofs();
-    const auto within = [&](int row) {
-        const auto disk = static_cast<std::size_t>(dofs.coordinate_of(row)) / Dim;
-        return disk < inside.size() && inside[disk] != 0;
+                      const std::vector<unsigned char>& inside, const Bare<Dim>& bare) {
+    Vector<Dim> from_a{};
+    Vector<Dim> from_b{};
+    Vector<Dim> load{};
+    double size = 0;
+    double error = 0;
+    const auto add = [](Vector<Dim>& sum, const Vector<Dim>& v) {
+        for (std::size_t k = 0; k < Dim; ++k) {
+            sum[k] += v[k];
+        }
     };
-    const auto push = [&](std::size_t column) { // of a unit force on the group
-        std::array<double, Dim> sum{};
-        for (int e = h.start[column]; e < h.start[column + 1]; ++e) {
-            const auto s = static_cast<std::size_t>(e);
-            if (within(h.row[s])) {
-                sum[static_cast<std::size_t>(dofs.coordinate_of(h.row[s])) % Dim] += h.value[s];
+    const auto ends = [&](std::size_t contact, Vector<Dim>& sum) { // of a unit force on the group
+        const Contact& c = statics.structure().contacts()[contact];
+        for (const int disk : {c.i, c.kind == ContactKind::disk_disk ? c.j : -1}) {
+            if (disk >= 0 && inside[static_cast<std::size_t>(disk)] != 0) {
+                add(sum, push(statics, contact, static_cast<std::size_t>(disk)));
             }
         }
-        return sum;
     };
-    const auto from_a = push(a);
-    const auto from_b = push(b);
-    std::array<double, Dim> load{};
-    double size = 0;
-    const std::vector<double>& g = statics.infinitesimal_force();
-    for (std::size_t row = 0; row < g.size(); ++row) {
-        if (within(static_cast<int>(row))) {
-            load[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(row))) % Dim] += g[row];
-            size += std::abs(g[row]);
+    ends(a, from_a);
+    ends(b, from_b);
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+        if (inside[i] != 0) {
+            add(load, bare.load[i]);
+            error += bare.error[i];
+            for (const double g : bare.load[i]) {
+                size += std::abs(g);
+            }
         }
     }
     double value = 0;
@@ -187,27 +319,44 @@ Enclosure excess_over(const Statics<Dim>& statics, std::size_t a, std::size_t b,
         bend += std::abs(from_a[k] + from_b[k]);
     }
     // The normal of the straight strut lies between the two stored ones; each is known to `normal_uncertainty`.
-    return {value, size * (bend + 2 * statics.normal_uncertainty() + 0x1p-44)};
+    return {value, size * (bend + 2 * statics.normal_uncertainty() + 0x1p-44) + 2 * error};
 }
+
+constexpr auto none = static_cast<std::size_t>(-1);
 
 } // namespace
 
+template <int Dim> struct Turn<Dim>::Parts {
+    Disks<Dim> disks;
+    Bare<Dim> bare;
+    ContactGraph graph;
+    std::vector<unsigned char> alone; ///< what a single contact cuts off leaves it without force
+};
+
 template <int Dim>
-std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, std::span<const ContactId> zero_holds) {
-    const Disks<Dim> disks(statics, zero_holds);
-    const ContactGraph graph = graph_of(statics, disks);
+Turn<Dim>::Turn(const Statics<Dim>& statics, ZeroHolds zero) : statics_(statics), zero_(std::move(zero)) {
+    const Disks<Dim> disks(statics, zero_);
+    Bare<Dim> bare(statics, disks, zero_);
+    ContactGraph graph = graph_of(statics, disks, bare.gone);
+    std::vector<unsigned char> alone = graph.bridges(none);
+    parts_ = std::make_unique<const Parts>(Parts{disks, std::move(bare), std::move(graph), std::move(alone)});
+}
+
+template <int Dim> Turn<Dim>::~Turn() = default;
+
+template <int Dim> bool Turn<Dim>::carries_nothing(ContactId contact) const {
+    return parts_->bare.gone[contact.index()] != 0 || parts_->alone[contact.index()] != 0;
+}
+
+template <int Dim> std::vector<StrutMate> Turn<Dim>::mates(ContactId of) const {
+    const ContactGraph& graph = parts_->graph;
     std::vector<StrutMate> mates;
-    if (graph.leads[of.index()] == 0) {
-        return mates;
-    }
-    constexpr auto none = static_cast<std::size_t>(-1);
-    const std::vector<unsigned char> alone = graph.bridges(none); // these carry no force
-    if (alone[of.index()] != 0) {
+    if (graph.leads[of.index()] == 0 || carries_nothing(of)) {
         return mates;
     }
     const std::vector<unsigned char> without = graph.bridges(of.index());
     for (std::size_t l = 0; l < without.size(); ++l) {
-        if (without[l] == 0 || alone[l] != 0) {
+        if (without[l] == 0 || parts_->alone[l] != 0) {
             continue;
         }
         const auto [one, other] = graph.ends[of.index()];
@@ -218,12 +367,24 @@ std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, st
         if (inside[graph.ground] != 0) {
             continue;
         }
+        const Disks<Dim>& disks = parts_->disks;
         inside.resize(disks.count);
-        mates.push_back({ContactId(l), excess_over<Dim>(statics, of.index(), l, inside)});
+        Enclosure excess;
+        if (!zero_.fresh) {
+            excess = statics_.infinitesimal(ContactId(l)) - statics_.infinitesimal(of);
+        } else {
+            excess = excess_over<Dim>(statics_, of.index(), l, inside, parts_->bare);
+            for (std::size_t i = 0; i < disks.count; ++i) {
+                if (inside[i] != 0 && disks.held[i] != 0) {
+                    excess.radius = std::numeric_limits<double>::infinity();
+                }
+            }
+        }
+        mates.push_back({ContactId(l), excess});
     }
     return mates;
 }
 
-template std::vector<StrutMate> strut_mates<2>(const Statics<2>&, ContactId, std::span<const ContactId>);
+template class Turn<2>;
 
 } // namespace isostat

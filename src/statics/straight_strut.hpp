@@ -4,7 +4,9 @@
 
 #include <isostat/statics/statics.hpp>
 
-#include <span>
+#include <algorithm>
+#include <memory>
+#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -15,14 +17,47 @@ struct StrutMate {
     Enclosure excess; ///< of its force over that of the other one, per unit of the infinitesimal loads
 };
 
-/// The contacts of the strut to which `of` belongs: those that, together with it, cut a group of free disks without
-/// finite load off everything else. `zero_holds`: the coordinate held at the turn, whose multiplier is 0 there (or
-/// several); other held coordinates hold their disks. Empty when there is no such contact. Uses the graph of the
-/// contacts only, but for `excess` (S4 (b)), whose radius counts how far the stored strut is from straight. Cost: two
-/// depth-first searches, O(N).
-template <int Dim>
-std::vector<StrutMate> strut_mates(const Statics<Dim>& statics, ContactId of, std::span<const ContactId> zero_holds);
+/// Held coordinates that carry no finite force.
+struct ZeroHolds {
+    std::optional<ContactId> fresh; ///< the one held at the turn: its multiplier is 0 there, infinitesimal part too
+    std::vector<ContactId> others;  ///< the force of the finite loads is 0, that of the infinitesimal ones may not be
 
-extern template std::vector<StrutMate> strut_mates<2>(const Statics<2>&, ContactId, std::span<const ContactId>);
+    [[nodiscard]] bool has(ContactId l) const {
+        return fresh == l || std::find(others.begin(), others.end(), l) != others.end();
+    }
+};
+
+/// A vertex where coordinates are held without a finite force. Uses the graph of the contacts and their normals, no
+/// forces but for the infinitesimal ones of `zero.others`. Cost: two depth-first searches, O(N), and as much again for
+/// each call of `mates`.
+template <int Dim> class Turn {
+  public:
+    /// `statics` must outlive it.
+    Turn(const Statics<Dim>& statics, ZeroHolds zero);
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    ~Turn();
+
+    /// At the turn itself the force of the contact is 0: it alone joins some disks without load to the rest, or it is
+    /// one of just two, not in one line, that hold such a disk when others of these are left out (S4 (c)). What the
+    /// statics say its force is tells where the turn was rounded to. False says nothing: a larger group of disks that
+    /// carries nothing is not found.
+    [[nodiscard]] bool carries_nothing(ContactId contact) const;
+
+    /// The contacts of the strut to which `of` belongs: those that, together with it, cut a group of free disks without
+    /// finite load off everything else, contacts that carry nothing left out. Coordinates held with a force hold their
+    /// disks. Empty when there is none. `excess` is S4 (b); its radius counts how far the stored strut is from
+    /// straight, and is infinite when one of `zero.others` that is no structural zero holds a disk of the strut at a
+    /// fresh turn.
+    [[nodiscard]] std::vector<StrutMate> mates(ContactId of) const;
+
+  private:
+    struct Parts;
+    const Statics<Dim>& statics_;
+    ZeroHolds zero_;
+    std::unique_ptr<const Parts> parts_;
+};
+
+extern template class Turn<2>;
 
 } // namespace isostat

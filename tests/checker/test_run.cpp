@@ -1,6 +1,9 @@
 // Runs re-checked from their records; altered records must be found, the first of them named.
+#include "checker/strut.hpp"
 #include "support/crafted.hpp"
+#include "support/same_sequence.hpp"
 #include "support/scratch.hpp"
+#include "support/strut.hpp"
 
 #include <isostat/checker/verify_run.hpp>
 #include <isostat/core/error.hpp>
@@ -116,6 +119,36 @@ BOOST_AUTO_TEST_CASE(the_rolling_disk_is_replayed) {
     BOOST_TEST((run.verdict == Verdict::proved));
     BOOST_TEST(run.arcs_proved == run.arcs);
     BOOST_TEST(run.equilibria_proved == 3);
+}
+
+BOOST_AUTO_TEST_CASE(what_a_grain_without_force_puts_on_a_strut_orders_its_ends) {
+    for (const double angle : {0.5235987755982988, 1.3089969389957472}) {
+        for (const crafted::StrutLoad& load : crafted::strut_loads()) {
+            isostat::checker::Place place;
+            const auto objection = isostat::checker::make_place(crafted::strut_with_a_grain(angle, load), place, {}, 7);
+            BOOST_REQUIRE_MESSAGE(!objection, (objection ? objection->text : ""));
+            BOOST_TEST(isostat::checker::same_at_turn(place, 0, 1));
+            BOOST_TEST(isostat::checker::strut_order(place, 0, 1).value_or(0) == (load.to_the_right ? -1 : 1));
+            BOOST_TEST(isostat::checker::strut_order(place, 1, 0).value_or(0) == (load.to_the_right ? 1 : -1));
+        }
+    }
+}
+
+// Arc 23 follows a power turn that holds a grain without force; that grain hangs on a straight strut, whose end opens.
+BOOST_AUTO_TEST_CASE(the_end_of_a_strut_that_a_grain_without_force_hangs_on_is_replayed_and_no_other) {
+    const scratch::Folder folder;
+    Segment up;
+    up.equilibria = 5;
+    play(crafted::prepared(40, 15), {up}, folder / "run");
+    const RunVerification run = verify_run(folder / "run");
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST((run.verdict == Verdict::proved));
+    const std::string opened = R"("opened":"28-34")";
+    const std::string other = R"("opened":"28-30")";
+    const std::string line = line_of(scratch::read(folder / "run" / "events.jsonl"), 23);
+    BOOST_REQUIRE(line.find(opened) != std::string::npos);
+    finds(folder / "run", {"events.jsonl", 23, opened, other, "opens with"});
 }
 
 BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {

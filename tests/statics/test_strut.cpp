@@ -3,6 +3,7 @@
 #include "statics/straight_strut.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
+#include "support/strut.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/statics/decisions.hpp>
@@ -48,24 +49,91 @@ template <class T> std::string why(const Result<T>& result) {
     return result.ok() ? "answered" : result.failure().message;
 }
 
-/// The same by definition: both contacts together cut free disks off, neither of them alone.
-std::vector<ContactId> slow_mates(const AtVertex& v, ContactId of, ContactId fresh) {
-    const auto n = static_cast<std::size_t>(v.state.packing.disk_count());
-    std::vector<unsigned char> grounded(n, 0);
-    for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
-        const Contact& c = v.state.contacts[l];
-        if (c.kind == ContactKind::held && ContactId(l) != fresh && static_cast<std::size_t>(c.i) < 2 * n) {
-            grounded[static_cast<std::size_t>(c.i) / 2] = 1;
+/// Does nothing unless the disk has just two neighbours.
+void set_between_its_neighbours(State<2>& state, int disk) {
+    std::vector<std::size_t> neighbours;
+    for (const Contact& c : state.contacts) {
+        if (c.kind == ContactKind::held || (c.i != disk && (c.kind != ContactKind::disk_disk || c.j != disk))) {
+            continue;
+        }
+        if (c.kind != ContactKind::disk_disk) {
+            return;
+        }
+        neighbours.push_back(static_cast<std::size_t>(c.i == disk ? c.j : c.i));
+    }
+    if (neighbours.size() == 2) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            std::vector<double>& q = state.packing.q;
+            q[2 * static_cast<std::size_t>(disk) + k] = 0.5 * (q[2 * neighbours[0] + k] + q[2 * neighbours[1] + k]);
         }
     }
-    const auto cut_off = [&](std::vector<ContactId> without) {
+}
+
+/// The same by definition.
+struct SlowTurn {
+    const AtVertex& v;
+    std::vector<unsigned char> grounded; ///< disks with a coordinate held earlier
+    std::vector<unsigned char> nothing;  ///< contacts that carry nothing
+
+    SlowTurn(const AtVertex& vertex, ContactId fresh) : v(vertex) {
+        const auto n = static_cast<std::size_t>(v.state.packing.disk_count());
+        grounded.assign(n, 0);
+        nothing.assign(v.state.contacts.size(), 0);
+        for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
+            const Contact& c = v.state.contacts[l];
+            if (c.kind == ContactKind::held && ContactId(l) != fresh && static_cast<std::size_t>(c.i) < 2 * n) {
+                grounded[static_cast<std::size_t>(c.i) / 2] = 1;
+            }
+        }
+        for (std::size_t pass = 0; pass < n; ++pass) {
+            for (std::size_t i = 0; i < n; ++i) {
+                std::vector<std::size_t> around;
+                for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
+                    const Contact& c = v.state.contacts[l];
+                    const auto disk = static_cast<int>(i);
+                    if (nothing[l] == 0 && c.kind != ContactKind::held &&
+                        (c.i == disk || (c.kind == ContactKind::disk_disk && c.j == disk))) {
+                        around.push_back(l);
+                    }
+                }
+                if (grounded[i] == 0 && around.size() == 2 && at_an_angle(around[0], around[1], static_cast<int>(i))) {
+                    nothing[around[0]] = nothing[around[1]] = 1;
+                }
+            }
+        }
+        std::vector<unsigned char> alone(nothing.size(), 0);
+        const int before = cut_off({});
+        for (std::size_t l = 0; l < alone.size(); ++l) {
+            alone[l] = v.state.contacts[l].kind != ContactKind::held && cut_off({ContactId(l)}) > before ? 1 : 0;
+        }
+        for (std::size_t l = 0; l < alone.size(); ++l) {
+            nothing[l] = nothing[l] != 0 || alone[l] != 0 ? 1 : 0;
+        }
+    }
+
+    [[nodiscard]] bool at_an_angle(std::size_t a, std::size_t b, int disk) const {
+        const auto direction = [&](std::size_t l) {
+            const Contact& c = v.state.contacts[l];
+            const std::vector<double>& q = v.state.packing.q;
+            if (c.kind != ContactKind::disk_disk) {
+                return c.j == 0 ? 0.0 : std::acos(0.0);
+            }
+            const auto i = static_cast<std::size_t>(disk);
+            const auto j = static_cast<std::size_t>(c.i == disk ? c.j : c.i);
+            return std::atan2(q[2 * j + 1] - q[2 * i + 1], q[2 * j] - q[2 * i]);
+        };
+        return std::abs(std::sin(direction(a) - direction(b))) > 1e-4;
+    }
+
+    /// Disks that hang on nothing without these contacts.
+    [[nodiscard]] int cut_off(const std::vector<ContactId>& without) const {
         std::vector<unsigned char> seen = grounded;
         bool more = true;
         while (more) {
             more = false;
             for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
                 const Contact& c = v.state.contacts[l];
-                if (c.kind == ContactKind::held ||
+                if (c.kind == ContactKind::held || nothing[l] != 0 ||
                     std::find(without.begin(), without.end(), ContactId(l)) != without.end()) {
                     continue;
                 }
@@ -80,18 +148,25 @@ std::vector<ContactId> slow_mates(const AtVertex& v, ContactId of, ContactId fre
             }
         }
         return static_cast<int>(std::count(seen.begin(), seen.end(), 0));
-    };
-    std::vector<ContactId> mates;
-    const int before = cut_off({});
-    for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
-        const ContactId other(l);
-        if (other != of && v.state.contacts[l].kind != ContactKind::held && cut_off({of}) == before &&
-            cut_off({other}) == before && cut_off({of, other}) > before) {
-            mates.push_back(other);
-        }
     }
-    return mates;
-}
+
+    /// Both contacts together cut free disks off, neither of them alone.
+    [[nodiscard]] std::vector<ContactId> mates(ContactId of) const {
+        std::vector<ContactId> found;
+        if (nothing[of.index()] != 0) {
+            return found;
+        }
+        const int before = cut_off({});
+        for (std::size_t l = 0; l < v.state.contacts.size(); ++l) {
+            const ContactId other(l);
+            if (other != of && v.state.contacts[l].kind != ContactKind::held && nothing[l] == 0 &&
+                cut_off({of, other}) > before) {
+                found.push_back(other);
+            }
+        }
+        return found;
+    }
+};
 
 } // namespace
 
@@ -139,19 +214,50 @@ BOOST_AUTO_TEST_CASE(a_disk_whose_hold_carries_a_load_is_no_strut) {
     BOOST_TEST(decision.failure().message.find("exactly equal") != std::string::npos, why(decision));
 }
 
+BOOST_AUTO_TEST_CASE(a_grain_without_force_that_joins_a_strut_to_the_rest_only_puts_its_load_on_it) {
+    for (const double angle : {0.5235987755982988, 1.3089969389957472}) {
+        for (const StrutLoad& load : strut_loads()) {
+            State<2> state = strut_with_a_grain(angle, load);
+            const double pushed = load.on_strut - 0.5 * load.towards_strut;
+            const ContactId fresh = find(state, held(2));
+            {
+                AtVertex v(state);
+                const auto mates = Turn<2>(v.statics, {fresh, {}}).mates(find(state, left(0)));
+                BOOST_TEST_REQUIRE(mates.size() == 1U);
+                BOOST_TEST((v.contact(mates[0].contact) == right(0)));
+                BOOST_TEST(std::abs(mates[0].excess.value - pushed) <= 1e-12);
+                const auto decision = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, fresh, 0);
+                BOOST_TEST_REQUIRE(decision.ok(), why(decision));
+                BOOST_TEST((v.contact(decision.value().opening->contact) == (load.to_the_right ? left(0) : right(0))));
+                BOOST_TEST(decision.value().opening->straight_strut);
+            }
+            // Held earlier, without a finite force: that hold takes what is added along it.
+            state.load.infinitesimal[2] += 0.7;
+            AtVertex v(state);
+            const auto later = Turn<2>(v.statics, {ContactId(6), {fresh}}).mates(find(state, left(0)));
+            BOOST_TEST_REQUIRE(later.size() == 1U);
+            BOOST_TEST(std::abs(later[0].excess.value - pushed) <= 1e-12);
+            const auto no_fresh = Turn<2>(v.statics, {std::nullopt, {fresh}}).mates(find(state, left(0)));
+            BOOST_TEST_REQUIRE(no_fresh.size() == 1U);
+            BOOST_TEST(std::abs(no_fresh[0].excess.value - pushed) <= 1e-12);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_row_of_two_is_one_strut_up_to_the_disk_that_another_hold_keeps) {
     State<2> state = row_under_traction(2);
     AtVertex v(state);
     const ContactId fresh = find(state, held(1));
-    const auto mates = strut_mates(v.statics, find(state, left(0)), {&fresh, 1});
+    const auto mates = Turn<2>(v.statics, {fresh, {}}).mates(find(state, left(0)));
     BOOST_TEST_REQUIRE(mates.size() == 1U);
     BOOST_TEST((v.contact(mates[0].contact) == pair(0, 1)));
     BOOST_TEST(std::abs(mates[0].excess.value - state.load.infinitesimal[0]) <= 1e-12);
-    BOOST_TEST(strut_mates(v.statics, find(state, right(1)), {&fresh, 1}).empty());
+    BOOST_TEST(Turn<2>(v.statics, {fresh, {}}).mates(find(state, right(1))).empty());
 }
 
 BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
     int found = 0;
+    int nothing = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
         PreparationOptions options;
         options.disks = 20;
@@ -160,32 +266,40 @@ BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
         auto prepared = prepare<2>(options, report);
         BOOST_TEST_REQUIRE(prepared.ok());
         State<2> state = prepared.value();
-        // A coordinate of each disk in turn is held in place of one of its contacts.
-        for (std::size_t l = 0; l < state.contacts.size(); l += 3) {
+        // A coordinate of each disk in turn is held in place of one of its contacts; when two are left the disk is
+        // moved between its neighbours: a strut.
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             State<2> turned = state;
-            const int coordinate = 2 * turned.contacts[l].i;
-            turned.contacts[l] = held(coordinate);
+            const int disk = turned.contacts[l].i;
+            turned.contacts[l] = held(2 * disk);
+            set_between_its_neighbours(turned, disk);
             auto proved = IsostaticStructure<2>::prove(turned.packing, turned.contacts);
             if (!proved.ok()) {
                 continue;
             }
-            AtVertex v(turned);
+            AtVertex v(turned, false);
             const ContactId fresh(l);
+            const Turn<2> turn(v.statics, {fresh, {}});
+            const SlowTurn slow(v, fresh);
             for (std::size_t of = 0; of < turned.contacts.size(); ++of) {
-                if (of == l) {
+                if (turned.contacts[of].kind == ContactKind::held) {
                     continue;
                 }
+                BOOST_TEST(turn.carries_nothing(ContactId(of)) == (slow.nothing[of] != 0),
+                           "seed " << seed << " hold " << l << " contact " << of);
+                nothing += slow.nothing[of];
                 std::vector<ContactId> fast;
-                for (const StrutMate& mate : strut_mates(v.statics, ContactId(of), {&fresh, 1})) {
+                for (const StrutMate& mate : turn.mates(ContactId(of))) {
                     fast.push_back(mate.contact);
                 }
-                const auto slow = slow_mates(v, ContactId(of), fresh);
-                BOOST_TEST((fast == slow), "seed " << seed << " hold " << l << " contact " << of << ": " << fast.size()
-                                                   << " against " << slow.size());
-                found += static_cast<int>(slow.size());
+                const auto expected = slow.mates(ContactId(of));
+                BOOST_TEST((fast == expected), "seed " << seed << " hold " << l << " contact " << of << ": "
+                                                       << fast.size() << " against " << expected.size());
+                found += static_cast<int>(expected.size());
             }
         }
     }
+    BOOST_TEST(nothing > 10);
     BOOST_TEST(found > 10);
 }
 

@@ -57,4 +57,23 @@ BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sid
     }
 }
 
+BOOST_AUTO_TEST_CASE(grains_that_hang_on_a_strut_without_force_do_not_hide_it) {
+    // Grain 37 is held at the turn and carries nothing; the strut is 28, some contacts away.
+    const State<2> start = prepared(40, 15);
+    const Played run = play(start, +1, 5);
+    const auto& arcs = run.records.arcs;
+    BOOST_TEST_REQUIRE(arcs.size() > 22U);
+    BOOST_TEST(arcs[21].power_turn);
+    BOOST_TEST((arcs[22].opened == pair(28, 34)));
+    BOOST_TEST((arcs[22].decided_by <= Rung::double_bound), "no climb after digits without meaning");
+    for (const Disguised& other : {relabelled(start, 5), exchanged(start)}) {
+        check_same_sequence(run, other, 5);
+    }
+    for (const Disguised& other : {mirrored(start), quarter_turned(start)}) {
+        const auto seen = events(play(other.state, +1, 5).records, other.back);
+        BOOST_TEST_REQUIRE(seen.size() > 22U);
+        BOOST_TEST((seen[22].first == arcs[22].opened));
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

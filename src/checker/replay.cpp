@@ -17,11 +17,13 @@ bool contains(const std::vector<int>& sorted, std::size_t value) {
 /// Sign of all forces of one stage: those that are no structural zeros, or the infinitesimal ones of those that are.
 Objections negative_ones(const Place& place, bool finite, std::vector<int>& negative) {
     const Evidence& e = *place.evidence;
+    bool silent = false;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        if (contains(place.zeros, l) == finite) {
+        if (contains(place.zeros, l) == finite || static_cast<int>(l) == place.fresh) {
             continue;
         }
-        if (static_cast<int>(l) == place.fresh) {
+        if (finite && place.fresh >= 0 && place.silent[l]) {
+            silent = true;
             continue;
         }
         const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
@@ -35,6 +37,9 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
             return Objection{false, fmt::format("the sign of the {}force of {} is not known: {}",
                                                 finite ? "" : "infinitesimal ", e.name(l), shown(force))};
         }
+    }
+    if (silent && negative.empty()) {
+        return Objection{false, "no force is negative but perhaps those of contacts that carry nothing at the turn"};
     }
     return {};
 }
@@ -70,6 +75,9 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
     }
     place.zeros = having_zero(e.forces);
     std::erase(place.zeros, fresh);
+    if (fresh >= 0) {
+        place.silent = without_force(place);
+    }
     if (place.state->perturbation) {
         place.first =
             std::make_unique<FirstOrder>(*place.state, e.problem, e.inverse, e.vertex, place.state->perturbation->rho);
@@ -455,7 +463,13 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             // Finite forces tell only where the turn was rounded to.
             sign = strut_order(place, other, opened).value_or(0);
         }
-        if (most ? sign < 0 : (rule == "least_negative" && sign > 0)) {
+        const bool comes_first = most ? sign < 0 : rule == "least_negative" && sign > 0;
+        if (comes_first && place.is_held(other)) { // what turned back where it stood is put aside, without a record
+            return Objection{false, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}, unless that was "
+                                                "released and turned back where it stood",
+                                                e.name(opened), shown(chosen), rule, e.name(other), shown(force))};
+        }
+        if (comes_first) {
             return Objection{true, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),
                                                shown(chosen), rule, e.name(static_cast<std::size_t>(l)), shown(force))};
         }

@@ -37,6 +37,7 @@ struct Place {
     std::unique_ptr<Evidence> evidence;
     std::vector<int> zeros; ///< structural zeros of the finite load
     ExactLoad load;
+    std::vector<bool> silent; ///< with `fresh`: contacts whose force is 0 at the turn itself
     int fresh = -1; ///< the row of a coordinate held just now: its multiplier is 0 up to the place of the turn
     // Runs that settle ties at first order only:
     std::unique_ptr<FirstOrder> first;

@@ -1,5 +1,6 @@
 #include "checker/strut.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isostat::checker {
@@ -29,8 +30,10 @@ struct Bare {
     std::vector<bool> left_out;    ///< contacts
     std::vector<Vector> load;      ///< on the disks
     std::vector<double> load_room; ///< how far that may be off
+    std::vector<std::vector<std::size_t>> around; ///< contacts of each disk that are not left out
 
-    explicit Bare(const Place& place) {
+    /// `silent_holds_tie`: earlier ones that carry no finite force too; they may carry an infinitesimal one.
+    Bare(const Place& place, bool silent_holds_tie) {
         const State<2>& state = *place.state;
         const Problem& problem = place.evidence->problem;
         const auto disks = static_cast<std::size_t>(problem.disks);
@@ -54,8 +57,9 @@ struct Bare {
         }
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const auto coordinate = static_cast<std::size_t>(state.contacts[l].i);
+            const bool silent = std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l));
             if (state.contacts[l].kind == ContactKind::held && static_cast<int>(l) != place.fresh &&
-                coordinate < 2 * disks) {
+                coordinate < 2 * disks && (silent_holds_tie || !silent)) {
                 movable[coordinate / 2] = false;
             }
         }
@@ -66,7 +70,7 @@ struct Bare {
   private:
     /// Leaves out every disk that can be; false when there was none.
     bool sweep(const State<2>& state) {
-        std::vector<std::vector<std::size_t>> around(movable.size());
+        around.assign(movable.size(), {});
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
             if (left_out[l] || c.kind == ContactKind::held) {
@@ -125,10 +129,9 @@ std::optional<std::vector<unsigned char>> group(const State<2>& state, const Bar
         if (!bare.movable[static_cast<std::size_t>(disk)]) {
             return std::nullopt;
         }
-        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        for (const std::size_t l : bare.around[static_cast<std::size_t>(disk)]) {
             const Contact& c = state.contacts[l];
-            if (l == a || l == b || bare.left_out[l] || c.kind == ContactKind::held ||
-                (c.i != disk && (c.kind != ContactKind::disk_disk || c.j != disk))) {
+            if (l == a || l == b) {
                 continue;
             }
             if (c.kind != ContactKind::disk_disk) {
@@ -168,6 +171,24 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
     return difference.lower <= room && difference.upper >= -room;
 }
 
+std::vector<bool> without_force(const Place& place) {
+    const State<2>& state = *place.state;
+    const Bare bare(place, false);
+    std::vector<bool> nothing = bare.left_out;
+    for (std::size_t l = 0; l < nothing.size(); ++l) {
+        const Contact& c = state.contacts[l];
+        if (nothing[l] || c.kind == ContactKind::held) {
+            continue;
+        }
+        const auto cut_off = [&](int disk) {
+            const auto inside = group(state, bare, disk, l, l);
+            return inside && end_of(c, *inside);
+        };
+        nothing[l] = cut_off(c.i) || (c.kind == ContactKind::disk_disk && cut_off(c.j));
+    }
+    return nothing;
+}
+
 std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b) {
     const State<2>& state = *place.state;
     const Contact& first = state.contacts[a];
@@ -175,7 +196,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     if (first.kind == ContactKind::held || second.kind == ContactKind::held) {
         return std::nullopt;
     }
-    const Bare bare(place);
+    const Bare bare(place, true);
     if (bare.left_out[a] || bare.left_out[b]) {
         return std::nullopt;
     }

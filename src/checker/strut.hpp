@@ -13,6 +13,11 @@ namespace isostat::checker {
 /// turn was rounded to. False without a coordinate held just now.
 bool same_at_turn(const Place& place, std::size_t a, std::size_t b);
 
+/// Contacts whose force is 0 at the power turn itself (S4 (c)), whatever the forces say at the place to which it was
+/// rounded: one that alone joins movable disks without load to the rest, and the two, not in one line, that hold such
+/// a disk when others of these are left out. \pre a coordinate is held just now.
+std::vector<bool> without_force(const Place& place);
+
 /// Order of the forces of two contacts that alone hold a group of free disks, as the infinitesimal loads on the group
 /// make it: -1 when that of `a` is smaller. 0: these loads stand across the strut, up to its bend and
 /// `turn_tolerance`. Nothing: the two do not cut off such a group.

@@ -135,7 +135,7 @@ template <int Dim> class Run {
         Opening opening;
         std::string kind;
         int arcs = 0;
-        ContactId last_hold;
+        ContactId last_hold;               ///< of the power turn at `here`
         bool ended = false;                ///< no force is negative at `here`
         bool by_steps = false;             ///< the next arc is one that must be proved before going on
         std::unique_ptr<Vertex<Dim>> anew; ///< when it ended and is there: the same vertex, proved from nothing
@@ -765,6 +765,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
         return std::nullopt;
     }
     way.here = std::move(last);
+    way.last_hold = last_hold;
     if (decision.opening) {
         way.opening = *decision.opening;
         way.kind = kind_of(*way.here, way.opening);
@@ -772,7 +773,6 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     }
     count(DecisionKind::equilibrium, decision.margin, decision.rung, nullptr, decision.perturbed);
     zeros_ = decision.zeros;
-    way.last_hold = last_hold;
     way.ended = true;
     if (anew && proved == steered) {
         add_work(by_anew);
@@ -851,7 +851,11 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             resting.push_back(way.opening.contact);
             --counters_.steps;
             --way.arcs;
-            auto again = decide_opening(way.here->statics, stress, options_.rule, std::span<const ContactId>(resting),
+            std::vector<ContactId> zero = resting;
+            if (way.last_hold.valid()) {
+                zero.insert(zero.begin(), way.last_hold);
+            }
+            auto again = decide_opening(way.here->statics, stress, options_.rule, std::span<const ContactId>(zero),
                                         bits_for(options_.rule_seed, counters_.steps), first_order(*way.here));
             if (!again.ok()) {
                 return located(again.failure(), where);
@@ -887,6 +891,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         }
         counters_.tally.structural_ties += decision.value().opening && decision.value().opening->straight_strut ? 1 : 0;
         way.here = std::move(next);
+        way.last_hold = fresh_hold;
         if (std::abs(record.strain) > options_.max_strain) {
             return too_far(record);
         }
@@ -894,7 +899,6 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
                   decision.value().perturbed);
             zeros_ = decision.value().zeros;
-            way.last_hold = fresh_hold;
             break;
         }
         way.opening = *decision.value().opening;

@@ -76,4 +76,22 @@ BOOST_AUTO_TEST_CASE(grains_that_hang_on_a_strut_without_force_do_not_hide_it) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(the_weakest_traction_is_never_that_of_a_grain_that_carries_nothing_at_the_turn) {
+    int after_turns = 0;
+    for (const std::uint64_t seed : {1U, 3U, 5U, 10U}) {
+        RunOptions options;
+        options.rule = OpeningRule::least_negative;
+        const Played run = play(prepared(36, seed), +1, 4, {}, options);
+        const auto& arcs = run.records.arcs;
+        for (std::size_t k = 1; k < arcs.size(); ++k) {
+            if (arcs[k - 1].power_turn && arcs[k].kind == "tension") {
+                BOOST_TEST(arcs[k].force < -1e-9, "seed " << seed << ", arc " << k + 1);
+                ++after_turns;
+            }
+        }
+    }
+    BOOST_TEST(after_turns > 30);
+    BOOST_TEST_MESSAGE(after_turns << " choices after power turns");
+}
+
 BOOST_AUTO_TEST_SUITE_END()

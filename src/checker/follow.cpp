@@ -218,9 +218,9 @@ Followed follow(const State<2>& from, const Motion& motion) {
         previous = v;
         double size = 0;
         power = 0;
-        for (std::size_t d = 0; d < kept.size() && !motion.power_load.empty(); ++d) {
-            const double part =
-                motion.power_load[kept.coordinate(static_cast<int>(d))] * v(static_cast<Eigen::Index>(d));
+        const std::vector<double> load_here = motion.power_load(q);
+        for (std::size_t d = 0; d < kept.size(); ++d) {
+            const double part = load_here[kept.coordinate(static_cast<int>(d))] * v(static_cast<Eigen::Index>(d));
             power += part;
             size += std::abs(part);
         }
@@ -251,8 +251,9 @@ Followed follow(const State<2>& from, const Motion& motion) {
                 ahead = -ahead;
             }
             double there = 0;
-            for (std::size_t d = 0; d < kept.size() && !motion.power_load.empty(); ++d) {
-                there += motion.power_load[kept.coordinate(static_cast<int>(d))] * ahead(static_cast<Eigen::Index>(d));
+            const std::vector<double> load_there = motion.power_load(next);
+            for (std::size_t d = 0; d < kept.size(); ++d) {
+                there += load_there[kept.coordinate(static_cast<int>(d))] * ahead(static_cast<Eigen::Index>(d));
             }
             closes = powered && there <= 0;
             if (closes) {

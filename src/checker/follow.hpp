@@ -5,6 +5,7 @@
 
 #include <isostat/contact/state.hpp>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,8 +19,10 @@ struct Motion {
     Contact closed;         ///< the contact that closes, or the coordinate that is held at a power turn
     double held_at = 0;     ///< its value there
     double displacement = 0;
-    std::vector<double> power_load; ///< per coordinate: the load whose power must stay positive
-    std::vector<Contact> touching;  ///< pairs that touch at the start without being contacts
+    /// Per coordinate, at given coordinates (true stresses change with the lengths): the load whose power must stay
+    /// positive.
+    std::function<std::vector<double>(const std::vector<double>&)> power_load;
+    std::vector<Contact> touching; ///< pairs that touch at the start without being contacts
 };
 
 struct Followed {

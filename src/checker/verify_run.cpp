@@ -182,8 +182,12 @@ class Replay {
             motion.displacement = event.displacement;
             Load<2> under = here_.state->load;
             under.stress[static_cast<std::size_t>(under.loaded_axis)] = event.stress;
-            motion.power_load = rattles ? under.infinitesimal : under.external_force(here_.state->packing);
-            motion.power_load.resize(state.packing.q.size(), 0.0);
+            motion.power_load = [&, at = here_.state->packing](const std::vector<double>& q) mutable {
+                at.q = q;
+                std::vector<double> pushing = rattles ? under.infinitesimal : under.external_force(at);
+                pushing.resize(q.size(), 0.0);
+                return pushing;
+            };
             for (const Gap& gap : here_.touching) {
                 motion.touching.push_back(gap.pair);
             }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -267,6 +268,29 @@ template <int Dim> class Follower {
         return sum;
     }
 
+    /// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.
+    Vector change_of_load(const Vector& v) const {
+        static_assert(Dim == 2);
+        if (power_.infinitesimal || power_.load->kind == LoadKind::nominal) {
+            return {};
+        }
+        Packing<Dim> there = q_;
+        for (std::size_t k = 0; k < there.q.size(); ++k) {
+            there.q[k] += v[k];
+        }
+        Vector change = power_.load->external_force(there);
+        const Vector here = power_.load->external_force(q_);
+        std::transform(change.begin(), change.end(), here.begin(), change.begin(), std::minus<>());
+        return change;
+    }
+    static double product(const Vector& maybe_empty, const Vector& v) {
+        double sum = 0;
+        for (std::size_t k = 0; k < maybe_empty.size(); ++k) {
+            sum += maybe_empty[k] * v[k];
+        }
+        return sum;
+    }
+
     /// First place inside a step of length s where the power seems to be negative although both ends are positive: the
     /// cubic with its value and its first two derivatives at q_, and its value at the end.
     std::optional<double> power_dip(double p_start, double p_end, double s) {
@@ -285,7 +309,9 @@ template <int Dim> class Follower {
             }
             return 3 * product / std::sqrt(square);
         };
-        const double p1 = s * power_of(q_, curvature_);
+        // p = F.t; with c = dt/ds and e = dc/ds: p' = F.c + t.DF t, p'' = F.e + 2 c.DF t + t.DF c; dead loads: DF = 0
+        const Vector turn = change_of_load(tangent_);
+        const double p1 = s * (power_of(q_, curvature_) + product(turn, tangent_));
         // A pass for the fourth number only where the curved part, as the other three show it, could bring the power
         // near 0. Like the cubic itself this is an estimate, not a proof.
         const double rest = std::abs(p_end - p_start - p1);
@@ -294,12 +320,15 @@ template <int Dim> class Follower {
         }
         chord(
             third, [&](const Vector& v) { return v[fastest_]; }, 0.0);
-        const double p2 = 0.5 * s * s * power_of(q_, y_);
+        const double p2 =
+            0.5 * s * s *
+            (power_of(q_, y_) + 2 * product(turn, curvature_) + product(change_of_load(curvature_), tangent_));
         const double p3 = p_end - p_start - p1 - p2;
+        // What the cubic misses at x is x^3 (1 - x) times a fourth derivative / 24, taken to be as much as p3.
         constexpr int samples = 32;
         for (int k = 1; k < samples; ++k) {
             const double x = static_cast<double>(k) / samples;
-            if (p_start + x * (p1 + x * (p2 + x * p3)) < 0) {
+            if (p_start + x * (p1 + x * (p2 + x * p3)) < x * x * x * (1 - x) * std::abs(p3)) {
                 return x * s;
             }
         }

@@ -24,8 +24,10 @@ void play(const State<2>& start, const std::vector<Segment>& segments, const std
           OpeningRule rule = OpeningRule::most_negative) {
     RunHeader header;
     header.program = "test";
-    header.settings = rule == OpeningRule::most_negative ? R"({"run":{"rule":"most_negative"}})"
-                                                         : R"({"run":{"rule":"least_negative"}})";
+    const std::string word = rule == OpeningRule::most_negative ? "most_negative"
+                             : rule == OpeningRule::steepest    ? "steepest"
+                                                                : "least_negative";
+    header.settings = R"({"run":{"rule":")" + word + R"("}})";
     header.states_every = 1;
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
@@ -166,6 +168,20 @@ BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete)
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
     BOOST_TEST((run.verdict == Verdict::proved));
     BOOST_TEST(run.turns_checked > 20);
+}
+
+// Under true stresses the power can turn and come back within one step of an arc (0, 1.2e-3, 7e-5, -1.3e-3, 2e-4, 9e-3
+// at intervals of 0.01): its derivatives count that the load changes too.
+BOOST_AUTO_TEST_CASE(a_power_that_turns_and_comes_back_under_true_stresses_is_not_stepped_over) {
+    const scratch::Folder folder;
+    Segment up;
+    up.equilibria = 4;
+    State<2> start = crafted::prepared(36, 7);
+    start.load.kind = LoadKind::true_stress;
+    play(start, {up}, folder / "run", OpeningRule::steepest);
+    const RunVerification run = verify_run(folder / "run");
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.turns_checked == 2);
 }
 
 BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {

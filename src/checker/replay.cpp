@@ -464,10 +464,11 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             sign = strut_order(place, other, opened).value_or(0);
         }
         const bool comes_first = most ? sign < 0 : rule == "least_negative" && sign > 0;
-        if (comes_first && place.is_held(other)) { // what turned back where it stood is put aside, without a record
-            return Objection{false, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}, unless that was "
-                                                "released and turned back where it stood",
-                                                e.name(opened), shown(chosen), rule, e.name(other), shown(force))};
+        if (comes_first && holds_may_explain(place, other, opened)) {
+            return Objection{false,
+                             fmt::format("{} opens with {}, but the rule '{}' takes {} with {}, unless a coordinate "
+                                         "held earlier was released and turned back where it stood",
+                                         e.name(opened), shown(chosen), rule, e.name(other), shown(force))};
         }
         if (comes_first) {
             return Objection{true, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),

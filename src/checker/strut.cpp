@@ -32,8 +32,8 @@ struct Bare {
     std::vector<double> load_room; ///< how far that may be off
     std::vector<std::vector<std::size_t>> around; ///< contacts of each disk that are not left out
 
-    /// `silent_holds_tie`: earlier ones that carry no finite force too; they may carry an infinitesimal one.
-    Bare(const Place& place, bool silent_holds_tie) {
+    /// `loose`: earlier held coordinates that tie no disk.
+    Bare(const Place& place, const std::vector<int>& loose) {
         const State<2>& state = *place.state;
         const Problem& problem = place.evidence->problem;
         const auto disks = static_cast<std::size_t>(problem.disks);
@@ -57,9 +57,9 @@ struct Bare {
         }
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const auto coordinate = static_cast<std::size_t>(state.contacts[l].i);
-            const bool silent = std::binary_search(place.zeros.begin(), place.zeros.end(), static_cast<int>(l));
-            if (state.contacts[l].kind == ContactKind::held && static_cast<int>(l) != place.fresh &&
-                coordinate < 2 * disks && (silent_holds_tie || !silent)) {
+            const int row = static_cast<int>(l);
+            if (state.contacts[l].kind == ContactKind::held && row != place.fresh && coordinate < 2 * disks &&
+                std::find(loose.begin(), loose.end(), row) == loose.end()) {
                 movable[coordinate / 2] = false;
             }
         }
@@ -171,9 +171,11 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b) {
     return difference.lower <= room && difference.upper >= -room;
 }
 
-std::vector<bool> without_force(const Place& place) {
+namespace {
+
+std::vector<bool> without_force(const Place& place, const std::vector<int>& loose) {
     const State<2>& state = *place.state;
-    const Bare bare(place, false);
+    const Bare bare(place, loose);
     std::vector<bool> nothing = bare.left_out;
     for (std::size_t l = 0; l < nothing.size(); ++l) {
         const Contact& c = state.contacts[l];
@@ -189,6 +191,49 @@ std::vector<bool> without_force(const Place& place) {
     return nothing;
 }
 
+/// Earlier held coordinates whose multipliers are no larger than the places of turns are good for: released, they may
+/// turn back where they stand.
+std::vector<int> that_may_rest(const Place& place) {
+    const std::vector<Range>& force = place.evidence->forces;
+    const auto size = [&](std::size_t l) { return std::max<Rational>(abs(force[l].lower), abs(force[l].upper)); };
+    Rational largest = 0;
+    for (std::size_t l = 0; l < force.size(); ++l) {
+        largest = std::max(largest, size(l));
+    }
+    std::vector<int> rows;
+    for (std::size_t l = 0; l < force.size(); ++l) {
+        if (place.is_held(l) && static_cast<int>(l) != place.fresh && size(l) <= Rational(turn_tolerance) * largest) {
+            rows.push_back(static_cast<int>(l));
+        }
+    }
+    return rows;
+}
+
+} // namespace
+
+std::vector<bool> without_force(const Place& place) {
+    return without_force(place, place.zeros); // a hold without a finite force ties nothing in the finite loads
+}
+
+bool holds_may_explain(const Place& place, std::size_t a, std::size_t b) {
+    if (place.is_held(a)) {
+        return true; // what turned back where it stood is put aside, without a record
+    }
+    const std::vector<int> rows = that_may_rest(place);
+    if (rows.empty()) {
+        return false;
+    }
+    const std::vector<Range>& force = place.evidence->forces;
+    Rational room = 0;
+    for (const int row : rows) {
+        const Range& m = force[static_cast<std::size_t>(row)];
+        room += std::max<Rational>(abs(m.lower), abs(m.upper));
+    }
+    const Range difference = force[a] - force[b];
+    return (difference.lower <= room && difference.upper >= -room) ||
+           (place.fresh >= 0 && without_force(place, rows)[a]);
+}
+
 std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b) {
     const State<2>& state = *place.state;
     const Contact& first = state.contacts[a];
@@ -196,7 +241,7 @@ std::optional<int> strut_order(const Place& place, std::size_t a, std::size_t b)
     if (first.kind == ContactKind::held || second.kind == ContactKind::held) {
         return std::nullopt;
     }
-    const Bare bare(place, true);
+    const Bare bare(place, {});
     if (bare.left_out[a] || bare.left_out[b]) {
         return std::nullopt;
     }

@@ -18,6 +18,12 @@ bool same_at_turn(const Place& place, std::size_t a, std::size_t b);
 /// a disk when others of these are left out. \pre a coordinate is held just now.
 std::vector<bool> without_force(const Place& place);
 
+/// Whether contact `a` may have lost against `b` because of coordinates held earlier: `a` is one, or the multipliers of
+/// some are so small that they may have been released and turned back where they stood (of which there is no record),
+/// and the two forces differ by no more than these, or that of `a` is 0 at the present turn without them. Then the
+/// order of the two refutes nothing.
+bool holds_may_explain(const Place& place, std::size_t a, std::size_t b);
+
 /// Order of the forces of two contacts that alone hold a group of free disks, as the infinitesimal loads on the group
 /// make it: -1 when that of `a` is smaller. 0: these loads stand across the strut, up to its bend and
 /// `turn_tolerance`. Nothing: the two do not cut off such a group.

@@ -217,9 +217,9 @@ template <int Dim> struct Bare {
         const Vector<Dim> n = push(statics, a, disk);
         const Vector<Dim> m = push(statics, b, disk);
         const double cross = n[0] * m[1] - n[1] * m[0];
-        // The turn is located, and the normals are known, to far less: those of a strut fail by many orders.
+        // Far more than the place of the turn is off by; the normals of a strut fail by many orders.
         constexpr double well_apart = 0x1p-16;
-        if (!(std::abs(cross) > well_apart)) {
+        if (!(std::abs(cross) > well_apart + 4 * statics.normal_uncertainty())) {
             return false;
         }
         const Vector<Dim>& g = load[disk];

@@ -44,6 +44,7 @@ struct OpeningDecision {
 /// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its
 /// multiplier is 0 by construction and does not compete. The two ends of a strut that such a turn leaves straight carry
 /// exactly the same force there (S4): by the rules that compare forces they are ordered by the infinitesimal loads.
+/// Contacts that carry nothing at such a turn (S4 (c)) do not compete; `undecided` when nothing else is negative.
 /// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 /// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that

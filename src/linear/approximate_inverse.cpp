@@ -131,6 +131,7 @@ struct ApproximateInverse::Base {
     std::vector<int> block_rows, block_columns; ///< empty: the whole matrix
     std::vector<int> row_order, column_order;   ///< of the last full analysis, exchanged columns last
     int entries_then = 0;                       ///< of the factors made with it first
+    double operations = 0;                      ///< that made the factors
     explicit Base(const sparse::Matrix<double>& m) : matrix(m) {
         klu_defaults(&common);
         common.ordering = sparse::fill_reducing_order(matrix.rows);
@@ -143,6 +144,9 @@ struct ApproximateInverse::Base {
         if (symbolic != nullptr) {
             numeric = klu_factor(mutable_data(matrix.start), mutable_data(matrix.row), mutable_data(matrix.value),
                                  symbolic, &common);
+        }
+        if (numeric != nullptr && klu_flops(symbolic, numeric, &common) != 0) {
+            operations = common.flops;
         }
     }
     [[nodiscard]] int entries() const { return numeric != nullptr ? numeric->lnz + numeric->unz : 0; }
@@ -196,6 +200,7 @@ ApproximateInverse::ApproximateInverse(const sparse::Matrix<double>& matrix, std
         base->entries_then = base->entries();
     }
     base_ = std::move(base);
+    make_schedule();
 }
 
 ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& matrix) const {
@@ -236,7 +241,7 @@ ApproximateInverse ApproximateInverse::renewed(const sparse::Matrix<double>& mat
 }
 
 void ApproximateInverse::make_schedule() {
-    if (schedule_ == nullptr && valid() && base_->block_rows.empty()) {
+    if (valid()) {
         schedule_ = std::make_shared<const SolveSchedule>(*base_->symbolic, *base_->numeric);
     }
 }
@@ -282,10 +287,12 @@ double ApproximateInverse::relative_cost() const {
     for (const auto& exchange : exchanges_) {
         work += static_cast<double>(exchange->many.size());
     }
-    const double entries =
-        valid() ? static_cast<double>(base_->numeric->lnz) + static_cast<double>(base_->numeric->unz) : 1.0;
     // An entry of a dense vector costs about a sixth of one of the factors, which is reached through its index.
-    return 1 + work / (6 * entries);
+    return 1 + work / (6 * std::max(1.0, static_cast<double>(base_->entries())));
+}
+
+double ApproximateInverse::renewal_cost() const {
+    return base_->operations / std::max(1.0, static_cast<double>(base_->entries()));
 }
 
 ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<double>& after) const {
@@ -320,7 +327,6 @@ ApproximateInverse ApproximateInverse::exchanged(int slot, const sparse::Matrix<
     }
     ApproximateInverse next(*this);
     next.exchanges_.push_back(std::move(exchange));
-    next.make_schedule();
     next.mechanism_.reset();
     next.mechanism_slot_ = -1;
     return next;

@@ -8,16 +8,20 @@
 
 namespace isostat {
 
-/// Substitutions x_t <- (x_t - sum_e value_e x_index_e) scale, one after the other, that make a solve with P A Q = L U
-/// + F (block triangular). Inside each triangle they are ordered by level of dependence and then by length, so that
-/// neighbours do not wait for each other and a branch predictor knows the lengths: half the time of column by column.
+/// Solves with P A Q = L U + F (block upper triangular, F above the blocks). What bounds a triangular solve is the
+/// number of loads, and the two unknowns of a grain make successive columns of L, and rows of U, with nearly the same
+/// pattern: they are taken two at a time, with zeros where they differ, so that an index and an unknown serve two
+/// entries. Both solves read the same lines, one way forwards (each unknown, once known, is taken out of the others),
+/// the other way backwards (each unknown collects from the others). Inside a block the lines are ordered by level of
+/// dependence and then by length, so that neighbours do not wait for each other and a branch predictor knows the
+/// lengths.
 class SolveSchedule {
   public:
     /// Cost: about a quarter of the factorisation.
     SolveSchedule(klu_symbolic& symbolic, klu_numeric& numeric);
-    /// x <- A^-1 x, and x <- A^-T x.
-    void solve(std::span<double> x) const { matrix_.run(x, rows_, columns_); }
-    void solve_transposed(std::span<double> x) const { transposed_.run(x, columns_, rows_); }
+    /// x <- A^-1 x, and x <- A^-T x. Zeros that follow from the pattern stay exact.
+    void solve(std::span<double> x) const;
+    void solve_transposed(std::span<double> x) const;
 
     /// A sparse matrix by columns or rows.
     struct Lines {
@@ -28,21 +32,42 @@ class SolveSchedule {
     };
 
   private:
-    struct Step {
-        int target, end;
-        double scale;
+    /// L by columns, or U by rows: what depends on a line has a greater number.
+    class Triangle {
+      public:
+        Triangle(const Lines& lines, const std::vector<int>& blocks);
+        /// Block b: x <- T^-1 x for a triangle by columns, T^-T x for one by rows, and the other way round. `scale`:
+        /// inverse diagonal, not read where that is known to be 1.
+        template <bool unit> void forwards(std::size_t b, const double* scale, double* x) const;
+        template <bool unit> void backwards(std::size_t b, const double* scale, double* x) const;
+
+      private:
+        /// One line, or this and the next. The values of two lines are interleaved, after the entry that links them.
+        struct Step {
+            int line, entries;
+            bool two;
+        };
+        struct Place {
+            std::size_t step, index, value;
+        };
+        std::vector<Place> block_; ///< where each begins, and the end of the last
+        std::vector<Step> steps_;
+        std::vector<int> index_;
+        std::vector<double> value_;
     };
-    struct Program {
-        std::vector<Step> steps;
-        std::vector<int> index;
-        std::vector<double> value;
-        void run(std::span<double> rhs, const std::vector<int>& in, const std::vector<int>& out) const;
+    /// An entry of F.
+    struct Beside {
+        int row, column;
+        double value;
     };
-    /// Block by block the first triangle, which also takes the entries of the blocks before, and the second.
-    static Program make(const Lines& first, const Lines& second, const Lines& beside, const std::vector<int>& blocks,
-                        bool upwards);
+    struct Parts;
+    explicit SolveSchedule(Parts parts);
+
     std::vector<int> rows_, columns_; ///< P and Q
-    Program matrix_, transposed_;
+    Triangle lower_, upper_;
+    std::vector<double> scale_; ///< inverse diagonal of U
+    std::vector<Beside> beside_;
+    std::vector<std::size_t> beside_start_; ///< by block of the row
 };
 
 } // namespace isostat

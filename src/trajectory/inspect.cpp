@@ -149,7 +149,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
             auto described = describe(vertex, state.load);
             if (described.ok()) {
                 const Verdict before = record.verdict;
-                record = described.value();
+                record = described.value().record;
                 record.decided_by = std::max(record.decided_by, decision.value().rung);
                 record.margin = std::min(record.margin, decision.value().margin);
                 inspection.equilibrium = inspection.remark.empty();

@@ -96,8 +96,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
                            fmt::format("the contacts are structurally singular at the end of {}", names())};
         }
         std::optional<ApproximateInverse> approximate;
-        wear.add((path.passes + force_passes) * factorisation->approximate().relative_cost(),
-                 factorisation->approximate().exchanges());
+        wear.add(path.passes + force_passes, factorisation->approximate());
         if (auto renewed = renewal.after(next->slot(), next->matrix())) {
             approximate = std::move(renewed);
             wear.renew();
@@ -109,7 +108,7 @@ Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, co
             to_prove = *next;
         }
         auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
-        if (wear.out()) {
+        if (wear.out(*approximate)) {
             renewal.begin(*approximate, unproved.shared_matrix());
         }
         const std::vector<double> guess = here ? std::move(here->force) : std::vector<double>();

@@ -73,8 +73,9 @@ template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, 
     return forces;
 }
 
-template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load) {
-    EquilibriumRecord<Dim> record;
+template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load) {
+    Description<Dim> description;
+    EquilibriumRecord<Dim>& record = description.record;
     record.margin = std::numeric_limits<double>::infinity();
     record.decided_by = Rung::combinatorial;
     const double sigma = loaded_stress(load);
@@ -119,6 +120,7 @@ template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, 
         (direction > 0 ? record.opens_high : record.opens_low) = end.unbounded ? none : contacts[end.opens.index()];
         record.margin = std::min(record.margin, end.margin);
         record.decided_by = std::max(record.decided_by, end.rung);
+        description.limit[direction > 0 ? 1 : 0] = end;
     }
     // After the limits: they may have climbed, and the bounds are then those of the better solution.
     record.force_bound = vertex.statics.bound(sigma);
@@ -136,10 +138,10 @@ template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, 
             record.min_force_contact = contacts[l];
         }
     }
-    return record;
+    return description;
 }
 
-template Result<EquilibriumRecord<2>> describe<2>(Vertex<2>&, const Load<2>&);
+template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
 template std::vector<int> rattlers<2>(const Vertex<2>&);
 template std::vector<double> finite_forces<2>(const Vertex<2>&, const Load<2>&);
 

@@ -6,12 +6,20 @@
 
 #include <isostat/trajectory/records.hpp>
 
+#include <array>
+#include <optional>
+
 namespace isostat {
 
-/// Fills everything that follows from the vertex and its load: counts, supported interval, bounds, residuals. The
-/// numbers of the run (number, segment, arcs, seconds) are left to the caller. Failure: a limit of the supported
-/// interval is not decided, or a check fails.
-template <int Dim> Result<EquilibriumRecord<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
+template <int Dim> struct Description {
+    EquilibriumRecord<Dim> record;
+    std::array<std::optional<LoadLimit>, 2> limit; ///< lower and upper end; none while a coordinate is held
+};
+
+/// Everything that follows from the vertex and its load: counts, supported interval, bounds, residuals. The numbers of
+/// the run (number, segment, arcs, seconds) are left to the caller. Failure: a limit of the supported interval is not
+/// decided, or a check fails.
+template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
 
 /// Disks without a force-carrying contact.
 template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
@@ -19,7 +27,7 @@ template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
 /// The finite forces at the load, one per contact.
 template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load);
 
-extern template Result<EquilibriumRecord<2>> describe<2>(Vertex<2>&, const Load<2>&);
+extern template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
 extern template std::vector<int> rattlers<2>(const Vertex<2>&);
 extern template std::vector<double> finite_forces<2>(const Vertex<2>&, const Load<2>&);
 

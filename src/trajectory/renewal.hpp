@@ -12,25 +12,27 @@
 namespace isostat {
 
 /// When new factors are due: as soon as an arc costs more than the average since the last ones, their making included,
-/// which keeps that average smallest. Counts passes, never seconds.
+/// which keeps that average smallest. What an arc costs is smoothed over a few: single ones cost twice as much as
+/// others. Counts passes, never seconds.
 class Wear {
   public:
-    void add(double passes, int exchanges) {
-        last_ = passes;
-        sum_ += passes;
-        exchanges_ = exchanges;
+    /// An arc that took so many passes of `inverse`.
+    void add(int passes, const ApproximateInverse& inverse) {
+        const double cost = passes * inverse.relative_cost();
+        recent_ = arcs_ == 0 ? cost : recent_ + (cost - recent_) / smoothed_over;
+        sum_ += cost;
+        ++arcs_;
     }
-    [[nodiscard]] bool out() const {
-        return exchanges_ > 0 && last_ * (exchanges_ + 1) > factorisation_in_passes + sum_;
+    [[nodiscard]] bool out(const ApproximateInverse& inverse) const {
+        return inverse.exchanges() > 0 && recent_ * arcs_ > inverse.renewal_cost() + sum_;
     }
     void renew() { *this = {}; }
 
   private:
-    /// Less than KLU takes (50 at n = 1936, 4900): with two threads it is done beside the arcs.
-    static constexpr double factorisation_in_passes = 40;
-    double last_ = 0;
+    static constexpr double smoothed_over = 4;
+    double recent_ = 0;
     double sum_ = 0;
-    int exchanges_ = 0;
+    int arcs_ = 0;
 };
 
 /// New factors made beside the arcs, which go on with the old ones meanwhile.
@@ -40,6 +42,7 @@ class Renewal {
     void begin(const ApproximateInverse& old, std::shared_ptr<const sparse::Matrix<double>> matrix) {
         if (!factors_.pending()) {
             slots_.clear();
+            arcs_left_ = std::clamp(static_cast<int>(old.renewal_cost() / passes_beside_an_arc), 1, most_arcs_beside);
             factors_ = Promised<ApproximateInverse>([old, matrix = std::move(matrix)] { return old.renewed(*matrix); });
         }
     }
@@ -51,10 +54,9 @@ class Renewal {
         if (std::find(slots_.begin(), slots_.end(), slot) == slots_.end()) {
             slots_.push_back(slot);
         }
-        if (++arcs_ < arcs_beside) {
+        if (--arcs_left_ > 0) {
             return std::nullopt;
         }
-        arcs_ = 0;
         ApproximateInverse inverse = factors_.take();
         for (const int missed : slots_) {
             inverse = inverse.exchanged(missed, matrix);
@@ -63,12 +65,13 @@ class Renewal {
     }
 
   private:
-    /// As many as take a core about the time of new factors. A fixed number: when they are ready depends on the
-    /// machine, when they are taken must not.
-    static constexpr int arcs_beside = 2;
+    /// A core makes the new factors while the other goes so far. By count of operations: when they are ready depends
+    /// on the machine, when they are taken must not.
+    static constexpr double passes_beside_an_arc = 9;
+    static constexpr int most_arcs_beside = 8;
     Promised<ApproximateInverse> factors_;
     std::vector<int> slots_; ///< exchanged since
-    int arcs_ = 0;
+    int arcs_left_ = 0;
 };
 
 } // namespace isostat

@@ -163,7 +163,8 @@ template <int Dim> class Run {
     KeptCandidates kept_; ///< of `candidates_`
     InverseBoundCache bound_cache_;
     EquilibriumRecord<Dim> record_;
-    double margin_ = infinity; ///< of the decisions since the last equilibrium
+    std::array<std::optional<LoadLimit>, 2> limits_; ///< of `vertex_`, as `describe` found them
+    double margin_ = infinity;                       ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
     std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
 };
@@ -1051,7 +1052,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
     if (!described.ok()) {
         return located(described.failure(), fmt::format("equilibrium at sigma = {:.17g}", sigma()));
     }
-    EquilibriumRecord<Dim> record = described.value();
+    EquilibriumRecord<Dim>& record = described.value().record;
+    limits_ = described.value().limit;
     // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
     const double allowance = 4 * vertex_->enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex_->packing, allowance, &candidates_);
@@ -1128,7 +1130,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         if (!described.ok()) {
             return located(described.failure(), "start");
         }
-        record_ = described.value();
+        record_ = described.value().record;
+        limits_ = described.value().limit;
         return std::nullopt;
     }
     count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung);
@@ -1177,7 +1180,10 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
         if (vertex_->perturbed) {
             vertex_->perturbed->statics.log.clear();
         }
-        auto found = find_limit(vertex_->statics, sigma(), segment.direction, first_order(*vertex_));
+        const std::optional<LoadLimit>& known = limits_[segment.direction > 0 ? 1 : 0];
+        auto found = known && !perturbs() // under `perturb` ties are written to the log once more
+                         ? Result<LoadLimit>(*known)
+                         : find_limit(vertex_->statics, sigma(), segment.direction, first_order(*vertex_));
         if (!found.ok()) {
             outcome.failure = located(found.failure(), fmt::format("limit of equilibrium {}", counters_.equilibria));
             return outcome;

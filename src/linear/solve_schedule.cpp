@@ -1,7 +1,6 @@
 #include "linear/solve_schedule.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstring>
 #include <memory>

@@ -17,7 +17,7 @@ namespace isostat {
 /// lengths.
 class SolveSchedule {
   public:
-    /// Cost: about a quarter of the factorisation.
+    /// Cost: about half of the factorisation.
     SolveSchedule(klu_symbolic& symbolic, klu_numeric& numeric);
     /// x <- A^-1 x, and x <- A^-T x. Zeros that follow from the pattern stay exact.
     void solve(std::span<double> x) const;

@@ -1180,8 +1180,10 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
         if (vertex_->perturbed) {
             vertex_->perturbed->statics.log.clear();
         }
+        // Where the statics have climbed since, the same question has an answer with other bits; a resumed run, whose
+        // statics climb at other moments, must find the same. Under `perturb` ties are written to the log once more.
         const std::optional<LoadLimit>& known = limits_[segment.direction > 0 ? 1 : 0];
-        auto found = known && !perturbs() // under `perturb` ties are written to the log once more
+        auto found = known && !perturbs() && vertex_->statics.rung() == Rung::double_bound
                          ? Result<LoadLimit>(*known)
                          : find_limit(vertex_->statics, sigma(), segment.direction, first_order(*vertex_));
         if (!found.ok()) {

@@ -1,9 +1,12 @@
+#include "support/threads.hpp"
+
 #include <isostat/io/state_file.hpp>
 #include <isostat/linear/factorisation.hpp>
 
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -95,6 +98,33 @@ BOOST_AUTO_TEST_CASE(exchanged_operators_solve_with_the_exchanged_matrix) {
         check_solves(inverse, next, rhs);
     }
     BOOST_TEST(inverse.exchanges() == 4);
+}
+
+BOOST_AUTO_TEST_CASE(copies_of_fresh_factors_solve_side_by_side_like_one_alone) {
+    const auto proved = IsostaticStructure<2>::prove(vertex400().packing, vertex400().contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    const ApproximateInverse inverse(proved.value().matrix());
+    const std::vector<double> rhs = some_numbers(static_cast<std::size_t>(proved.value().size()));
+    std::vector<double> forces = rhs;
+    std::vector<double> velocities = rhs;
+    inverse.forces(forces);
+    inverse.velocities(velocities);
+    const Threads two(2);
+    std::array<int, 2> wrong{};
+    parallel_pieces(2, [&](std::size_t piece) {
+        const ApproximateInverse own(inverse);
+        for (int k = 0; k < 2000; ++k) {
+            std::vector<double> x = rhs;
+            if (piece == 0) {
+                own.forces(x);
+            } else {
+                own.velocities(x);
+            }
+            wrong[piece] += x != (piece == 0 ? forces : velocities) ? 1 : 0;
+        }
+    });
+    BOOST_TEST(wrong[0] == 0);
+    BOOST_TEST(wrong[1] == 0);
 }
 
 BOOST_AUTO_TEST_CASE(renewed_factors_are_those_of_the_new_matrix) {

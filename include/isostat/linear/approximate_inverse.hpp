@@ -20,7 +20,7 @@ class SolveSchedule;
 class ApproximateInverse {
   public:
     /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern (`Ordering::symbolic`), when there is
-    /// one. Cost: 2 ms at N = 3900, 9 ms at N = 9800, a fifth of it for the layout of solves, and 2 to 6 ms for the
+    /// one. Cost: 3 ms at N = 3900, 13 ms at N = 9800, a third of it for the layout of solves, and 2 to 6 ms for the
     /// analysis.
     explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
 
@@ -51,8 +51,8 @@ class ApproximateInverse {
     [[nodiscard]] int exchanges() const { return static_cast<int>(exchanges_.size()); }
     /// Cost of a pass with the exchanges, in units of one without.
     [[nodiscard]] double relative_cost() const;
-    /// Cost of new factors (`renewed`) in the same units, from the operations that the present ones took: about 18 at
-    /// n = 1936, 46 at 4900. An estimate; it depends on no clock.
+    /// Cost of new factors (`renewed`) in the same units, from the operations that the present ones took: 18 to 27 at
+    /// n = 1936, 46 to 80 at 4900. An estimate; it depends on no clock.
     [[nodiscard]] double renewal_cost() const;
     /// False when memory was short: every result is NaN.
     [[nodiscard]] bool valid() const;

@@ -1,4 +1,5 @@
 #include "linear/solve_schedule.hpp"
+#include "linear/two.hpp"
 
 #include <isostat/core/work.hpp>
 #include <isostat/linear/approximate_inverse.hpp>
@@ -75,23 +76,25 @@ template <std::size_t count> void add_each(const double* const* v, const double*
 }
 
 template <std::size_t count> void dot_each(const double* const* v, std::span<const double> x, double* product) {
-    constexpr std::size_t lanes = 4;
-    std::array<std::array<double, lanes>, count> sum{};
+    // Written in pairs: left alone, the compiler shuffles.
+    std::array<Two, count> low{}; // sums over i = 0, 1 mod 4
+    std::array<Two, count> high{};
     std::size_t i = 0;
-    for (; i + lanes <= x.size(); i += lanes) {
+    for (; i + 4 <= x.size(); i += 4) {
+        const Two x_low = two_at(x.data() + i);
+        const Two x_high = two_at(x.data() + i + 2);
         for (std::size_t k = 0; k < count; ++k) {
-            for (std::size_t lane = 0; lane < lanes; ++lane) {
-                sum[k][lane] += v[k][i + lane] * x[i + lane];
-            }
+            low[k] += two_at(v[k] + i) * x_low;
+            high[k] += two_at(v[k] + i + 2) * x_high;
         }
     }
     for (; i < x.size(); ++i) {
         for (std::size_t k = 0; k < count; ++k) {
-            sum[k][0] += v[k][i] * x[i];
+            low[k][0] += v[k][i] * x[i];
         }
     }
     for (std::size_t k = 0; k < count; ++k) {
-        product[k] = (sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3]);
+        product[k] = (low[k][0] + low[k][1]) + (high[k][0] + high[k][1]);
     }
 }
 

@@ -20,7 +20,7 @@ class SolveSchedule;
 class ApproximateInverse {
   public:
     /// Factorises `matrix` (square). `symbolic` is the analysis of its pattern (`Ordering::symbolic`), when there is
-    /// one. Cost: 3 ms at N = 3900, 13 ms at N = 9800, a third of it for the layout of solves, and 2 to 6 ms for the
+    /// one. Cost: 3 ms at N = 3900, 9 ms at N = 9800, a third of it for the layout of solves, and 2 to 6 ms for the
     /// analysis.
     explicit ApproximateInverse(const sparse::Matrix<double>& matrix, std::shared_ptr<void> symbolic = {});
 

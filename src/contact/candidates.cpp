@@ -92,12 +92,15 @@ template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packin
     if (!packing.fixed.empty()) {
         std::erase_if(list.contacts, [&](const Contact& contact) { return !can_move(packing, contact); });
     }
+    const std::size_t pairs = list.contacts.size();
     for_each_wall_contact(packing, [&](const Contact& contact) {
         if (gap(packing, contact) - wall_rounding(packing, contact) < list.reach && can_move(packing, contact)) {
             list.contacts.push_back(contact);
         }
     });
-    std::sort(list.contacts.begin(), list.contacts.end());
+    const auto walls = list.contacts.begin() + static_cast<std::ptrdiff_t>(pairs);
+    std::sort(walls, list.contacts.end());
+    std::inplace_merge(list.contacts.begin(), walls, list.contacts.end());
     return list;
 }
 

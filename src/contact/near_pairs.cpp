@@ -1,5 +1,7 @@
 #include "contact/near_pairs.hpp"
 
+#include "contact/pair_distance.hpp"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Regular_triangulation_2.h>
 #include <CGAL/Regular_triangulation_vertex_base_2.h>
@@ -25,34 +27,30 @@ constexpr double largest_ratio = 1e5;      // beyond it the rounding of R_max^2 
 constexpr double largest_length = 1e100;   // squares neither overflow
 constexpr double smallest_length = 1e-100; // nor underflow
 
-/// 8 u times the lengths that enter bounds the rounding of distance - (R_i + R_j), for any coordinates.
-double rounding(double distance, double radii) {
-    return 8 * u * (distance + radii);
-}
-
-struct Distance {
-    double gap;
-    double error;
-};
-
-/// \pre lengths between `smallest_length` and `largest_length`.
+/// \pre `distances_are_plain`.
 Distance measure(const Packing<2>& packing, std::size_t i, std::size_t j) {
     const double dx = packing.q[2 * j] - packing.q[2 * i];
     const double dy = packing.q[2 * j + 1] - packing.q[2 * i + 1];
-    const double distance = std::sqrt(dx * dx + dy * dy);
-    const double radii = packing.radius[i] + packing.radius[j];
-    return {distance - radii, rounding(distance, radii)};
+    return distance_of(dx * dx + dy * dy, packing.radius[i] + packing.radius[j]);
 }
 
 /// The same for any lengths: hypot neither overflows nor underflows, and its error is below 1 ulp.
 Distance measure_any(const Packing<2>& packing, std::size_t i, std::size_t j) {
     const double distance =
         std::hypot(packing.q[2 * j] - packing.q[2 * i], packing.q[2 * j + 1] - packing.q[2 * i + 1]);
-    const double radii = packing.radius[i] + packing.radius[j];
-    return {distance - radii, rounding(distance, radii)};
+    return distance_between(distance, packing.radius[i] + packing.radius[j]);
 }
 
-/// Sorts disk pairs in linear time: buckets by the first disk, each a few pairs long.
+} // namespace
+
+bool distances_are_plain(const Packing<2>& packing) {
+    const double farthest = std::accumulate(packing.q.begin(), packing.q.end(), 0.0,
+                                            [](double m, double x) { return std::max(m, std::abs(x)); });
+    return packing.min_radius() >= smallest_length && packing.max_radius() <= largest_length &&
+           farthest <= largest_length;
+}
+
+// Buckets by the first disk, each a few pairs long.
 void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
     std::vector<std::size_t> end(disk_count + 1, 0);
     for (const Contact& pair : pairs) {
@@ -71,8 +69,6 @@ void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
     pairs = std::move(sorted);
 }
 
-} // namespace
-
 template <>
 std::optional<std::vector<Contact>> near_pairs_by_triangulation<2>(const Packing<2>& packing, double reach) {
     using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -83,10 +79,7 @@ std::optional<std::vector<Contact>> near_pairs_by_triangulation<2>(const Packing
 
     const double smallest = packing.min_radius();
     const double largest = packing.max_radius();
-    const double farthest = std::accumulate(packing.q.begin(), packing.q.end(), 0.0,
-                                            [](double m, double x) { return std::max(m, std::abs(x)); });
-    if (smallest < smallest_length || largest > largest_length || farthest > largest_length ||
-        largest > largest_ratio * smallest) {
+    if (!distances_are_plain(packing) || largest > largest_ratio * smallest) {
         return std::nullopt;
     }
     std::vector<std::pair<Triangulation::Weighted_point, int>> points;
@@ -151,6 +144,9 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
 
 template <int Dim> std::vector<Contact> near_pairs(const Packing<Dim>& packing, double reach) {
     assert(reach > 0 && reach <= 0.82 * (1 + 2 * u) * packing.min_radius());
+    if (auto pairs = near_pairs_by_cells(packing, reach)) {
+        return std::move(*pairs);
+    }
     if (auto pairs = near_pairs_by_triangulation(packing, reach)) {
         return std::move(*pairs);
     }

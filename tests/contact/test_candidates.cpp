@@ -174,6 +174,33 @@ BOOST_AUTO_TEST_CASE(sweep_and_triangulation_give_the_same_list) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(cells_and_sweep_give_the_same_list) {
+    Random random(98);
+    for (const double ratio : {1.0, 2.0, 4.0}) {
+        Packing<2> packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
+        const double reach = 0.82 * packing.min_radius();
+        for (const double away : {0.0, 1e3, 1e9}) { // a stray disk makes large cells
+            append(packing, packing.q[0] + away, packing.q[1] - 3, packing.min_radius());
+            const auto by_cells = near_pairs_by_cells(packing, reach);
+            BOOST_REQUIRE(by_cells.has_value());
+            BOOST_TEST((*by_cells == near_pairs_by_sweep(packing, reach)));
+        }
+    }
+    // All on a line, all in one place, and neighbours at all distances from a border of their cells.
+    for (const double step : {0.0, 1e-3, 2.4, 2.42, 2.424, 2.5}) {
+        Packing<2> packing = square_lattice(6, step);
+        check_against_every_pair(packing, 0.82);
+        for (std::size_t k = 1; k < packing.q.size(); k += 2) {
+            packing.q[k] = 1;
+        }
+        const auto by_cells = near_pairs_by_cells(packing, 0.82 * packing.min_radius());
+        BOOST_REQUIRE(by_cells.has_value());
+        BOOST_TEST((*by_cells == near_pairs_by_sweep(packing, 0.82 * packing.min_radius())));
+    }
+    const Packing<2> wide = grown_cluster(100, 5, random, [&] { return random.real(0, 0.5); });
+    BOOST_TEST(!near_pairs_by_cells(wide, 0.1 * wide.min_radius()).has_value());
+}
+
 BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
     for (const double scale : {0x1p-1000, 0x1p-500, 0x1p-40, 1.0, 0x1p40, 0x1p500, 0x1p1000}) {
         Packing<2> packing = square_lattice(4, 2.25 * scale);

@@ -20,20 +20,6 @@ constexpr std::size_t kept_directions = 4;
 constexpr double cancelled = 1e-12;     ///< of the square of an image: as much as 1e-10 of it is rounding
 constexpr double residual_left = 1e-12; ///< of the size of the unknowns and the right-hand side
 
-double largest(std::span<const double> x) {
-    std::array<double, 4> value{}; // chains that do not wait for each other
-    std::size_t i = 0;
-    for (; i + 4 <= x.size(); i += 4) {
-        for (std::size_t k = 0; k < 4; ++k) {
-            value[k] = std::max(value[k], std::abs(x[i + k]));
-        }
-    }
-    for (; i < x.size(); ++i) {
-        value[0] = std::max(value[0], std::abs(x[i]));
-    }
-    return std::max(std::max(value[0], value[1]), std::max(value[2], value[3]));
-}
-
 /// A direction and its image under the matrix.
 struct Direction {
     std::vector<double> step, image;
@@ -174,15 +160,12 @@ struct Factorisation::Implementation {
             if (!std::isfinite(now.square) || !std::isfinite(length)) { // maxima below do not see a NaN
                 return false;
             }
-            double change = 0;
-            double size = 0;
             for (std::size_t i = 0; i < n; ++i) {
-                const double step = length * now.step[i];
-                x[i] += step;
+                x[i] += length * now.step[i];
                 r[i] -= length * now.image[i];
-                change = std::max(change, std::abs(step));
-                size = std::max(size, std::abs(x[i]));
             }
+            const double change = std::abs(length) * largest(now.step);
+            const double size = largest(x);
             if (!(change < std::numeric_limits<double>::infinity())) {
                 return false;
             }
@@ -283,6 +266,14 @@ std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStruc
                                                    {},
                                                    {}});
     return block;
+}
+
+Factorisation Factorisation::fresh_copy() const {
+    assert(is_fresh());
+    Factorisation copy;
+    // NOLINTNEXTLINE(modernize-make-unique): an aggregate
+    copy.implementation_.reset(new Implementation{implementation_->matrix, implementation_->inverse, true, 0, {}, {}});
+    return copy;
 }
 
 Factorisation::~Factorisation() = default;

@@ -13,17 +13,22 @@ void Acceleration::improve(std::vector<double>& y) {
         latest.y.resize(y.size());
         std::transform(y.begin(), y.end(), y_.begin(), latest.y.begin(),
                        [](double now, double before) { return now - before; });
+        for (std::size_t k = 0; k < std::min(count_, depth); ++k) {
+            const double product = dot(latest.y, changes_[k].y);
+            products_[(count_ - 1) % depth][k] = products_[k][(count_ - 1) % depth] = product;
+        }
     }
     y_ = y;
     // Least squares |y - sum_j c_j dy_j|, youngest first, by elimination; what repeats the younger ones is left out.
     const std::size_t known = std::min(count_, depth);
     std::array<std::array<double, depth>, depth> gram{};
     std::array<double, depth> c{};
-    const auto change = [&](std::size_t age) -> const Change& { return changes_[(count_ - 1 - age) % depth]; };
+    const auto place = [&](std::size_t age) { return (count_ - 1 - age) % depth; };
+    const auto change = [&](std::size_t age) -> const Change& { return changes_[place(age)]; };
     std::array<double, depth> whole{};
     for (std::size_t a = 0; a < known; ++a) {
         for (std::size_t b = a; b < known; ++b) {
-            gram[a][b] = gram[b][a] = dot(change(a).y, change(b).y);
+            gram[a][b] = gram[b][a] = products_[place(a)][place(b)];
         }
         whole[a] = gram[a][a];
         c[a] = dot(change(a).y, y);

@@ -22,8 +22,9 @@ class Acceleration {
         std::vector<double> x, y; ///< of one iteration to the next
     };
     std::array<Change, depth> changes_;
-    std::vector<double> x_, y_; ///< last change of x, last y
-    std::size_t count_ = 0;     ///< calls since the start
+    std::array<std::array<double, depth>, depth> products_{}; ///< of their y
+    std::vector<double> x_, y_;                               ///< last change of x, last y
+    std::size_t count_ = 0;                                   ///< calls since the start
 };
 
 } // namespace isostat

@@ -2,6 +2,7 @@
 #include "motion/geometry.hpp"
 
 #include <isostat/contact/contact_set.hpp>
+#include <isostat/core/dot.hpp>
 #include <isostat/motion/arc.hpp>
 
 #include <fmt/format.h>
@@ -140,14 +141,6 @@ template <int Dim> class Follower {
         }
     }
 
-    double largest(const Vector& v) const {
-        double value = 0;
-        for (const double c : v) {
-            value = std::max(value, std::abs(c));
-        }
-        return value;
-    }
-
     void choose_fastest() {
         fastest_ = 0;
         for (std::size_t k = 0; k < tangent_.size(); ++k) {
@@ -222,15 +215,37 @@ template <int Dim> class Follower {
         return ok;
     }
 
+    /// rhs_ = rates of the kept gaps along v at a point of the curve.
+    void gap_rates(const Packing<Dim>& at, const Vector& v) {
+        const auto& contacts = structure_->contacts();
+        if (&at == &q_ && !moved_ && !own_structure_) { // minus the approach velocities G v, whose G is at hand
+            const sparse::Matrix<double>& h = structure_->matrix();
+            const DofMap<Dim>& dofs = structure_->dofs();
+            Vector on_dofs(size_);
+            for (std::size_t mu = 0; mu < size_; ++mu) {
+                on_dofs[mu] = v[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))];
+            }
+            for (std::size_t l = 0; l < size_; ++l) {
+                double rate = 0;
+                for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+                    rate -= h.value[e] * on_dofs[static_cast<std::size_t>(h.row[e])];
+                }
+                rhs_[l] = rate;
+            }
+        } else {
+            for (std::size_t l = 0; l < size_; ++l) {
+                rhs_[l] = gap_rate(at, contacts[l], v);
+            }
+        }
+        rhs_[slot_] = 0;
+    }
+
     /// Tangent at another point of the curve, scaled like `tangent_` in the fastest coordinate.
     std::optional<Vector> tangent_at(const Packing<Dim>& at, double accuracy) {
-        const auto& contacts = structure_->contacts();
         Vector t = tangent_;
         double previous = infinity;
         for (int k = 0; k < 40; ++k) {
-            for (std::size_t l = 0; l < size_; ++l) {
-                rhs_[l] = l == slot_ ? 0.0 : gap_rate(at, contacts[l], t);
-            }
+            gap_rates(at, t);
             finish_chord([&](const Vector& v) { return v[fastest_]; }, 0.0);
             const double size = largest(y_);
             for (std::size_t i = 0; i < t.size(); ++i) {
@@ -453,6 +468,11 @@ template <int Dim> class Follower {
             }
             const double h0 = start_gap_[c];
             const double h1 = quick_gap(at, active_[c]);
+            // The cubic is above its control points; most of them are far from 0.
+            const double floor = std::min(std::min(h0, h1), std::min(h0 + d0 * s / 3, h1 - d1 * s / 3));
+            if (floor > 0.1 * (std::max(h0, h1) - floor)) {
+                continue;
+            }
             const Dip dip = lowest_point(h0, d0, h1, d1, s);
             // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step); h is taken as 40 depths, far
             // above what a disk rolling through a step of a tenth of a radius has. It vanishes at the ends, where the
@@ -470,8 +490,14 @@ template <int Dim> class Follower {
     std::optional<std::pair<std::size_t, double>> first_violation(const Packing<Dim>& at, double s,
                                                                   const Contact& except, double noise) const {
         std::optional<std::pair<std::size_t, double>> found;
+        double moved = 0;
+        for (std::size_t k = 0; k < at.q.size(); ++k) {
+            moved = std::max(moved, std::abs(at.q[k] - q_.q[k]));
+        }
+        // A gap changes by no more than its grains, or a grain and a wall, move.
+        const double within = 2.01 * std::sqrt(static_cast<double>(Dim)) * moved;
         for (std::size_t c = 0; c < active_.size(); ++c) {
-            if (active_[c] == except) {
+            if (start_gap_[c] > within || active_[c] == except) {
                 continue;
             }
             const double h = quick_gap(at, active_[c]);
@@ -608,8 +634,20 @@ template <int Dim> bool Follower<Dim>::predict() {
     start_rate_.resize(active_.size());
     s_event_ = infinity;
     event_ = 0;
+    // Roots beyond the longest step are not asked for: |t| <= 1 in every coordinate, so that no second derivative of a
+    // gap is larger than this.
+    const double root_dim = std::sqrt(static_cast<double>(Dim));
+    const double bend = 1.01 * (2 * root_dim * largest(curvature_) + 2 * Dim / q_.min_radius());
+    const double curved = 0.5 * bend * step_limit_ * step_limit_;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         const bool opening = !moved_ && leaves(active_[c]);
+        if (const auto line = centre_line(q_, active_[c]); line && !opening) {
+            start_gap_[c] = gap_of(q_, active_[c], *line);
+            start_rate_[c] = rate_of(*line, active_[c], tangent_);
+            if (start_gap_[c] + std::min(1.01 * start_rate_[c], 0.0) * step_limit_ > curved) {
+                continue;
+            }
+        }
         const GapCourse course = gap_course(q_, active_[c], tangent_, curvature_);
         start_gap_[c] = opening ? 0.0 : course.value;
         start_rate_[c] = course.rate;

@@ -33,12 +33,15 @@ template <int Dim> std::optional<CentreLine<Dim>> centre_line(const Packing<Dim>
     return line;
 }
 
+template <int Dim> double gap_of(const Packing<Dim>& at, const Contact& contact, const CentreLine<Dim>& line) {
+    return line.length -
+           (at.radius[static_cast<std::size_t>(contact.i)] + at.radius[static_cast<std::size_t>(contact.j)]);
+}
+
 /// The same bits as `gap`.
 template <int Dim> double quick_gap(const Packing<Dim>& at, const Contact& contact) {
     const auto line = centre_line(at, contact);
-    return line ? line->length -
-                      (at.radius[static_cast<std::size_t>(contact.i)] + at.radius[static_cast<std::size_t>(contact.j)])
-                : gap(at, contact);
+    return line ? gap_of(at, contact, *line) : gap(at, contact);
 }
 
 /// Rate of the gap along v (on coordinates) times the length of the line.
@@ -55,10 +58,14 @@ double along(const CentreLine<Dim>& line, const Contact& contact, const std::vec
     return sum;
 }
 
+template <int Dim> double rate_of(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v) {
+    double square = 0;
+    return along(line, contact, v, square) / line.length;
+}
+
 template <int Dim> double gap_rate(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
     if (const auto line = centre_line(at, contact)) {
-        double square = 0;
-        return along(*line, contact, v, square) / line->length;
+        return rate_of(*line, contact, v);
     }
     const GapGradient<Dim> g = gap_gradient(at, contact);
     double sum = 0;
@@ -92,9 +99,7 @@ GapCourse gap_course(const Packing<Dim>& at, const Contact& contact, const std::
         double unused = 0;
         const double rate = along(*line, contact, velocity, square) / line->length;
         const double bend = along(*line, contact, acceleration, unused) / line->length;
-        return {line->length -
-                    (at.radius[static_cast<std::size_t>(contact.i)] + at.radius[static_cast<std::size_t>(contact.j)]),
-                rate, bend + (square - rate * rate) / line->length};
+        return {gap_of(at, contact, *line), rate, bend + (square - rate * rate) / line->length};
     }
     return {gap(at, contact), gap_rate(at, contact, velocity),
             gap_rate(at, contact, acceleration) + gap_curvature(at, contact, velocity.data())};

@@ -31,7 +31,7 @@ struct ProgrammeStep {
 /// The sequence of programmes; keeps the basis, row by contact, from one to the next.
 ///
 /// Scales: lengths of order the radii (mean radius in [0.5, 1)), stress 1, so that contact forces are of order 1. The
-/// objective is multiplied by 64, which puts Clp's dual tolerance 1e-9 at 2e-11 of a force and well below the
+/// objective is multiplied by 256, which puts Clp's dual tolerance 1e-9 at 4e-12 of a force and well below the
 /// multipliers eps g of rattlers.
 template <int Dim> class ContactProgramme {
   public:

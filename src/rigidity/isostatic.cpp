@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
 
 namespace isostat {
 
@@ -120,9 +122,39 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
             ++end;
         }
     };
+    // The usual case, with the same bits: two disks that can move, and no component of the normal that is 0.
+    const auto add_pair = [&](const Contact& contact) {
+        const auto i = static_cast<std::size_t>(Dim * contact.i);
+        const auto j = static_cast<std::size_t>(Dim * contact.j);
+        std::array<double, Dim> d;
+        double square = 0;
+        bool usual = true;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            d[a] = packing.q[j + a] - packing.q[i + a];
+            square += d[a] * d[a];
+            matrix.row[end + a] = dofs.dof_of(i + a);
+            matrix.row[end + Dim + a] = dofs.dof_of(j + a);
+            usual = usual && d[a] != 0 && matrix.row[end + a] >= 0 && matrix.row[end + Dim + a] >= 0;
+        }
+        const double length = std::sqrt(square);
+        if (!usual || !(length > 0x1p-450 && length < 0x1p500)) { // else squares under- or overflow
+            return false;
+        }
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double normal = d[a] / length;
+            matrix.value[end + a] = normal;
+            matrix.value[end + Dim + a] = -normal;
+        }
+        end += 2 * Dim;
+        return true;
+    };
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         // Rows grow with the coordinates, and those of the gradient are in order (i < j).
         const Contact& contact = contacts[l];
+        if (contact.kind == ContactKind::disk_disk && add_pair(contact)) {
+            matrix.start[l + 1] = static_cast<int>(end);
+            continue;
+        }
         const GapGradient<Dim> g = gap_gradient(packing, contact);
         const bool pair = contact.kind == ContactKind::disk_disk;
         for (int k = 0; k < g.count; ++k) {

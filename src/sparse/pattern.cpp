@@ -62,6 +62,7 @@ std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int
     const auto free_row = std::find(matched.begin(), matched.end(), column) - matched.begin();
     // Breadth first from the column through alternating edges: came_from[r] is the column that reached row r.
     std::vector<int> came_from(matched.size(), -1);
+    std::vector<int> row_of(matched.size()); // of the columns in the queue
     std::vector<int> queue{column};
     for (std::size_t k = 0; k < queue.size(); ++k) {
         const int c = queue[k];
@@ -73,19 +74,18 @@ std::vector<int> repaired_matching(std::vector<int> matched, std::span<const int
             came_from[r] = c;
             if (static_cast<std::ptrdiff_t>(r) != free_row) {
                 queue.push_back(matched[r]);
+                row_of[static_cast<std::size_t>(matched[r])] = static_cast<int>(r);
                 continue;
             }
             // Backwards along the path: each row takes the column that reached it, which leaves its own row to the
             // next.
-            for (auto at = r;;) {
-                const int taken = came_from[at];
-                const auto left = taken == column ? matched.end() : std::find(matched.begin(), matched.end(), taken);
+            auto at = r;
+            for (int taken = came_from[at]; taken != column; taken = came_from[at]) {
                 matched[at] = taken;
-                if (taken == column) {
-                    return matched;
-                }
-                at = static_cast<std::size_t>(left - matched.begin());
+                at = static_cast<std::size_t>(row_of[static_cast<std::size_t>(taken)]);
             }
+            matched[at] = column;
+            return matched;
         }
     }
     return {};

@@ -395,7 +395,8 @@ template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics,
         start.push_back(static_cast<int>(row.size()));
     }
     std::vector<ContactId> members{opens};
-    const std::vector<int> matched = sparse::perfect_matching(statics.structure().size(), start, row);
+    const std::vector<int> matched =
+        sparse::repaired_matching(statics.pattern_matching(), start, row, static_cast<int>(opens.index()));
     if (matched.empty()) {
         return members; // cannot happen when the slope of `opens` is not zero; then no tie is claimed
     }

@@ -91,6 +91,9 @@ template <int Dim> std::span<const int> Statics<Dim>::pattern_start() const {
 template <int Dim> std::span<const int> Statics<Dim>::pattern_row() const {
     return pattern_ ? pattern_->row : structure_->matrix().row;
 }
+template <int Dim> const std::vector<int>& Statics<Dim>::pattern_matching() const {
+    return pattern_ ? pattern_->matched : structure_->matching();
+}
 
 template <int Dim> void Statics<Dim>::set_shift(std::shared_ptr<const LoadShift> shift, double bound) {
     shift_ = std::move(shift);

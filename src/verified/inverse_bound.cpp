@@ -3,6 +3,7 @@
 #include "verified/regularity_prover.hpp"
 #include "verified/row_scales.hpp"
 
+#include <isostat/core/threads.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
@@ -141,14 +142,15 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
     count_work(Work::inverse_bounds);
     CholeskyOutcome outcome;
     outcome.entry_error = rounding_of_entries(unscaled); // scaled it is smaller
+    if (cache.workspace == nullptr) {
+        cache.workspace = std::make_shared<BlockCholesky>();
+    }
+    BlockCholesky& cholesky = *cache.workspace;
+    Errand set([&] { cholesky.set(h, cache.order); });
     outcome.estimated = estimate(inverse, cache.vector, iterations);
+    set.finish();
     double shift = 0.5 * outcome.estimated;
     if (std::isfinite(shift) && shift > 0) {
-        if (cache.workspace == nullptr) {
-            cache.workspace = std::make_shared<BlockCholesky>();
-        }
-        BlockCholesky& cholesky = *cache.workspace;
-        cholesky.set(h, cache.order);
         for (int attempt = 0; attempt < 4; ++attempt) {
             if (!cholesky.factorise(shift)) {
                 shift /= 8;

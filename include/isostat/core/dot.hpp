@@ -1,9 +1,11 @@
 #pragma once
 /// \file
-/// Scalar product of long vectors.
+/// Scalar product and largest component of long vectors.
 
+#include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
@@ -24,6 +26,22 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
         sum[0] += a[i] * b[i];
     }
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/// max |x_i|, 0 without components; components that are no numbers do not count. Several maxima at a time, as above.
+inline double largest(std::span<const double> x) {
+    constexpr std::size_t lanes = 8;
+    std::array<double, lanes> most{};
+    std::size_t i = 0;
+    for (; i + lanes <= x.size(); i += lanes) {
+        for (std::size_t k = 0; k < lanes; ++k) {
+            most[k] = std::max(most[k], std::abs(x[i + k]));
+        }
+    }
+    for (; i < x.size(); ++i) {
+        most[0] = std::max(most[0], std::abs(x[i]));
+    }
+    return *std::max_element(most.begin(), most.end());
 }
 
 } // namespace isostat

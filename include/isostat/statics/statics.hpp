@@ -56,6 +56,8 @@ template <int Dim> class Statics {
     /// The pattern by which structural zeros are judged.
     [[nodiscard]] std::span<const int> pattern_start() const;
     [[nodiscard]] std::span<const int> pattern_row() const;
+    /// A perfect matching of it: the column of each row.
+    [[nodiscard]] const std::vector<int>& pattern_matching() const;
 
     /// Goes to the next rung of precision (ForceLadder); false when there is none. Every enclosure above is then the
     /// better one.

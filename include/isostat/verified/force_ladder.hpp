@@ -63,7 +63,7 @@ template <int Dim> class ForceLadder {
     [[nodiscard]] const std::vector<double>& force(int part) const;
 
     /// The solution on the present rung. A zero right-hand side has the exact solution 0 with bound 0 on every rung.
-    const ForceSolution& solution(int part) const;
+    [[nodiscard]] const ForceSolution& solution(int part) const;
     /// What is known of the solution so far, without solving: empty, or one number per contact.
     [[nodiscard]] std::span<const double> known(int part) const;
     /// Component l of the solution on the present rung, as a hexadecimal floating-point number with `bits` bits of

@@ -282,6 +282,10 @@ Errand::~Errand() {
     }
 }
 
+bool Errand::ready() const {
+    return task_ == nullptr || task_->stage.load(std::memory_order_acquire) == Task::done;
+}
+
 void Errand::finish() {
     if (task_ == nullptr) {
         return;

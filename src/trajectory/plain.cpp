@@ -1,7 +1,6 @@
 #include "trajectory/plain.hpp"
 
 #include "trajectory/plain_vertex.hpp"
-#include "trajectory/renewal.hpp"
 
 #include <fmt/format.h>
 
@@ -27,125 +26,121 @@ std::pair<double, double> work_of(const Load<Dim>& load, const Packing<Dim>& fro
 } // namespace
 
 template <int Dim>
-Result<PlainEnd<Dim>> steer_plainly(const Vertex<Dim>& from, Opening opening, const std::string& kind,
-                                    const Load<Dim>& load, const RunOptions& options, CandidateList<Dim>& candidates,
-                                    const PlainCalls<Dim>& calls) {
-    ArcOptions arc_options;
-    arc_options.step_fraction = options.step_fraction;
-    arc_options.extrapolate_tangent = true;
-    const Packing<Dim>* packing = &from.packing;
-    const IsostaticStructure<Dim>* structure = &from.structure;
-    const Factorisation* factorisation = &from.factorisation;
-    std::unique_ptr<PlainVertex<Dim>> here;
-    std::string arc_kind = kind;
-    Wear wear;
-    Renewal renewal;
-    bool first = true;
-    while (true) {
-        ArcRecord<Dim> record;
-        record.kind = arc_kind;
-        record.opened = structure->contacts()[opening.contact.index()];
-        record.force = opening.force.value;
-        if (auto stop = calls.begin(record)) {
-            return *stop;
-        }
-        const int force_passes = factorisation->passes();
-        const PowerLoad<Dim> power{&load, opening.infinitesimal, first && kind == "limit"};
-        // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
-        std::optional<Factorisation> block;
-        if (opening.infinitesimal) {
-            block = Factorisation::of_moving_block(*structure, static_cast<int>(opening.contact.index()));
-        }
-        const auto attempt = [&](const Factorisation& factors) {
-            return follow_arc(*packing, *structure, factors, opening.contact, opening.direction, power, candidates,
-                              arc_options);
-        };
-        auto* departure = here ? here->departure(opening) : nullptr;
-        if (departure != nullptr) {
-            factorisation = &departure->factorisation;
-        }
-        auto arc = departure != nullptr ? departure->arc.take()->follow() : attempt(block ? *block : *factorisation);
-        if ((!arc.ok() || arc.value().closed == record.opened) && (block || !factorisation->is_fresh())) {
-            arc = attempt(Factorisation(*structure));
-        }
-        if (!arc.ok()) {
-            return arc.failure();
-        }
-        Arc<Dim>& path = arc.value();
-        if (departure != nullptr) {
-            record.force = here->better_force(opening.contact.index(), path.opening);
-        }
-        record.closed = path.closed;
-        record.power_turn = path.kind == ArcEnd::power_turn;
-        record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
-        record.power = path.power;
-        record.displacement = path.displacement;
-        record.steps = path.steps;
-        const auto [work, unknown] = work_of(load, *packing, path.end);
-        record.work = work;
-        const auto names = [&] {
-            return fmt::format("the arc that opens {} and closes {}", to_string<Dim>(record.opened),
-                               to_string<Dim>(record.closed));
-        };
-        if (load.kind == LoadKind::nominal && work < -unknown) {
-            return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} along {}", -work, names())};
-        }
-        auto next = IsostaticStructure<Dim>::exchange(*structure, path.end, opening.contact, path.closed);
-        if (!next) {
-            return Failure{FailureKind::not_isostatic,
-                           fmt::format("the contacts are structurally singular at the end of {}", names())};
-        }
-        std::optional<ApproximateInverse> approximate;
-        wear.add(path.passes + force_passes, factorisation->approximate());
-        if (auto renewed = renewal.after(next->slot(), next->matrix())) {
-            approximate = std::move(renewed);
-            wear.renew();
-        } else {
-            approximate = factorisation->approximate().exchanged(next->slot(), next->matrix());
-        }
-        std::optional<ExchangedContacts<Dim>> to_prove;
-        if (calls.arrived) {
-            to_prove = *next;
-        }
-        auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
-        if (wear.out(*approximate)) {
-            renewal.begin(*approximate, unproved.shared_matrix());
-        }
-        const std::vector<double> guess = here ? std::move(here->force) : std::vector<double>();
-        here = std::make_unique<PlainVertex<Dim>>(std::move(path.end), std::move(unproved), *approximate, load, guess,
-                                                  options.rule, candidates, arc_options);
-        packing = &here->packing;
-        structure = &here->structure;
-        factorisation = &here->factorisation;
-        const std::size_t slot = opening.contact.index();
-        if (!record.power_turn && (opening.infinitesimal || !here->is_structural_zero(slot)) &&
-            !(opening.infinitesimal ? here->infinitesimal()[slot] > 0 : here->compressive(slot))) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("the power of the load is not positive at the end of {}", names())};
-        }
-        if (auto stop = calls.end(record, *packing)) {
-            return *stop;
-        }
-        if (to_prove) {
-            calls.arrived({record, opening, *packing, std::move(*to_prove), std::move(*approximate),
-                           std::move(path.tangent), here->force});
-        }
-        if (record.power_turn) { // the ends of a straight strut carry one force there: only a proof orders them
-            return PlainEnd<Dim>{here->packing, structure->contacts(), opening.contact};
-        }
-        const auto chosen = here->choose(options.rule, calls.random_bits());
-        if (!chosen) {
-            return PlainEnd<Dim>{here->packing, structure->contacts(), ContactId()};
-        }
-        opening = *chosen;
-        arc_kind = structure->contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
-                   : opening.infinitesimal                                                  ? "rattler"
-                                                                                            : "tension";
-        first = false;
-    }
+PlainSteering<Dim>::PlainSteering(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                  const Factorisation& factorisation, Opening opening, std::string kind,
+                                  const Load<Dim>& load, const RunOptions& options, CandidateList<Dim>& candidates)
+    : packing_(&packing), structure_(&structure), factorisation_(&factorisation), opening_(opening),
+      kind_(std::move(kind)), load_(load), options_(options), candidates_(candidates), at_limit_(kind_ == "limit") {
+    arc_options_.step_fraction = options.step_fraction;
+    arc_options_.extrapolate_tangent = true;
 }
 
-template Result<PlainEnd<2>> steer_plainly<2>(const Vertex<2>&, Opening, const std::string&, const Load<2>&,
-                                              const RunOptions&, CandidateList<2>&, const PlainCalls<2>&);
+template <int Dim> PlainSteering<Dim>::~PlainSteering() = default;
+
+template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step(const PlainCalls<Dim>& calls) {
+    ArcRecord<Dim> record;
+    record.kind = kind_;
+    record.opened = structure_->contacts()[opening_.contact.index()];
+    record.force = opening_.force.value;
+    if (auto stop = calls.begin(record)) {
+        return *stop;
+    }
+    const int force_passes = here_ ? factorisation_->passes() : 0; // of others at the start
+    const PowerLoad<Dim> power{&load_, opening_.infinitesimal, at_limit_};
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    std::optional<Factorisation> block;
+    if (opening_.infinitesimal) {
+        block = Factorisation::of_moving_block(*structure_, static_cast<int>(opening_.contact.index()));
+    }
+    const auto attempt = [&](const Factorisation& factors) {
+        return follow_arc(*packing_, *structure_, factors, opening_.contact, opening_.direction, power, candidates_,
+                          arc_options_);
+    };
+    auto* departure = here_ ? here_->departure(opening_) : nullptr;
+    if (departure != nullptr) {
+        factorisation_ = &departure->factorisation;
+    }
+    auto arc = departure != nullptr ? departure->arc.take()->follow() : attempt(block ? *block : *factorisation_);
+    if ((!arc.ok() || arc.value().closed == record.opened) && (block || !factorisation_->is_fresh())) {
+        arc = attempt(Factorisation(*structure_));
+    }
+    if (!arc.ok()) {
+        return arc.failure();
+    }
+    Arc<Dim>& path = arc.value();
+    if (departure != nullptr) {
+        record.force = here_->better_force(opening_.contact.index(), path.opening);
+    }
+    record.closed = path.closed;
+    record.power_turn = path.kind == ArcEnd::power_turn;
+    record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
+    record.power = path.power;
+    record.displacement = path.displacement;
+    record.steps = path.steps;
+    const auto [work, unknown] = work_of(load_, *packing_, path.end);
+    record.work = work;
+    const auto names = [&] {
+        return fmt::format("the arc that opens {} and closes {}", to_string<Dim>(record.opened),
+                           to_string<Dim>(record.closed));
+    };
+    if (load_.kind == LoadKind::nominal && work < -unknown) {
+        return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} along {}", -work, names())};
+    }
+    auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, opening_.contact, path.closed);
+    if (!next) {
+        return Failure{FailureKind::not_isostatic,
+                       fmt::format("the contacts are structurally singular at the end of {}", names())};
+    }
+    std::optional<ApproximateInverse> approximate;
+    wear_.add(path.passes + force_passes, factorisation_->approximate());
+    if (auto renewed = renewal_.after(next->slot(), next->matrix())) {
+        approximate = std::move(renewed);
+        wear_.renew();
+    } else {
+        approximate = factorisation_->approximate().exchanged(next->slot(), next->matrix());
+    }
+    std::optional<ExchangedContacts<Dim>> to_prove;
+    if (calls.arrived) {
+        to_prove = *next;
+    }
+    auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
+    if (wear_.out(*approximate)) {
+        renewal_.begin(*approximate, unproved.shared_matrix());
+    }
+    const std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
+    here_ = std::make_unique<PlainVertex<Dim>>(std::move(path.end), std::move(unproved), *approximate, load_, guess,
+                                               options_.rule, candidates_, arc_options_);
+    packing_ = &here_->packing;
+    structure_ = &here_->structure;
+    factorisation_ = &here_->factorisation;
+    const std::size_t slot = opening_.contact.index();
+    if (!record.power_turn && (opening_.infinitesimal || !here_->is_structural_zero(slot)) &&
+        !(opening_.infinitesimal ? here_->infinitesimal()[slot] > 0 : here_->compressive(slot))) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("the power of the load is not positive at the end of {}", names())};
+    }
+    if (auto stop = calls.end(record, *packing_)) {
+        return *stop;
+    }
+    if (to_prove) {
+        calls.arrived({record, opening_, *packing_, std::move(*to_prove), std::move(*approximate),
+                       std::move(path.tangent), here_->force});
+    }
+    if (record.power_turn) { // the ends of a straight strut carry one force there: only a proof orders them
+        return PlainEnd<Dim>{here_->packing, structure_->contacts(), opening_.contact};
+    }
+    const auto chosen = here_->choose(options_.rule, calls.random_bits());
+    if (!chosen) {
+        return PlainEnd<Dim>{here_->packing, structure_->contacts(), ContactId()};
+    }
+    opening_ = *chosen;
+    kind_ = structure_->contacts()[opening_.contact.index()].kind == ContactKind::held ? "release"
+            : opening_.infinitesimal                                                   ? "rattler"
+                                                                                       : "tension";
+    at_limit_ = false;
+    return std::nullopt;
+}
+
+template class PlainSteering<2>;
 
 } // namespace isostat

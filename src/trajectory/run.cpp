@@ -38,6 +38,28 @@ template <int Dim> double sigma_of(const Load<Dim>& load) {
     return load.stress[static_cast<std::size_t>(load.loaded_axis)];
 }
 
+using WorkCounts = std::array<long, work_kinds>;
+
+/// While it lives this thread counts its work there.
+class CountingIn {
+  public:
+    explicit CountingIn(WorkCounts* counts) : before_(count_work_in(counts)) {}
+    CountingIn(const CountingIn&) = delete;
+    CountingIn& operator=(const CountingIn&) = delete;
+    ~CountingIn() { count_work_in(before_); }
+
+  private:
+    WorkCounts* before_;
+};
+
+void add_work(const WorkCounts& counts) {
+    for (std::size_t k = 0; k < work_kinds; ++k) {
+        if (counts[k] != 0) {
+            count_work(static_cast<Work>(k), counts[k]);
+        }
+    }
+}
+
 template <int Dim> class Run {
   public:
     Run(State<Dim>& state, int segment, const RunOptions& options, RunCounters& counters, RunObserver<Dim>& observer)
@@ -149,7 +171,41 @@ template <int Dim> class Run {
                    const Load<Dim>& load, ArcRecord<Dim>& record) const;
     void tally(const ArcCertificate& certificate, double seconds);
     std::optional<Failure> rearrange_plainly(Opening opening, const std::string& kind, const Load<Dim>& load);
-    std::optional<Failure> report(int arcs);
+    /// A rearrangement at level `plain`, perhaps begun before the equilibrium that it starts from was proved: then with
+    /// what it starts from, and records of its arcs that nobody has seen yet.
+    struct PlainWay {
+        /// An equilibrium of which nothing is proved.
+        struct Origin {
+            Packing<Dim> packing;
+            IsostaticStructure<Dim> structure;
+            Factorisation factorisation;
+        };
+        std::optional<Origin> origin;
+        ContactId opens;
+        Load<Dim> load;
+        CandidateList<Dim> candidates;
+        std::unique_ptr<PlainSteering<Dim>> steering; ///< refers to the others
+        std::vector<ArcRecord<Dim>> unseen;
+        WorkCounts work{}; ///< of these
+        std::optional<Result<PlainEnd<Dim>>> end;
+    };
+    /// What is found out about the end of a way; what there is no need of is not there.
+    struct PlainProof {
+        Result<std::unique_ptr<Vertex<Dim>>> vertex;
+        std::optional<Result<typename Vertex<Dim>::Gaps>> gaps;
+        std::optional<Result<OpeningDecision>> decision;
+        std::optional<Result<Description<Dim>>> description;
+    };
+    PlainProof prove_plain_end(typename Vertex<Dim>::Beginning beginning, const Load<Dim>& load, ContactId fresh_hold,
+                               std::uint64_t random_bits);
+    [[nodiscard]] bool goes_on(const PlainEnd<Dim>& end) const;
+    bool set_out(PlainWay& way, const Load<Dim>& load);
+    void steer_unseen(PlainWay& way, const std::function<bool()>& enough);
+    [[nodiscard]] double strain(const Load<Dim>& load, const Packing<Dim>& packing) const {
+        const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
+        return reference > 0 ? (reference - packing.length(load.loaded_axis)) / reference : 0;
+    }
+    std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
 
     State<Dim>& state_;
     int segment_;
@@ -167,6 +223,9 @@ template <int Dim> class Run {
     double margin_ = infinity;                       ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
     std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
+    const Segment* segment_wanted_ = nullptr;
+    int made_ = 0;                    ///< equilibria of it
+    std::unique_ptr<PlainWay> ahead_; ///< the next rearrangement, if it was begun
 };
 
 /// Where a failure happened: appended to its message so that the last line of a run says all.
@@ -629,28 +688,6 @@ std::optional<typename Run<Dim>::ProvedArc> Run<Dim>::prove_arc(const Vertex<Dim
     return arc;
 }
 
-using WorkCounts = std::array<long, work_kinds>;
-
-/// While it lives this thread counts its work there.
-class CountingIn {
-  public:
-    explicit CountingIn(WorkCounts* counts) : before_(count_work_in(counts)) {}
-    CountingIn(const CountingIn&) = delete;
-    CountingIn& operator=(const CountingIn&) = delete;
-    ~CountingIn() { count_work_in(before_); }
-
-  private:
-    WorkCounts* before_;
-};
-
-void add_work(const WorkCounts& counts) {
-    for (std::size_t k = 0; k < work_kinds; ++k) {
-        if (counts[k] != 0) {
-            count_work(static_cast<Work>(k), counts[k]);
-        }
-    }
-}
-
 /// Steers as at level `plain`, and proves every vertex behind, in the same order. What was steered beyond a vertex that
 /// decides otherwise is thrown away, and its work not counted: how much of it there is depends on the threads.
 template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Load<Dim>& load) {
@@ -737,7 +774,13 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
     CandidateList<Dim> candidates = candidates_;
     auto end = [&] {
         const CountingIn counting(&by_steering);
-        return steer_plainly(start, way.opening, way.kind, load, options_, candidates, calls);
+        PlainSteering<Dim> steering(start.packing, start.structure, start.factorisation, way.opening, way.kind, load,
+                                    options_, candidates);
+        while (true) {
+            if (auto done = steering.step(calls)) {
+                return std::move(*done);
+            }
+        }
     }();
     // The equilibrium, if it is one, is proved anew from nothing while the last proofs go on.
     std::unique_ptr<Vertex<Dim>> anew;
@@ -955,15 +998,96 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     return report(way.arcs);
 }
 
+template <int Dim>
+typename Run<Dim>::PlainProof Run<Dim>::prove_plain_end(typename Vertex<Dim>::Beginning beginning,
+                                                        const Load<Dim>& load, ContactId fresh_hold,
+                                                        std::uint64_t random_bits) {
+    const double stress = sigma_of(load);
+    bound_cache_.forget();
+    PlainProof proof{Vertex<Dim>::make(std::move(beginning), load, bound_cache_), {}, {}, {}};
+    if (!proof.vertex.ok()) {
+        return proof;
+    }
+    Vertex<Dim>& vertex = *proof.vertex.value();
+    proof.gaps = vertex.check_gaps(candidates_, kept_);
+    if (!proof.gaps->ok() || proof.gaps->value().negative) {
+        return proof;
+    }
+    proof.decision = decide_opening(vertex.statics, stress, options_.rule, fresh_hold, random_bits);
+    if (proof.decision->ok() && !proof.decision->value().opening) {
+        // The questions that `start` asks after a resume: the statics then stand on the same rung.
+        (void)decide_opening(vertex.statics, stress, options_.rule, ContactId(), 0);
+        proof.description = describe(vertex, load);
+    }
+    return proof;
+}
+
+/// Whether it is worth while to begin the next rearrangement while the end of this one is proved.
+template <int Dim> bool Run<Dim>::goes_on(const PlainEnd<Dim>& end) const {
+    const bool last = segment_wanted_->equilibria && made_ + 1 >= *segment_wanted_->equilibria;
+    return threads() > 1 && !last && std::none_of(end.contacts.begin(), end.contacts.end(), [](const Contact& c) {
+               return c.kind == ContactKind::held;
+           });
+}
+
+/// The rearrangement that follows an equilibrium at this load, as forces in plain double precision tell: whoever
+/// proves the limit throws it away when another contact opens, or at another load. False: there is none to follow.
+template <int Dim> bool Run<Dim>::set_out(PlainWay& way, const Load<Dim>& load) {
+    const int direction = segment_wanted_->direction;
+    const double stress = sigma_of(load);
+    const InverseBound unknown;
+    const Statics<Dim> statics(way.origin->packing, load, way.origin->structure, way.origin->factorisation, unknown);
+    double smallest = infinity;
+    for (int index = 0; index < statics.structure().size(); ++index) {
+        const ContactId l(index);
+        const double rate = direction * statics.slope(l).value;
+        const double distance = rate < 0 ? statics.force(l, stress).value / -rate : infinity;
+        if (distance < smallest) {
+            smallest = distance;
+            way.opens = l;
+        }
+    }
+    const double limit = stress + direction * smallest;
+    const std::optional<double>& to = segment_wanted_->to_stress;
+    if (!way.opens.valid() || (to && !(direction * (limit - *to) < 0))) {
+        return false;
+    }
+    way.load = load;
+    set_sigma(way.load, limit);
+    Opening opening;
+    opening.contact = way.opens;
+    way.steering =
+        std::make_unique<PlainSteering<Dim>>(way.origin->packing, way.origin->structure, way.origin->factorisation,
+                                             opening, "limit", way.load, options_, way.candidates);
+    return true;
+}
+
+/// Until it ends, or `enough`.
+template <int Dim> void Run<Dim>::steer_unseen(PlainWay& way, const std::function<bool()>& enough) {
+    const CountingIn counting(&way.work);
+    PlainCalls<Dim> calls;
+    calls.begin = [](ArcRecord<Dim>&) { return std::optional<Failure>(); };
+    calls.end = [&](ArcRecord<Dim>& record, const Packing<Dim>& packing) {
+        record.strain = strain(way.load, packing);
+        way.unseen.push_back(record);
+        return std::optional<Failure>();
+    };
+    calls.random_bits = [&] {
+        return bits_for(options_.rule_seed, counters_.steps + static_cast<long>(way.unseen.size()));
+    };
+    while (!way.end && !enough() && way.unseen.size() < static_cast<std::size_t>(options_.max_arcs)) {
+        way.end = way.steering->step(calls);
+    }
+}
+
 /// Level `plain`: the way is steered without bounds, the end is proved. When the proof finds a negative force there,
-/// steering goes on with it.
+/// steering goes on with it. With two threads the end is proved beside the first arcs of the next way.
 template <int Dim>
 std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::string& kind, const Load<Dim>& load) {
     const double stress = sigma_of(load);
     int arcs = 0;
     const auto where = [&] { return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arcs, stress); };
-    PlainCalls<Dim> calls;
-    calls.begin = [&](ArcRecord<Dim>& record) -> std::optional<Failure> {
+    const auto begin = [&](ArcRecord<Dim>& record) -> std::optional<Failure> {
         if (options_.stop != nullptr && options_.stop->load()) {
             return Failure{FailureKind::interrupted, fmt::format("stopped after {} arcs of a rearrangement", arcs)};
         }
@@ -980,9 +1104,7 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
         ++counters_.tally.plain;
         return std::nullopt;
     };
-    calls.end = [&](ArcRecord<Dim>& record, const Packing<Dim>& packing) -> std::optional<Failure> {
-        const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
-        record.strain = reference > 0 ? (reference - packing.length(load.loaded_axis)) / reference : 0;
+    const auto show = [&](const ArcRecord<Dim>& record) -> std::optional<Failure> {
         observer_.on_arc(record);
         if (std::abs(record.strain) > options_.max_strain) {
             return Failure{FailureKind::cap_reached,
@@ -991,64 +1113,104 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
         }
         return std::nullopt;
     };
+    PlainCalls<Dim> calls;
+    calls.begin = begin;
+    calls.end = [&](ArcRecord<Dim>& record, const Packing<Dim>& packing) {
+        record.strain = strain(load, packing);
+        return show(record);
+    };
     calls.random_bits = [&] { return bits_for(options_.rule_seed, counters_.steps); };
-    std::unique_ptr<Vertex<Dim>> proved;
-    const Vertex<Dim>* from = vertex_.get();
-    std::string arc_kind = kind;
-    while (true) {
-        auto end = steer_plainly(*from, opening, arc_kind, load, options_, candidates_, calls);
-        if (!end.ok()) {
-            return located(end.failure(), where());
-        }
-        bound_cache_.forget();
-        Promised<CandidateList<Dim>> listed(
-            [packing = end.value().packing] { return find_candidates(packing, candidate_fraction); });
-        auto anew =
-            Vertex<Dim>::make(std::move(end.value().packing), std::move(end.value().contacts), load, bound_cache_);
-        if (!anew.ok()) {
-            return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
-        }
-        proved = std::move(anew.value());
-        candidates_ = listed.take();
-        auto gaps = proved->check_gaps(candidates_, kept_);
-        if (!gaps.ok()) {
-            return located(gaps.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
-        }
-        if (gaps.value().negative) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("equilibrium at sigma = {:.17g}: plain steering went past a contact, {} overlap",
-                                       stress, to_string<Dim>(*gaps.value().negative))};
-        }
-        auto decision =
-            decide_opening(proved->statics, stress, options_.rule, end.value().fresh_hold, calls.random_bits());
-        if (!decision.ok()) {
-            return located(decision.failure(), where());
-        }
-        record_.min_gap = gaps.value().smallest;
-        record_.min_gap_contact = gaps.value().where;
-        if (!decision.value().opening) {
-            count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung);
-            count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung);
-            break;
-        }
-        vertex_ = std::move(proved); // no equilibrium after all
-        from = vertex_.get();
-        opening = *decision.value().opening;
-        arc_kind = vertex_->structure.contacts()[opening.contact.index()].kind == ContactKind::held ? "release"
-                   : opening.infinitesimal                                                          ? "rattler"
-                                                                                                    : "tension";
+
+    std::unique_ptr<PlainWay> way = std::move(ahead_);
+    const bool begun = way && kind == "limit" && way->opens == opening.contact && sigma_of(way->load) == stress;
+    if (!begun) {
+        way = std::make_unique<PlainWay>();
+        way->steering = std::make_unique<PlainSteering<Dim>>(
+            vertex_->packing, vertex_->structure, vertex_->factorisation, opening, kind, load, options_, candidates_);
     }
-    vertex_ = std::move(proved);
-    // The questions that `start` asks after a resume: the statics then stand on the same rung.
-    (void)decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0);
-    state_.load = load;
-    state_.packing = vertex_->packing;
-    state_.contacts = vertex_->structure.contacts();
-    return report(arcs);
+    while (true) {
+        add_work(way->work);
+        for (ArcRecord<Dim>& record : way->unseen) {
+            auto failure = begin(record);
+            failure = failure ? failure : show(record);
+            if (failure) {
+                return located(*failure, where());
+            }
+        }
+        while (!way->end) {
+            way->end = way->steering->step(calls);
+        }
+        if (!way->end->ok()) {
+            return located(way->end->failure(), where());
+        }
+        PlainEnd<Dim> end = std::move(way->end->value());
+        way.reset();
+        const auto at_equilibrium = [&](const Failure& failure) {
+            return located(failure, fmt::format("equilibrium at sigma = {:.17g}", stress));
+        };
+        const bool on = goes_on(end);
+        Promised<CandidateList<Dim>> listed(
+            [packing = end.packing] { return find_candidates(packing, candidate_fraction); });
+        auto beginning = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
+        candidates_ = listed.take();
+        if (!beginning.ok()) {
+            return at_equilibrium(beginning.failure());
+        }
+        if (on) { // with copies of what the proof uses
+            const auto& b = beginning.value();
+            ahead_ = std::make_unique<PlainWay>();
+            ahead_->origin.emplace(
+                typename PlainWay::Origin{b.packing, b.rank.unproved(), b.factorisation.fresh_copy()});
+            ahead_->candidates = candidates_;
+        }
+        Promised<PlainProof> promised(
+            [this, &load, hold = end.fresh_hold, bits = calls.random_bits(),
+             from = std::make_shared<typename Vertex<Dim>::Beginning>(std::move(beginning.value()))] {
+                return prove_plain_end(std::move(*from), load, hold, bits);
+            });
+        if (on && set_out(*ahead_, load)) {
+            steer_unseen(*ahead_,
+                         [&] { return promised.ready() || (options_.stop != nullptr && options_.stop->load()); });
+        } else {
+            ahead_.reset();
+        }
+        PlainProof proof = promised.take();
+        if (!proof.vertex.ok()) {
+            return at_equilibrium(proof.vertex.failure());
+        }
+        if (!proof.gaps->ok()) {
+            return at_equilibrium(proof.gaps->failure());
+        }
+        const auto& gaps = proof.gaps->value();
+        if (gaps.negative) {
+            return at_equilibrium({FailureKind::undecided, fmt::format("plain steering went past a contact, {} overlap",
+                                                                       to_string<Dim>(*gaps.negative))});
+        }
+        if (!proof.decision->ok()) {
+            return located(proof.decision->failure(), where());
+        }
+        const OpeningDecision& decision = proof.decision->value();
+        record_.min_gap = gaps.smallest;
+        record_.min_gap_contact = gaps.where;
+        vertex_ = std::move(proof.vertex.value());
+        if (!decision.opening) {
+            count(DecisionKind::gaps, gaps.margin, gaps.rung);
+            count(DecisionKind::equilibrium, decision.margin, decision.rung);
+            state_.load = load;
+            state_.packing = vertex_->packing;
+            state_.contacts = vertex_->structure.contacts();
+            return report(arcs, std::move(proof.description));
+        }
+        ahead_.reset(); // no equilibrium after all
+        way = std::make_unique<PlainWay>();
+        way->steering = std::make_unique<PlainSteering<Dim>>(
+            vertex_->packing, vertex_->structure, vertex_->factorisation, *decision.opening,
+            kind_of(*vertex_, *decision.opening), load, options_, candidates_);
+    }
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs) {
-    auto described = describe(*vertex_, state_.load);
+template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::optional<Result<Description<Dim>>> known) {
+    auto described = known ? std::move(*known) : describe(*vertex_, state_.load);
     if (!described.ok()) {
         return located(described.failure(), fmt::format("equilibrium at sigma = {:.17g}", sigma()));
     }
@@ -1155,13 +1317,15 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
 
 template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
     SegmentOutcome outcome;
+    segment_wanted_ = &segment;
+    made_ = -1; // a start that is no equilibrium yet makes one that does not count
     if (auto failure = start()) {
         outcome.failure = failure;
         return outcome;
     }
-    int made = 0;
+    made_ = 0;
     while (true) {
-        if (segment.equilibria && made >= *segment.equilibria) {
+        if (segment.equilibria && made_ >= *segment.equilibria) {
             outcome.completed = true;
             return outcome;
         }
@@ -1246,7 +1410,7 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
             outcome.failure = failure;
             return outcome;
         }
-        ++made;
+        ++made_;
     }
 }
 

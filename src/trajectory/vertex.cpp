@@ -14,8 +14,9 @@
 namespace isostat {
 
 template <int Dim>
-Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load, InverseBoundCache& cache)
-    : packing(std::move(p)), structure(proof.unproved()), factorisation(structure),
+Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
+                    InverseBoundCache& cache)
+    : packing(std::move(p)), structure(proof.unproved()), factorisation(std::move(factors)),
       inverse(bound_inverse(structure, factorisation, cache, [&] { return proof.is_regular(); })),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
@@ -60,14 +61,32 @@ template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
 }
 
 template <int Dim>
+Result<typename Vertex<Dim>::Beginning> Vertex<Dim>::begin(Packing<Dim> packing, std::vector<Contact> contacts) {
+    auto rank = RankProof<Dim>::begin(packing, std::move(contacts));
+    if (!rank.ok()) {
+        return rank.failure();
+    }
+    Factorisation factors(rank.value().unproved());
+    return Beginning{std::move(packing), std::move(rank.value()), std::move(factors)};
+}
+
+template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                        const Load<Dim>& load, InverseBoundCache& cache) {
-    auto proof = RankProof<Dim>::begin(packing, std::move(contacts));
-    if (!proof.ok()) {
-        return proof.failure();
+    auto begun = begin(std::move(packing), std::move(contacts));
+    if (!begun.ok()) {
+        return begun.failure();
     }
-    std::unique_ptr<Vertex> vertex(new Vertex(std::move(packing), proof.value(), load, cache));
-    auto proved = proof.value().conclude();
+    return make(std::move(begun.value()), load, cache);
+}
+
+template <int Dim>
+Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Beginning beginning, const Load<Dim>& load,
+                                                       InverseBoundCache& cache) {
+    RankProof<Dim>& rank = beginning.rank;
+    std::unique_ptr<Vertex> vertex(
+        new Vertex(std::move(beginning.packing), rank, std::move(beginning.factorisation), load, cache));
+    auto proved = rank.conclude();
     if (!proved.ok()) {
         return proved.failure();
     }

@@ -41,6 +41,14 @@ template <int Dim> class Vertex {
     /// proved.
     static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
                                                 const Load<Dim>& load, InverseBoundCache& cache);
+    /// The same in two steps: what a motion from the vertex needs, of which nothing is proved, and the proofs.
+    struct Beginning {
+        Packing<Dim> packing;
+        RankProof<Dim> rank;
+        Factorisation factorisation;
+    };
+    static Result<Beginning> begin(Packing<Dim> packing, std::vector<Contact> contacts);
+    static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load<Dim>& load, InverseBoundCache& cache);
     /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the
     /// bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a Cholesky
     /// factorisation (V1), everything anew as in `make`. The factors of `from` go on serving. `tangent` is a guess.
@@ -84,7 +92,8 @@ template <int Dim> class Vertex {
 
   private:
     /// Nothing is proved unless the proof is concluded.
-    Vertex(Packing<Dim> p, RankProof<Dim>& proof, const Load<Dim>& load, InverseBoundCache& cache);
+    Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
+           InverseBoundCache& cache);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
            const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near, std::vector<double> forces);
     static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, Packing<Dim> packing, ExchangedContacts<Dim> next,

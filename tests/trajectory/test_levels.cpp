@@ -102,6 +102,87 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(arcs_begun_before_their_equilibrium_is_proved_are_those_of_one_thread) {
+    RunOptions options;
+    options.certify = CertifyLevel::plain;
+    const auto compare = [](const Played& one, const Played& two) {
+        BOOST_TEST(one.why() == two.why());
+        BOOST_TEST((one.state.packing.q == two.state.packing.q));
+        BOOST_TEST(one.counters.steps == two.counters.steps);
+        BOOST_TEST(one.counters.tally.plain == two.counters.tally.plain);
+        BOOST_TEST_REQUIRE(one.records.arcs.size() == two.records.arcs.size());
+        for (std::size_t k = 0; k < one.records.arcs.size(); ++k) {
+            const ArcRecord<2>& a = one.records.arcs[k];
+            const ArcRecord<2>& b = two.records.arcs[k];
+            BOOST_TEST((a.opened == b.opened && a.closed == b.closed && a.kind == b.kind));
+            BOOST_TEST((a.step == b.step && a.arc == b.arc && a.equilibrium == b.equilibrium));
+            BOOST_TEST((a.stress == b.stress && a.strain == b.strain && a.force == b.force));
+        }
+        BOOST_TEST_REQUIRE(one.records.equilibria.size() == two.records.equilibria.size());
+        for (std::size_t k = 0; k < one.records.equilibria.size(); ++k) {
+            const EquilibriumRecord<2>& a = one.records.equilibria[k];
+            const EquilibriumRecord<2>& b = two.records.equilibria[k];
+            BOOST_TEST((a.number == b.number && a.stress == b.stress && a.arcs == b.arcs));
+            BOOST_TEST((a.margin == b.margin && a.min_gap == b.min_gap));
+        }
+    };
+    const auto on_two = [](auto work) {
+        const Threads threads(2);
+        return work();
+    };
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        State<2> start = prepared(100, seed);
+        const auto both = [&](int direction, std::optional<int> equilibria, std::optional<double> to) {
+            const Played one = play(start, direction, equilibria, to, options);
+            compare(one, on_two([&] { return play(start, direction, equilibria, to, options); }));
+            return one;
+        };
+        const Played up = both(+1, 6, {});
+        BOOST_TEST_REQUIRE(up.records.equilibria.size() > 4U);
+        const auto& met = up.records.equilibria;
+        (void)both(+1, {}, 0.5 * (met[3].stress + met[4].stress)); // ends between two limits
+        options.max_arcs = 3;                                      // the sample fails in the middle of a way
+        (void)both(+1, 6, {});
+        options.max_arcs = RunOptions().max_arcs;
+        start = up.state;
+        (void)both(-1, {}, 1.0);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead) {
+    class Stopper final : public RunObserver<2> {
+      public:
+        explicit Stopper(long at) : at_(at) {}
+        void on_arc(const ArcRecord<2>& arc) override {
+            last = arc.step;
+            stop = arc.step >= at_;
+        }
+        void on_equilibrium(const EquilibriumRecord<2>&, const State<2>&, const std::vector<double>&) override {}
+        std::atomic<bool> stop = false;
+        long last = 0;
+
+      private:
+        long at_;
+    };
+    const State<2> start = prepared(100, 4);
+    const Threads threads(2);
+    for (const long at : {1L, 4L, 9L, 14L}) {
+        Stopper stopper(at);
+        RunOptions options;
+        options.certify = CertifyLevel::plain;
+        options.stop = &stopper.stop;
+        State<2> state = start;
+        RunCounters counters;
+        Segment segment;
+        segment.equilibria = 8;
+        const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, stopper);
+        BOOST_TEST_REQUIRE(outcome.failure.has_value());
+        BOOST_TEST((outcome.failure->kind == FailureKind::interrupted));
+        BOOST_TEST(stopper.last == at);
+        BOOST_TEST(counters.steps == at);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(plain_steering_claims_nothing_and_its_equilibria_are_proved) {
     const State<2> start = prepared(50, 3);
     RunOptions options;

@@ -45,6 +45,8 @@ class Errand {
     void finish();
     /// There is work that `finish` was not called for.
     [[nodiscard]] bool pending() const { return task_ != nullptr; }
+    /// `finish` would not wait, nor do anything.
+    [[nodiscard]] bool ready() const;
 
   private:
     friend class Pool;
@@ -67,6 +69,7 @@ template <class Value> class Promised {
         return std::move(**value_);
     }
     [[nodiscard]] bool pending() const { return errand_.pending(); }
+    [[nodiscard]] bool ready() const { return errand_.ready(); }
 
   private:
     std::shared_ptr<std::optional<Value>> value_;

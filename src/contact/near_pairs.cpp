@@ -44,10 +44,9 @@ Distance measure_any(const Packing<2>& packing, std::size_t i, std::size_t j) {
 } // namespace
 
 bool distances_are_plain(const Packing<2>& packing) {
-    const double farthest = std::accumulate(packing.q.begin(), packing.q.end(), 0.0,
-                                            [](double m, double x) { return std::max(m, std::abs(x)); });
     return packing.min_radius() >= smallest_length && packing.max_radius() <= largest_length &&
-           farthest <= largest_length;
+           std::all_of(packing.q.begin(), packing.q.end(),
+                       [](double x) { return std::abs(x) <= largest_length; }); // also false for a NaN
 }
 
 // Buckets by the first disk, each a few pairs long.

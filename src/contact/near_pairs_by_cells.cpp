@@ -65,7 +65,7 @@ template <> std::optional<std::vector<Contact>> near_pairs_by_cells<2>(const Pac
             const double dy = b.y - a.y;
             const double square = dx * dx + dy * dy;
             const double limit = a.radius + b.radius + reach;
-            if (square > 1.001 * limit * limit) {
+            if (square > 1.001 * limit * limit) { // farther than any rounding: no root is needed
                 continue;
             }
             const Distance d = distance_of(square, a.radius + b.radius);

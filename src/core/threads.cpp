@@ -25,6 +25,7 @@ struct Errand::Task {
     std::exception_ptr failure;
     std::array<long, work_kinds> counted{};
     std::atomic<int> stage{waiting};
+    bool sent = false; ///< to the other threads
 
     explicit Task(std::function<void()> w) : work(std::move(w)) {}
     bool claim() {
@@ -265,6 +266,7 @@ Errand::Errand(std::function<void()> work) : task_(std::make_shared<Task>(std::m
     if (!c.pool) {
         c.pool = std::make_unique<Pool>(c.wanted - 1);
     }
+    task_->sent = true;
     c.pool->send(task_);
 }
 
@@ -282,8 +284,8 @@ Errand::~Errand() {
     }
 }
 
-bool Errand::ready() const {
-    return task_ == nullptr || task_->stage.load(std::memory_order_acquire) == Task::done;
+bool Errand::underway() const {
+    return task_ != nullptr && task_->sent && task_->stage.load(std::memory_order_acquire) != Task::done;
 }
 
 void Errand::finish() {

@@ -115,42 +115,47 @@ SolveSchedule::SolveSchedule(const Parts& parts, Promised<Triangle> lower)
     beside_start_.push_back(beside_.size());
 }
 
-void SolveSchedule::solve(std::span<double> rhs) const {
+namespace {
+
+/// work(x), x = rhs in the order `from` with the unknowns to spare behind it; its result back in the order `to`.
+template <class Work>
+void in_order(std::span<double> rhs, const std::vector<int>& from, const std::vector<int>& to, Work work) {
     const std::size_t n = rhs.size();
     const auto x = std::make_unique_for_overwrite<double[]>(n + Triangle::spare); // NOLINT(*-avoid-c-arrays)
     for (std::size_t k = 0; k < n; ++k) {
-        x[k] = rhs[at(rows_[k])];
+        x[k] = rhs[at(from[k])];
     }
     std::fill_n(x.get() + n, Triangle::spare, 0.0);
-    for (std::size_t b = beside_start_.size() - 1; b-- > 0;) {
-        for (std::size_t e = beside_start_[b]; e < beside_start_[b + 1]; ++e) {
-            x[at(beside_[e].row)] -= beside_[e].value * x[at(beside_[e].column)];
-        }
-        lower_.forwards(b, x.get());
-        upper_.backwards(b, x.get());
-    }
+    work(x.get());
     for (std::size_t k = 0; k < n; ++k) {
-        rhs[at(columns_[k])] = x[k];
+        rhs[at(to[k])] = x[k];
     }
 }
 
-void SolveSchedule::solve_transposed(std::span<double> rhs) const {
-    const std::size_t n = rhs.size();
-    const auto x = std::make_unique_for_overwrite<double[]>(n + Triangle::spare); // NOLINT(*-avoid-c-arrays)
-    for (std::size_t k = 0; k < n; ++k) {
-        x[k] = rhs[at(columns_[k])];
-    }
-    std::fill_n(x.get() + n, Triangle::spare, 0.0);
-    for (std::size_t b = 0; b + 1 < beside_start_.size(); ++b) {
-        upper_.forwards(b, x.get());
-        lower_.backwards(b, x.get());
-        for (std::size_t e = beside_start_[b]; e < beside_start_[b + 1]; ++e) {
-            x[at(beside_[e].column)] -= beside_[e].value * x[at(beside_[e].row)];
+} // namespace
+
+void SolveSchedule::solve(std::span<double> rhs) const {
+    in_order(rhs, rows_, columns_, [this](double* x) {
+        for (std::size_t b = beside_start_.size() - 1; b-- > 0;) {
+            for (std::size_t e = beside_start_[b]; e < beside_start_[b + 1]; ++e) {
+                x[at(beside_[e].row)] -= beside_[e].value * x[at(beside_[e].column)];
+            }
+            lower_.forwards(b, x);
+            upper_.backwards(b, x);
         }
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-        rhs[at(rows_[k])] = x[k];
-    }
+    });
+}
+
+void SolveSchedule::solve_transposed(std::span<double> rhs) const {
+    in_order(rhs, columns_, rows_, [this](double* x) {
+        for (std::size_t b = 0; b + 1 < beside_start_.size(); ++b) {
+            upper_.forwards(b, x);
+            lower_.backwards(b, x);
+            for (std::size_t e = beside_start_[b]; e < beside_start_[b + 1]; ++e) {
+                x[at(beside_[e].column)] -= beside_[e].value * x[at(beside_[e].row)];
+            }
+        }
+    });
 }
 
 } // namespace isostat

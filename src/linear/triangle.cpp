@@ -23,6 +23,11 @@ constexpr int links(int width) {
     return width * (width - 1) / 2;
 }
 
+/// Values of a step: inverse diagonals, links, entries.
+constexpr int values_of(int width, int entries, bool unit) {
+    return (unit ? 0 : width) + links(width) + width * entries;
+}
+
 /// Steps of up to this many entries have functions of their own; more are rounded up to a multiple of four.
 constexpr int few = 8;
 
@@ -73,7 +78,7 @@ template <int width, int known, bool unit>
 void run_backwards(const Triangle::Run& run, const int* i, const double* v, double* x) {
     const int entries = known <= few ? known : run.entries;
     const int indices = 1 + entries;
-    const int values = (unit ? 0 : width) + links(width) + width * entries;
+    const int values = values_of(width, entries, unit);
     i += static_cast<std::ptrdiff_t>(indices) * run.steps;
     v += static_cast<std::ptrdiff_t>(values) * run.steps;
     for (int s = 0; s < run.steps; ++s) {
@@ -182,7 +187,7 @@ struct Triangle::Layout {
         int line, width;
         std::size_t first; ///< of its numbers
         int different;     ///< of them
-        int waits = 0;     ///< steps not done yet that change its unknowns
+        int waits = 0;     ///< times that steps not done yet change its unknowns
         [[nodiscard]] int entries() const { return rounded(different); }
     };
     const Lines& lines;
@@ -390,8 +395,7 @@ void Triangle::forwards(std::size_t b, double* x) const {
         const Run& run = runs_[r];
         of(kernels, run)(run, i, v, x);
         i += static_cast<std::ptrdiff_t>(run.steps) * (1 + run.entries);
-        v += static_cast<std::ptrdiff_t>(run.steps) *
-             ((unit_ ? 0 : run.width) + links(run.width) + run.width * run.entries);
+        v += static_cast<std::ptrdiff_t>(run.steps) * values_of(run.width, run.entries, unit_);
     }
 }
 
@@ -402,8 +406,7 @@ void Triangle::backwards(std::size_t b, double* x) const {
     for (std::size_t r = block_[b + 1].run; r-- > block_[b].run;) {
         const Run& run = runs_[r];
         i -= static_cast<std::ptrdiff_t>(run.steps) * (1 + run.entries);
-        v -= static_cast<std::ptrdiff_t>(run.steps) *
-             ((unit_ ? 0 : run.width) + links(run.width) + run.width * run.entries);
+        v -= static_cast<std::ptrdiff_t>(run.steps) * values_of(run.width, run.entries, unit_);
         of(kernels, run)(run, i, v, x);
     }
 }

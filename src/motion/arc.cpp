@@ -468,7 +468,8 @@ template <int Dim> class Follower {
             }
             const double h0 = start_gap_[c];
             const double h1 = quick_gap(at, active_[c]);
-            // The cubic is above its control points; most of them are far from 0.
+            // The cubic is above its control points, so that `depth` below is at most max - floor, and x^2 (1 - x)^2 is
+            // at most 1/16: most candidates are far from what is called a dip.
             const double floor = std::min(std::min(h0, h1), std::min(h0 + d0 * s / 3, h1 - d1 * s / 3));
             if (floor > 0.1 * (std::max(h0, h1) - floor)) {
                 continue;

@@ -1,6 +1,7 @@
 #include "trajectory/plain.hpp"
 
 #include "trajectory/plain_vertex.hpp"
+#include "trajectory/record.hpp"
 
 #include <fmt/format.h>
 
@@ -71,12 +72,7 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
     if (departure != nullptr) {
         record.force = here_->better_force(opening_.contact.index(), path.opening);
     }
-    record.closed = path.closed;
-    record.power_turn = path.kind == ArcEnd::power_turn;
-    record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
-    record.power = path.power;
-    record.displacement = path.displacement;
-    record.steps = path.steps;
+    record_path(record, path);
     const auto [work, unknown] = work_of(load_, *packing_, path.end);
     record.work = work;
     const auto names = [&] {

@@ -141,6 +141,16 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     return description;
 }
 
+template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path) {
+    record.closed = path.closed;
+    record.power_turn = path.kind == ArcEnd::power_turn;
+    record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
+    record.power = path.power;
+    record.displacement = path.displacement;
+    record.steps = path.steps;
+}
+
+template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
 template std::vector<int> rattlers<2>(const Vertex<2>&);
 template std::vector<double> finite_forces<2>(const Vertex<2>&, const Load<2>&);

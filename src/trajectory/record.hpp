@@ -1,9 +1,10 @@
 #pragma once
 /// \file
-/// Makes the record of an equilibrium: private to the room.
+/// Makes the records of equilibria and arcs: private to the room.
 
 #include "trajectory/vertex.hpp"
 
+#include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/records.hpp>
 
 #include <array>
@@ -21,6 +22,9 @@ template <int Dim> struct Description {
 /// decided, or a check fails.
 template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
 
+/// What the path tells, into the record of an arc.
+template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path);
+
 /// Disks without a force-carrying contact.
 template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
 
@@ -28,6 +32,7 @@ template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
 template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load);
 
 extern template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
+extern template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 extern template std::vector<int> rattlers<2>(const Vertex<2>&);
 extern template std::vector<double> finite_forces<2>(const Vertex<2>&, const Load<2>&);
 

@@ -310,12 +310,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
             return arc.failure();
         }
         const Arc<Dim>& path = arc.value();
-        record.closed = path.closed;
-        record.power_turn = path.kind == ArcEnd::power_turn;
-        record.held_at = record.power_turn ? path.end.q[static_cast<std::size_t>(path.closed.i)] : 0;
-        record.power = path.power;
-        record.displacement = path.displacement;
-        record.steps = path.steps;
+        record_path(record, path);
         auto made = Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load,
                                            bound_cache_, fresh ? 0 : path.passes, ladder);
         if (made.ok()) {
@@ -1170,7 +1165,7 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
             });
         if (on && set_out(*ahead_, load)) {
             steer_unseen(*ahead_,
-                         [&] { return promised.ready() || (options_.stop != nullptr && options_.stop->load()); });
+                         [&] { return !promised.underway() || (options_.stop != nullptr && options_.stop->load()); });
         } else {
             ahead_.reset();
         }

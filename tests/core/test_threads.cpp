@@ -95,6 +95,33 @@ BOOST_AUTO_TEST_CASE(an_errand_runs_beside_its_caller) {
     errand.finish();
 }
 
+BOOST_AUTO_TEST_CASE(an_errand_is_under_way_only_while_another_thread_has_it) {
+    Errand alone([] {});
+    BOOST_TEST(!alone.underway()); // nobody else will do it
+    const Threads threads(2);
+    std::atomic<bool> go{false};
+    Errand errand([&] {
+        while (!go) {
+            std::this_thread::yield();
+        }
+    });
+    BOOST_TEST(errand.underway());
+    go = true;
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (errand.underway() && std::chrono::steady_clock::now() < until) {
+        std::this_thread::yield();
+    }
+    BOOST_TEST(!errand.underway());
+    errand.finish();
+    std::atomic<int> waited_for{0};
+    parallel_pieces(4, [&](std::size_t) { // samples of an ensemble: their errands are their own work
+        Errand own([] {});
+        waited_for += own.underway() ? 1 : 0;
+        own.finish();
+    });
+    BOOST_TEST(waited_for == 0);
+}
+
 BOOST_AUTO_TEST_CASE(one_thread_does_an_errand_when_it_is_asked_for_and_not_at_all_otherwise) {
     int done = 0;
     {

@@ -45,8 +45,9 @@ class Errand {
     void finish();
     /// There is work that `finish` was not called for.
     [[nodiscard]] bool pending() const { return task_ != nullptr; }
-    /// `finish` would not wait, nor do anything.
-    [[nodiscard]] bool ready() const;
+    /// Another thread does it, or will as soon as it is free, and has not ended: time to go on with something else.
+    /// False too where `finish` would do the work itself: with one thread, or within a piece.
+    [[nodiscard]] bool underway() const;
 
   private:
     friend class Pool;
@@ -69,7 +70,7 @@ template <class Value> class Promised {
         return std::move(**value_);
     }
     [[nodiscard]] bool pending() const { return errand_.pending(); }
-    [[nodiscard]] bool ready() const { return errand_.ready(); }
+    [[nodiscard]] bool underway() const { return errand_.underway(); }
 
   private:
     std::shared_ptr<std::optional<Value>> value_;

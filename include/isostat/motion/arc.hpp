@@ -63,9 +63,9 @@ template <int Dim> struct Arc {
 /// through the end values and slopes comes near 0 the step is divided. This is *not* a proof that no contact was missed
 /// inside a step; the end is checked by the caller with proved bounds.
 ///
-/// `candidates` must be complete at `start`; it is rebuilt when the motion leaves its reach.
-/// Failures: `unbounded`, `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided` (a dip
-/// that touches). Cost: about 10 to 30 triangular solves for a short arc; no factorisation.
+/// \pre `structure` was made at `start`. `candidates` must be complete there; it is rebuilt when the motion leaves its
+/// reach. Failures: `unbounded`, `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided`
+/// (a dip that touches). Cost: about 10 to 30 triangular solves for a short arc; no factorisation.
 template <int Dim>
 Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
                             const Factorisation& factorisation, ContactId opened, int direction,

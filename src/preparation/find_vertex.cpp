@@ -88,7 +88,8 @@ template <int Dim> class VertexSearch {
         ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), large, options_.stop);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
-        if (large && options_.max_programmes > 0) {
+        const bool descent = large && packing_.radius.size() <= many_disks;
+        if (descent && options_.max_programmes > 0) {
             if (auto vertex = descend(programme, weight)) {
                 return succeed(std::move(*vertex));
             }

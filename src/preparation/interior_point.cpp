@@ -128,30 +128,25 @@ class Iteration {
     }
 
     /// Direction towards products s z = centre (minus the product of the affine steps when `correct`).
-    bool direction(CliqueMatrix& matrix, double centre, bool correct) {
+    void direction(CliqueMatrix& matrix, double centre, bool correct) {
         for (std::size_t l = 0; l < s_.size(); ++l) {
             target_[l] = centre - s_[l] * z_[l] - (correct ? ds_[l] * dz_[l] : 0.0);
         }
-        return towards_target(matrix);
+        towards_target(matrix);
     }
 
     /// Mehrotra's direction, centred again where that makes longer steps.
-    bool predict_and_correct(CliqueMatrix& matrix, double product, double least) {
-        if (!direction(matrix, 0, false)) {
-            return false;
-        }
+    void predict_and_correct(CliqueMatrix& matrix, double product, double least) {
+        direction(matrix, 0, false);
         const double share = product_after(slack_step(), force_step()) / product;
-        return aim(matrix, std::max(share * share * share, least) * product, true);
+        aim(matrix, std::max(share * share * share, least) * product, true);
     }
 
     /// Direction towards `centre`, centred again where that makes longer steps.
-    bool aim(CliqueMatrix& matrix, double centre, bool correct) {
-        if (!direction(matrix, centre, correct)) {
-            return false;
-        }
+    void aim(CliqueMatrix& matrix, double centre, bool correct) {
+        direction(matrix, centre, correct);
         for (int k = 0; k < most_corrections && centre_more(matrix, centre); ++k) {
         }
-        return true;
     }
 
     /// A direction with longer steps than the present one, when there is one: products that a longer step would leave
@@ -173,7 +168,8 @@ class Iteration {
             const double wanted = std::clamp(product, centre / near_centre, centre * near_centre);
             target_[l] += std::max(wanted - product, -near_centre * centre);
         }
-        if (towards_target(matrix) && slack_step() + force_step() >= slack_before + force_before + worth_it) {
+        towards_target(matrix);
+        if (slack_step() + force_step() >= slack_before + force_before + worth_it) {
             return true;
         }
         dx_ = dx;
@@ -182,7 +178,7 @@ class Iteration {
         return false;
     }
 
-    bool towards_target(CliqueMatrix& matrix) {
+    void towards_target(CliqueMatrix& matrix) {
         dx_.resize(columns_);
         for (std::size_t k = 0; k < columns_; ++k) {
             const auto term = [&](std::size_t l) { return (target_[l] - z_[l] * infeasible_[l]) / s_[l]; };
@@ -194,9 +190,7 @@ class Iteration {
                 dx_[static_cast<std::size_t>(p_.column[e])] += p_.value[e] * t;
             }
         }
-        if (!matrix.solve(dx_)) {
-            return false;
-        }
+        matrix.solve(dx_);
         for (std::size_t l = 0; l < rows_; ++l) {
             double a = infeasible_[l];
             for (auto e = static_cast<std::size_t>(p_.start[l]); e < static_cast<std::size_t>(p_.start[l + 1]); ++e) {
@@ -211,7 +205,6 @@ class Iteration {
         for (std::size_t l = 0; l < s_.size(); ++l) {
             dz_[l] = (target_[l] - z_[l] * ds_[l]) / s_[l];
         }
-        return true;
     }
 
     static double longest(const std::vector<double>& y, const std::vector<double>& dy) {
@@ -287,9 +280,10 @@ ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, cons
             result.converged = true;
             break;
         }
-        if (!iteration.factorise(matrix) || !iteration.predict_and_correct(matrix, product, 0)) {
+        if (!iteration.factorise(matrix)) {
             break;
         }
+        iteration.predict_and_correct(matrix, product, 0);
         iteration.advance(iteration.slack_step(), iteration.force_step());
         if (!iteration.finite()) {
             break;
@@ -302,9 +296,8 @@ ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, cons
 }
 
 struct InteriorDescent::Matrix {
-    std::vector<int> start, column; ///< what `clique` refers to
     CliqueMatrix clique;
-    explicit Matrix(const BoxedProgramme& p) : start(p.start), column(p.column), clique(p.cost.size(), start, column) {}
+    explicit Matrix(const BoxedProgramme& p) : clique(p.cost.size(), p.start, p.column) {}
 };
 
 InteriorDescent::InteriorDescent(const BoxedProgramme& pattern) : matrix_(std::make_unique<Matrix>(pattern)) {}
@@ -319,12 +312,12 @@ InteriorStep InteriorDescent::step(const BoxedProgramme& programme, InteriorPoin
     result.product = iteration.mean_row_product();
     const double product = iteration.mean_product();
     result.violation = iteration.residuals();
-    if (!iteration.factorise(matrix) || !iteration.predict_and_correct(matrix, product, least_centre)) {
+    if (!iteration.factorise(matrix)) {
         return result;
     }
-    if (std::min(iteration.slack_step(), iteration.force_step()) < blocked_below &&
-        !iteration.aim(matrix, blocked_centre * product, false)) {
-        return result;
+    iteration.predict_and_correct(matrix, product, least_centre);
+    if (std::min(iteration.slack_step(), iteration.force_step()) < blocked_below) {
+        iteration.aim(matrix, blocked_centre * product, false);
     }
     iteration.advance(iteration.slack_step(), iteration.force_step());
     if (!iteration.finite()) {

@@ -14,9 +14,11 @@ namespace isostat::preparation {
 
 /// Of the objective against stress 1.
 inline constexpr double objective_scale = 256;
-/// Contacts that change from one programme to the next: a pivot each (3 ms at n = 10 000) is cheaper below this than
-/// some 27 factorisations (1.8 s).
-inline constexpr long few_changes = 500;
+/// Contacts that change from one programme to the next: as many pivots of the simplex method (3 ms each at n = 10 000)
+/// are cheaper below this than some 25 iterations of the other (0.6 s).
+inline long few_changes(std::size_t disks) {
+    return disks > many_disks ? 0 : 200;
+}
 
 template <int Dim> struct ContactProgramme<Dim>::Rows {
     std::vector<Contact> contact;

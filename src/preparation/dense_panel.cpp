@@ -1,0 +1,215 @@
+#include "preparation/dense_panel.hpp"
+
+#include <isostat/core/threads.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+// The same operations on four numbers at a time where the processor can; no contraction, hence the same bits.
+// Not under ThreadSanitizer: resolvers of clones run before it is ready.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
+#define ISOSTAT_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define ISOSTAT_WIDE
+#endif
+
+namespace isostat::preparation {
+
+namespace {
+
+using Wide = double __attribute__((vector_size(32)));
+constexpr std::size_t lanes = 4;
+constexpr std::size_t tile = 4;       ///< columns
+constexpr std::size_t panel_step = 8; ///< columns of a panel that are finished together
+/// Multiplications below which another thread is not worth waking.
+constexpr double worth_a_thread = 2e5;
+
+/// `Vectors` times four rows, four columns.
+template <std::size_t Vectors>
+__attribute__((always_inline)) inline void tile_of(const ProductSum& p, std::size_t i, std::size_t j) {
+    Wide sum[tile][Vectors];
+    for (std::size_t c = 0; c < tile; ++c) {
+        for (std::size_t v = 0; v < Vectors; ++v) {
+            std::memcpy(&sum[c][v], p.c + i + lanes * v + p.ldc * (j + c), sizeof(Wide));
+        }
+    }
+    const double* a = p.a + i;
+    const double* b = p.b + j;
+    for (std::size_t k = 0; k < p.terms; ++k, a += p.lda, b += p.ldb) {
+        Wide left[Vectors];
+        for (std::size_t v = 0; v < Vectors; ++v) {
+            std::memcpy(&left[v], a + lanes * v, sizeof(Wide));
+        }
+        for (std::size_t c = 0; c < tile; ++c) {
+            const Wide right = {b[c], b[c], b[c], b[c]};
+            for (std::size_t v = 0; v < Vectors; ++v) {
+                sum[c][v] = sum[c][v] - left[v] * right;
+            }
+        }
+    }
+    for (std::size_t c = 0; c < tile; ++c) {
+        for (std::size_t v = 0; v < Vectors; ++v) {
+            std::memcpy(p.c + i + lanes * v + p.ldc * (j + c), &sum[c][v], sizeof(Wide));
+        }
+    }
+}
+
+/// Rows [first, last) of the columns [begin, end).
+__attribute__((always_inline)) inline void remainder(const ProductSum& p, std::size_t first, std::size_t last,
+                                                     std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+        for (std::size_t i = first; i < last; ++i) {
+            double sum = p.c[i + p.ldc * j];
+            for (std::size_t k = 0; k < p.terms; ++k) {
+                sum -= p.a[i + p.lda * k] * p.b[j + p.ldb * k];
+            }
+            p.c[i + p.ldc * j] = sum;
+        }
+    }
+}
+
+/// Columns [begin, end); `lower`: from the tile of the diagonal on.
+ISOSTAT_WIDE
+void subtract_columns(const ProductSum& p, std::size_t begin, std::size_t end, bool lower) {
+    std::size_t j = begin;
+    for (; j + tile <= end; j += tile) {
+        std::size_t i = lower ? j : 0;
+        for (; i + 2 * lanes <= p.rows; i += 2 * lanes) {
+            tile_of<2>(p, i, j);
+        }
+        for (; i + lanes <= p.rows; i += lanes) {
+            tile_of<1>(p, i, j);
+        }
+        remainder(p, i, p.rows, j, j + tile);
+    }
+    for (; j < end; ++j) {
+        remainder(p, lower ? j : 0, p.rows, j, j + 1);
+    }
+}
+
+/// y -= x factor
+__attribute__((always_inline)) inline void subtract_multiple(double* y, const double* x, double factor,
+                                                             std::size_t count) {
+    const Wide by = {factor, factor, factor, factor};
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes) {
+        Wide a;
+        Wide b;
+        std::memcpy(&a, y + i, sizeof a);
+        std::memcpy(&b, x + i, sizeof b);
+        a = a - b * by;
+        std::memcpy(y + i, &a, sizeof a);
+    }
+    for (; i < count; ++i) {
+        y[i] -= x[i] * factor;
+    }
+}
+
+/// Four partial sums, then the rest.
+__attribute__((always_inline)) inline double product(const double* x, const double* y, std::size_t count) {
+    Wide sum = {0, 0, 0, 0};
+    std::size_t i = 0;
+    for (; i + lanes <= count; i += lanes) {
+        Wide a;
+        Wide b;
+        std::memcpy(&a, x + i, sizeof a);
+        std::memcpy(&b, y + i, sizeof b);
+        sum = sum + a * b;
+    }
+    double total = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    for (; i < count; ++i) {
+        total += x[i] * y[i];
+    }
+    return total;
+}
+
+/// Columns [begin, end) of a panel of which those before are finished, and the contributions of these subtracted.
+ISOSTAT_WIDE
+bool finish_columns(double* panel, std::size_t rows, std::size_t begin, std::size_t end) {
+    for (std::size_t j = begin; j < end; ++j) {
+        double* const own = panel + rows * j;
+        for (std::size_t k = begin; k < j; ++k) {
+            const double* const before = panel + rows * k;
+            subtract_multiple(own + j, before + j, before[j], rows - j);
+        }
+        if (!(own[j] > 0)) {
+            return false;
+        }
+        const double pivot = std::sqrt(own[j]);
+        const double by = 1 / pivot;
+        own[j] = pivot;
+        for (std::size_t i = j + 1; i < rows; ++i) {
+            own[i] *= by;
+        }
+    }
+    return true;
+}
+
+} // namespace
+
+void ProductSum::subtract() const {
+    subtract_columns(*this, 0, columns, false);
+}
+
+void ProductSum::subtract_lower() const {
+    const double work = 0.5 * static_cast<double>(rows) * static_cast<double>(columns) * static_cast<double>(terms);
+    if (work < worth_a_thread) {
+        subtract_columns(*this, 0, columns, true);
+        return;
+    }
+    const Pieces pieces{columns, 16 * tile};
+    parallel_pieces(pieces.count(),
+                    [&](std::size_t k) { subtract_columns(*this, pieces.first(k), pieces.last(k), true); });
+}
+
+bool factorise_panel(double* panel, std::size_t rows, std::size_t columns) {
+    for (std::size_t begin = 0; begin < columns; begin += panel_step) {
+        const std::size_t end = std::min(columns, begin + panel_step);
+        if (begin > 0) {
+            const std::size_t left = rows - begin;
+            const Pieces pieces{left, 128};
+            const auto part = [&](std::size_t first, std::size_t last) {
+                ProductSum{panel + begin + first + rows * begin,
+                           rows,
+                           panel + begin + first,
+                           rows,
+                           panel + begin,
+                           rows,
+                           last - first,
+                           end - begin,
+                           begin}
+                    .subtract();
+            };
+            if (static_cast<double>(left) * static_cast<double>(end - begin) * static_cast<double>(begin) <
+                worth_a_thread) {
+                part(0, left);
+            } else {
+                parallel_pieces(pieces.count(), [&](std::size_t k) { part(pieces.first(k), pieces.last(k)); });
+            }
+        }
+        if (!finish_columns(panel, rows, begin, end)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+ISOSTAT_WIDE
+void solve_panel(const double* panel, std::size_t rows, std::size_t columns, double* x) {
+    for (std::size_t j = 0; j < columns; ++j) {
+        const double* const l = panel + rows * j;
+        x[j] /= l[j];
+        subtract_multiple(x + j + 1, l + j + 1, x[j], rows - j - 1);
+    }
+}
+
+ISOSTAT_WIDE
+void solve_panel_transposed(const double* panel, std::size_t rows, std::size_t columns, double* x) {
+    for (std::size_t j = columns; j-- > 0;) {
+        const double* const l = panel + rows * j;
+        x[j] = (x[j] - product(l + j + 1, x + j + 1, rows - j - 1)) / l[j];
+    }
+}
+
+} // namespace isostat::preparation

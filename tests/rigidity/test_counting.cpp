@@ -123,6 +123,24 @@ BOOST_AUTO_TEST_CASE(a_contact_taken_away_is_a_mechanism_and_its_release_is_foun
     BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());
 }
 
+BOOST_AUTO_TEST_CASE(as_many_contacts_as_degrees_of_freedom_say_nothing_about_the_rank) {
+    State<2> state = square_lattice(3); // h = 4, k = 0; the middle disk has four contacts
+    std::erase_if(state.contacts,
+                  [](const Contact& c) { return c.i == 4 || (c.kind == ContactKind::disk_disk && c.j == 4); });
+    const Counting counting = count_contacts(state.packing, state.contacts);
+    BOOST_TEST_REQUIRE(counting.dof_count == counting.contact_count);
+    BOOST_TEST(counting.mechanisms >= 2); // the middle disk
+    BOOST_TEST(counting.hyperstaticity == counting.mechanisms);
+    BOOST_TEST(counting.free_dofs.size() == static_cast<std::size_t>(counting.mechanisms));
+    const State<2> regular = two_disks(1, 2, 1, 1);
+    const Counting full = count_contacts(regular.packing, regular.contacts);
+    BOOST_TEST(full.rank == full.dof_count);
+    BOOST_TEST(full.mechanisms == 0);
+    BOOST_TEST(full.hyperstaticity == 0);
+    BOOST_TEST(full.free_dofs.empty());
+    BOOST_TEST((full.rank_exact == Verdict::proved));
+}
+
 BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices) {
     State<2> state = two_disks(1, 2, 1, 1);
     BOOST_TEST(IsostaticStructure<2>::prove(state.packing, state.contacts).ok());

@@ -15,7 +15,7 @@
 namespace isostat::preparation {
 
 /// Beyond so many disks neither the simplex method (at 100 000 a programme with 419 changes had not ended after 330 s;
-/// the interior-point method takes 15 s) nor the descent (its products wander at 1e-3 for 500 steps: one step length
+/// the interior-point method takes 15 s) nor the descent (its products wander at 1e-3 for 240 steps: one step length
 /// for all the disks is that of the worst place).
 inline constexpr std::size_t many_disks = 50000;
 

@@ -14,8 +14,8 @@ namespace isostat::preparation {
 
 /// Of the objective against stress 1.
 inline constexpr double objective_scale = 256;
-/// Contacts that change from one programme to the next: as many pivots of the simplex method (3 ms each at n = 10 000)
-/// are cheaper below this than some 25 iterations of the other (0.6 s).
+/// Contacts that change from one programme to the next: as many pivots of the simplex method (5 ms each at n = 20 000)
+/// are cheaper below this than some 25 iterations of the other (1.5 to 2 s there).
 inline long few_changes(std::size_t disks) {
     return disks > many_disks ? 0 : 200;
 }

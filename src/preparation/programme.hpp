@@ -61,7 +61,7 @@ template <int Dim> class ContactProgramme {
     /// force fall. Moves `packing`. Outcome `optimal`: `contacts` may be tried (they are as many as columns, and have
     /// stayed the same, when `bounds` is 0) and are the basis of the next programme. `failed`: the packing is where it
     /// got to, and the programmes go on from there. Nothing is proved. `watch` is called after every step. Cost: 30 to
-    /// 190 factorisations for 10 000 disks, 260 to 290 for 20 000; no bound is known. Not tried for `many_disks`.
+    /// 190 factorisations for 10 000 disks, 260 to 290 for 20 000; no bound is known. Not tried above `many_disks`.
     ProgrammeStep descend(Packing<Dim>& packing, double eps, const std::function<void(const ProgrammeStep&)>& watch);
 
     /// The pairs that a programme at `packing` holds apart, sorted.

@@ -67,8 +67,6 @@ CliqueMatrix::CliqueMatrix(std::size_t columns, const std::vector<int>& start, c
     share_out();
 }
 
-CliqueMatrix::~CliqueMatrix() = default;
-
 void CliqueMatrix::analyse(std::size_t columns, const std::vector<int>& column) {
     // Lower triangle by columns, diagonal first.
     std::vector<std::pair<int, int>> entries;
@@ -110,6 +108,7 @@ void CliqueMatrix::analyse(std::size_t columns, const std::vector<int>& column) 
     fronts_.resize(analysis->nsuper);
     front_of_.resize(columns);
     row_.assign(row, row + row_start[analysis->nsuper]);
+    in_parent_.resize(row_.size());
     std::size_t values = 0;
     for (std::size_t f = 0; f < fronts_.size(); ++f) {
         Front& front = fronts_[f];
@@ -125,7 +124,14 @@ void CliqueMatrix::analyse(std::size_t columns, const std::vector<int>& column) 
         Front& front = fronts_[f];
         if (front.rows > front.columns) {
             front.parent = front_of_[static_cast<std::size_t>(row_[front.row + front.columns])];
-            fronts_[static_cast<std::size_t>(front.parent)].children.push_back(static_cast<int>(f));
+            Front& parent = fronts_[static_cast<std::size_t>(front.parent)];
+            parent.children.push_back(static_cast<int>(f));
+            for (std::size_t k = front.row + front.columns, p = parent.row; k < front.row + front.rows; ++k) {
+                while (row_[p] != row_[k]) { // both ascend, and the parent has them all
+                    ++p;
+                }
+                in_parent_[k] = p - parent.row;
+            }
         }
     }
     value_.resize(values);
@@ -178,34 +184,27 @@ void CliqueMatrix::share_out() {
     }
 }
 
-void CliqueMatrix::find_rows(const Front& front, std::vector<int>& local) const {
-    for (std::size_t k = 0; k < front.rows; ++k) {
-        local[static_cast<std::size_t>(row_[front.row + k])] = static_cast<int>(k);
-    }
-}
-
 /// One front: what its children leave, its columns, what it leaves itself.
-bool CliqueMatrix::eliminate(std::size_t f, std::vector<int>& local) {
+bool CliqueMatrix::eliminate(std::size_t f) {
     const Front& front = fronts_[f];
     const std::size_t below = front.rows - front.columns;
     double* const panel = value_.data() + front.value;
     std::vector<double>& update = update_[f];
     update.assign(below * below, 0.0);
-    find_rows(front, local);
     for (const int c : front.children) {
         const Front& child = fronts_[static_cast<std::size_t>(c)];
         std::vector<double>& left = update_[static_cast<std::size_t>(c)];
         const std::size_t size = child.rows - child.columns;
-        const int* const row = row_.data() + child.row + child.columns;
+        const std::size_t* const place = in_parent_.data() + child.row + child.columns;
         for (std::size_t j = 0; j < size; ++j) {
-            const auto column = static_cast<std::size_t>(local[static_cast<std::size_t>(row[j])]);
+            const std::size_t column = place[j];
             // Rows of a child keep their order: the lower triangle stays one.
             const bool own = column < front.columns;
             double* const to = own ? panel + front.rows * column : update.data() + below * (column - front.columns);
-            const int shift = own ? 0 : static_cast<int>(front.columns);
+            const std::size_t shift = own ? 0 : front.columns;
             const double* const from = left.data() + size * j;
             for (std::size_t i = j; i < size; ++i) {
-                to[local[static_cast<std::size_t>(row[i])] - shift] += from[i];
+                to[place[i] - shift] += from[i];
             }
         }
         left = {};
@@ -222,16 +221,14 @@ bool CliqueMatrix::eliminate(std::size_t f, std::vector<int>& local) {
 bool CliqueMatrix::factorise() {
     std::atomic<bool> good = true;
     parallel_pieces(subtrees_.size(), [&](std::size_t k) {
-        std::vector<int> local(order_.size());
         for (std::size_t f = subtrees_[k].first; f < subtrees_[k].last && good; ++f) {
-            if (!eliminate(f, local)) {
+            if (!eliminate(f)) {
                 good = false;
             }
         }
     });
-    std::vector<int> local(order_.size());
     for (std::size_t f = 0; f < fronts_.size() && good; ++f) {
-        if (above_[f] != 0 && !eliminate(f, local)) {
+        if (above_[f] != 0 && !eliminate(f)) {
             good = false;
         }
     }
@@ -246,18 +243,15 @@ void CliqueMatrix::solve(std::vector<double>& b) {
     for (std::size_t k = 0; k < b.size(); ++k) {
         x_[k] = b[static_cast<std::size_t>(order_[k])];
     }
-    const auto forwards = [&](std::size_t f, std::vector<int>& local) {
+    const auto forwards = [&](std::size_t f) {
         const Front& front = fronts_[f];
         double* const own = left_.data() + front.row;
         std::copy_n(x_.data() + front.first, front.columns, own);
         std::fill(own + front.columns, own + front.rows, 0.0);
-        if (!front.children.empty()) {
-            find_rows(front, local);
-        }
         for (const int c : front.children) {
             const Front& child = fronts_[static_cast<std::size_t>(c)];
             for (std::size_t i = child.row + child.columns; i < child.row + child.rows; ++i) {
-                own[local[static_cast<std::size_t>(row_[i])]] += left_[i];
+                own[in_parent_[i]] += left_[i];
             }
         }
         solve_panel(value_.data() + front.value, front.rows, front.columns, own);
@@ -272,15 +266,13 @@ void CliqueMatrix::solve(std::vector<double>& b) {
         std::copy_n(own, front.columns, x_.data() + front.first);
     };
     parallel_pieces(subtrees_.size(), [&](std::size_t k) {
-        std::vector<int> local(order_.size());
         for (std::size_t f = subtrees_[k].first; f < subtrees_[k].last; ++f) {
-            forwards(f, local);
+            forwards(f);
         }
     });
-    std::vector<int> local(order_.size());
     for (std::size_t f = 0; f < fronts_.size(); ++f) {
         if (above_[f] != 0) {
-            forwards(f, local);
+            forwards(f);
         }
     }
     for (std::size_t f = fronts_.size(); f-- > 0;) {

@@ -3,7 +3,6 @@
 /// Symmetric matrices that are sums of small blocks, one per contact: Cholesky factors and solves.
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 namespace isostat::preparation {
@@ -16,9 +15,6 @@ namespace isostat::preparation {
 class CliqueMatrix {
   public:
     CliqueMatrix(std::size_t columns, const std::vector<int>& start, const std::vector<int>& column);
-    ~CliqueMatrix();
-    CliqueMatrix(const CliqueMatrix&) = delete;
-    CliqueMatrix& operator=(const CliqueMatrix&) = delete;
 
     /// Entry of block l between the places p and r of `column` : block(l, p, r), for r <= p. False when the matrix is
     /// not positive definite as far as rounded numbers say.
@@ -59,8 +55,7 @@ class CliqueMatrix {
     void analyse(std::size_t columns, const std::vector<int>& column);
     void share_out();
     bool factorise();
-    void find_rows(const Front& front, std::vector<int>& local) const;
-    bool eliminate(std::size_t front, std::vector<int>& local);
+    bool eliminate(std::size_t front);
     [[nodiscard]] std::size_t place_of(std::size_t row, std::size_t column) const;
 
     std::vector<int> block_start_;
@@ -69,6 +64,7 @@ class CliqueMatrix {
     std::vector<Front> fronts_;                       ///< children first
     std::vector<int> front_of_;                       ///< of each place
     std::vector<int> row_;
+    std::vector<std::size_t> in_parent_; ///< of each row below a front: its place among the rows of the parent
     std::vector<Subtree> subtrees_;
     std::vector<unsigned char> above_;        ///< fronts that are in no subtree
     std::vector<double> value_;               ///< L

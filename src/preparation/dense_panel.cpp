@@ -1,24 +1,16 @@
 #include "preparation/dense_panel.hpp"
 
+#include "core/wide.hpp"
+
 #include <isostat/core/threads.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-
-// The same operations on four numbers at a time where the processor can; no contraction, hence the same bits.
-// Not under ThreadSanitizer: resolvers of clones run before it is ready.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define ISOSTAT_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define ISOSTAT_WIDE
-#endif
 
 namespace isostat::preparation {
 
 namespace {
 
-using Wide = double __attribute__((vector_size(32)));
 constexpr std::size_t lanes = 4;
 constexpr std::size_t tile = 4;       ///< columns
 constexpr std::size_t panel_step = 8; ///< columns of a panel that are finished together
@@ -26,12 +18,11 @@ constexpr std::size_t panel_step = 8; ///< columns of a panel that are finished 
 constexpr double worth_a_thread = 2e5;
 
 /// `Vectors` times four rows, four columns.
-template <std::size_t Vectors>
-__attribute__((always_inline)) inline void tile_of(const ProductSum& p, std::size_t i, std::size_t j) {
+template <std::size_t Vectors> ISOSTAT_WITHIN_WIDE void tile_of(const ProductSum& p, std::size_t i, std::size_t j) {
     Wide sum[tile][Vectors];
     for (std::size_t c = 0; c < tile; ++c) {
         for (std::size_t v = 0; v < Vectors; ++v) {
-            std::memcpy(&sum[c][v], p.c + i + lanes * v + p.ldc * (j + c), sizeof(Wide));
+            read(sum[c][v], p.c + i + lanes * v + p.ldc * (j + c));
         }
     }
     const double* a = p.a + i;
@@ -39,7 +30,7 @@ __attribute__((always_inline)) inline void tile_of(const ProductSum& p, std::siz
     for (std::size_t k = 0; k < p.terms; ++k, a += p.lda, b += p.ldb) {
         Wide left[Vectors];
         for (std::size_t v = 0; v < Vectors; ++v) {
-            std::memcpy(&left[v], a + lanes * v, sizeof(Wide));
+            read(left[v], a + lanes * v);
         }
         for (std::size_t c = 0; c < tile; ++c) {
             const Wide right = {b[c], b[c], b[c], b[c]};
@@ -50,14 +41,14 @@ __attribute__((always_inline)) inline void tile_of(const ProductSum& p, std::siz
     }
     for (std::size_t c = 0; c < tile; ++c) {
         for (std::size_t v = 0; v < Vectors; ++v) {
-            std::memcpy(p.c + i + lanes * v + p.ldc * (j + c), &sum[c][v], sizeof(Wide));
+            write(p.c + i + lanes * v + p.ldc * (j + c), sum[c][v]);
         }
     }
 }
 
 /// Rows [first, last) of the columns [begin, end).
-__attribute__((always_inline)) inline void remainder(const ProductSum& p, std::size_t first, std::size_t last,
-                                                     std::size_t begin, std::size_t end) {
+ISOSTAT_WITHIN_WIDE void remainder(const ProductSum& p, std::size_t first, std::size_t last, std::size_t begin,
+                                   std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
         for (std::size_t i = first; i < last; ++i) {
             double sum = p.c[i + p.ldc * j];
@@ -89,17 +80,16 @@ void subtract_columns(const ProductSum& p, std::size_t begin, std::size_t end, b
 }
 
 /// y -= x factor
-__attribute__((always_inline)) inline void subtract_multiple(double* y, const double* x, double factor,
-                                                             std::size_t count) {
+ISOSTAT_WITHIN_WIDE void subtract_multiple(double* y, const double* x, double factor, std::size_t count) {
     const Wide by = {factor, factor, factor, factor};
     std::size_t i = 0;
     for (; i + lanes <= count; i += lanes) {
         Wide a;
         Wide b;
-        std::memcpy(&a, y + i, sizeof a);
-        std::memcpy(&b, x + i, sizeof b);
+        read(a, y + i);
+        read(b, x + i);
         a = a - b * by;
-        std::memcpy(y + i, &a, sizeof a);
+        write(y + i, a);
     }
     for (; i < count; ++i) {
         y[i] -= x[i] * factor;
@@ -107,14 +97,14 @@ __attribute__((always_inline)) inline void subtract_multiple(double* y, const do
 }
 
 /// Four partial sums, then the rest.
-__attribute__((always_inline)) inline double product(const double* x, const double* y, std::size_t count) {
+ISOSTAT_WITHIN_WIDE double product(const double* x, const double* y, std::size_t count) {
     Wide sum = {0, 0, 0, 0};
     std::size_t i = 0;
     for (; i + lanes <= count; i += lanes) {
         Wide a;
         Wide b;
-        std::memcpy(&a, x + i, sizeof a);
-        std::memcpy(&b, y + i, sizeof b);
+        read(a, x + i);
+        read(b, y + i);
         sum = sum + a * b;
     }
     double total = (sum[0] + sum[1]) + (sum[2] + sum[3]);

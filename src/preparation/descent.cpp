@@ -190,7 +190,7 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
     }
     column_status_.assign(packing.q.size(), ClpSimplex::basic);
     first_ = false;
-    inside_ = step.bounds != 0 || step.changes > few_changes(disks / Dim);
+    inside_ = step.bounds != 0 || step.changes > few_changes;
     return step;
 }
 

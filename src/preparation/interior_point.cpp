@@ -295,18 +295,14 @@ ActiveSet interior_point(const BoxedProgramme& programme, double tolerance, cons
     return result;
 }
 
-struct InteriorDescent::Matrix {
-    CliqueMatrix clique;
-    explicit Matrix(const BoxedProgramme& p) : clique(p.cost.size(), p.start, p.column) {}
-};
-
-InteriorDescent::InteriorDescent(const BoxedProgramme& pattern) : matrix_(std::make_unique<Matrix>(pattern)) {}
+InteriorDescent::InteriorDescent(const BoxedProgramme& pattern)
+    : matrix_(std::make_unique<CliqueMatrix>(pattern.cost.size(), pattern.start, pattern.column)) {}
 
 InteriorDescent::~InteriorDescent() = default;
 
 InteriorStep InteriorDescent::step(const BoxedProgramme& programme, InteriorPoint& point) {
     InteriorStep result;
-    CliqueMatrix& matrix = matrix_->clique;
+    CliqueMatrix& matrix = *matrix_;
     Iteration iteration(programme);
     iteration.start_from(point);
     result.product = iteration.mean_row_product();

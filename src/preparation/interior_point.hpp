@@ -9,6 +9,8 @@
 
 namespace isostat::preparation {
 
+class CliqueMatrix;
+
 /// minimise cost.x subject to A x >= lower, |x_k| <= bound_k.
 struct BoxedProgramme {
     std::vector<int> start;    ///< rows of A: entries start[l] ... start[l + 1] - 1
@@ -65,8 +67,7 @@ class InteriorDescent {
     InteriorStep step(const BoxedProgramme& programme, InteriorPoint& point);
 
   private:
-    struct Matrix;
-    std::unique_ptr<Matrix> matrix_;
+    std::unique_ptr<CliqueMatrix> matrix_;
 };
 
 } // namespace isostat::preparation

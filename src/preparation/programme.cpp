@@ -235,7 +235,7 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
         step.bounds += status != ClpSimplex::basic ? 1 : 0;
     }
     first_ = false;
-    inside_ = large_ && pivots > few_changes(infinitesimal_->size() / Dim);
+    inside_ = large_ && (many() || pivots > few_changes);
     return step;
 }
 
@@ -278,8 +278,8 @@ bool ContactProgramme<Dim>::solve_inside(Rows& rows, const BoxedProgramme& progr
     row_contact_ = std::move(rows.contact);
     row_status_ = std::move(row_status);
     first_ = false;
-    inside_ = missing != 0 || step.changes > few_changes(infinitesimal_->size() /
-                                                         Dim); // the simplex method needs a basis that is nearly right
+    // The simplex method needs a basis that is nearly right.
+    inside_ = many() || missing != 0 || step.changes > few_changes;
     return true;
 }
 

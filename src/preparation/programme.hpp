@@ -72,6 +72,7 @@ template <int Dim> class ContactProgramme {
     void collect(const Packing<Dim>& packing, Rows& rows) const;
     BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
     InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
+    [[nodiscard]] bool many() const { return infinitesimal_->size() > Dim * many_disks; }
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
 
     const std::vector<double>* infinitesimal_;

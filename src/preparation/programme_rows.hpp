@@ -16,9 +16,7 @@ namespace isostat::preparation {
 inline constexpr double objective_scale = 256;
 /// Contacts that change from one programme to the next: as many pivots of the simplex method (5 ms each at n = 20 000)
 /// are cheaper below this than some 25 iterations of the other (1.5 to 2 s there).
-inline long few_changes(std::size_t disks) {
-    return disks > many_disks ? 0 : 200;
-}
+inline constexpr long few_changes = 200;
 
 template <int Dim> struct ContactProgramme<Dim>::Rows {
     std::vector<Contact> contact;

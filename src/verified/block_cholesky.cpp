@@ -1,27 +1,18 @@
 #include "verified/block_cholesky.hpp"
 
+#include "core/wide.hpp"
+
 #include <amd.h>
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <new>
 #include <numeric>
-
-// The same operations on four numbers at a time where the processor can; no contraction, hence the same bits.
-// Not under ThreadSanitizer: resolvers of clones run before it is ready.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define ISOSTAT_WIDE __attribute__((target_clones("avx2", "default")))
-#else
-#define ISOSTAT_WIDE
-#endif
 
 namespace isostat {
 
 namespace {
-
-using Wide = double __attribute__((vector_size(32)));
 
 constexpr double u = 0x1p-53;
 
@@ -243,7 +234,7 @@ bool BlockCholesky::factorise(double shift) {
             const int own = across[a];
             const int left = start[c + 1] - own;
             Wide l;
-            std::memcpy(&l, value[own].value.data(), sizeof l);
+            read(l, value[own].value.data());
             const Wide first = __builtin_shufflevector(l, l, 0, 0, 1, 1);
             const Wide second = __builtin_shufflevector(l, l, 2, 2, 3, 3);
             const bool two = a + 1 < across_end && row[start[c]] == column[a + 1] &&
@@ -253,16 +244,16 @@ bool BlockCholesky::factorise(double shift) {
                     double* target = work[place[row[own + q]]].value.data();
                     Wide m;
                     Wide w;
-                    std::memcpy(&m, value[own + q].value.data(), sizeof m);
-                    std::memcpy(&w, target, sizeof w);
+                    read(m, value[own + q].value.data());
+                    read(w, target);
                     w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
                     w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
-                    std::memcpy(target, &w, sizeof w);
+                    write(target, w);
                 }
                 continue;
             }
             const int other = across[++a];
-            std::memcpy(&l, value[other].value.data(), sizeof l);
+            read(l, value[other].value.data());
             const Wide third = __builtin_shufflevector(l, l, 0, 0, 1, 1);
             const Wide fourth = __builtin_shufflevector(l, l, 2, 2, 3, 3);
             for (int q = 0; q < left; ++q) {
@@ -270,14 +261,14 @@ bool BlockCholesky::factorise(double shift) {
                 Wide m;
                 Wide k;
                 Wide w;
-                std::memcpy(&m, value[own + q].value.data(), sizeof m);
-                std::memcpy(&k, value[other + q].value.data(), sizeof k);
-                std::memcpy(&w, target, sizeof w);
+                read(m, value[own + q].value.data());
+                read(k, value[other + q].value.data());
+                read(w, target);
                 w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
                 w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
                 w = w - __builtin_shufflevector(k, k, 0, 1, 0, 1) * third;
                 w = w - __builtin_shufflevector(k, k, 2, 3, 2, 3) * fourth;
-                std::memcpy(target, &w, sizeof w);
+                write(target, w);
             }
         }
         const std::array<double, 4>& diagonal = work[0].value;

@@ -56,7 +56,7 @@ struct PreparationOptions {
     /// steps, and ends at 3 `relaxation`; an interior-point descent comes before the programmes (up to 50 000
     /// disks) and mostly ends at their vertex; programmes that are expected to change many contacts, and all of them
     /// above 50 000 disks, are solved by an interior-point method. The pivots of the simplex method grow as n (13 000
-    /// at n = 20 000, 5 ms each), interior-point iterations hardly do (25 at 10 000, 28 at 100 000).
+    /// at n = 20 000, 5 ms each), interior-point iterations hardly do (24 at 20 000, 28 at 100 000).
     int large_above = 8192;
 };
 

@@ -25,8 +25,8 @@ struct Counting {
     std::vector<int> free_dofs; ///< k degrees of freedom that, when held, leave no mechanism (rank N_f is then proved)
 };
 
-/// Any number of contacts, walls, fixed disks. Cost: one elimination mod p in natural column order; meant for
-/// inspection, not for the path.
+/// Any number of contacts, walls, fixed disks. Cost: an exact rank when the matrix is square and regular mod p; else
+/// also an elimination in natural column order, O(n^2) for packings: meant for inspection, not for the path.
 template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
 
 extern template Counting count_contacts<2>(const Packing<2>&, const std::vector<Contact>&);

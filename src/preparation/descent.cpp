@@ -14,10 +14,12 @@ namespace {
 
 /// Two starts of 20 000 disks: 262 and 289 steps, of 10 000: 32 to 194. After so many the programmes have to do it.
 constexpr int most_steps = 400;
+constexpr int most_steps_late = 1500; ///< after Newton steps; one sample of 100 000: 385
 /// The gaps at the beginning, in the internal unit, that the products correspond to with mean forces: a few overlaps of
 /// the dynamics. Five starts of 10 000 disks, well relaxed or hardly: 47 to 113 steps; with 1e-4 one of them, with 1e-3
 /// two do not end in 130, because the packing first swells and rearranges.
 constexpr double first_slack = 2e-5;
+constexpr double first_slack_late = 3e-6; ///< after Newton steps
 /// Forces of the start below this share of the mean are raised to it.
 constexpr double least_force = 0.01;
 /// Share of a complete contact list from which on the overlaps of the start are taken as its forces.
@@ -67,8 +69,9 @@ InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, co
     for (int a = 0; a < Dim; ++a) {
         work *= packing.length(a);
     }
-    const double centre = work / static_cast<double>(rows.contact.size()) * first_slack;
-    const double force = centre / first_slack; // of order of the mean one, as distances are of order 1
+    const double first = method_ == ProgrammeMethod::interior ? first_slack_late : first_slack;
+    const double centre = work / static_cast<double>(rows.contact.size()) * first;
+    const double force = centre / first; // of order of the mean one, as distances are of order 1
     const bool dense = static_cast<double>(closed) >= dense_enough * static_cast<double>(packing.q.size());
     InteriorPoint point;
     for (const double h : rows.gap) {
@@ -76,7 +79,7 @@ InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, co
             point.force.push_back(std::max(work / virial * -h, least_force * force));
             point.slack.push_back(centre / point.force.back());
         } else {
-            point.slack.push_back(std::max(h, first_slack));
+            point.slack.push_back(std::max(h, first));
             point.force.push_back(centre / point.slack.back());
         }
     }
@@ -96,7 +99,8 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
     std::vector<double> anchor;
     int settled = 0;
     int below = 0;
-    while (step.iterations < most_steps && settled < settled_steps && below < most_below) {
+    const int most = method_ == ProgrammeMethod::interior ? most_steps_late : most_steps;
+    while (step.iterations < most && settled < settled_steps && below < most_below) {
         if (stop_ != nullptr && stop_->load(std::memory_order_relaxed)) {
             step.outcome = ProgrammeStep::Outcome::interrupted;
             return step;

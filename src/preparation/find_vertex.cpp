@@ -85,17 +85,20 @@ template <int Dim> class VertexSearch {
     Result<State<Dim>> run() {
         const std::vector<double> g = generic_infinitesimal<Dim>(packing_.radius, report_.infinitesimal_seed);
         const bool large = packing_.disk_count() > options_.large_above;
-        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), large, options_.stop);
+        const ProgrammeMethod method = !large ? ProgrammeMethod::simplex
+                                       : packing_.disk_count() > options_.newton_above
+                                           ? ProgrammeMethod::interior
+                                           : ProgrammeMethod::interior_first;
+        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), method, options_.stop);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
-        const bool descent = large && packing_.radius.size() <= many_disks;
-        if (descent && options_.max_programmes > 0) {
+        if (large && options_.max_programmes > 0) {
             if (auto vertex = descend(programme, weight)) {
                 return succeed(std::move(*vertex));
             }
         }
         while (programmes_ < options_.max_programmes) {
-            const ProgrammeStep step = programme.solve(packing_, weight);
+            ProgrammeStep step = programme.solve(packing_, weight);
             ++programmes_;
             pivots_ += step.pivots;
             if (auto failure = judge(step, programme)) {
@@ -105,6 +108,9 @@ template <int Dim> class VertexSearch {
                 continue;
             }
             move(step);
+            if (step.bounds != 0 && step.changes <= settled_pivots && complete(programme, weight, step.contacts)) {
+                step.bounds = 0;
+            }
             if (!worth_an_attempt(step)) {
                 continue;
             }
@@ -150,12 +156,18 @@ template <int Dim> class VertexSearch {
         entry.contacts = static_cast<int>(end.contacts.size());
         entry.solid_fraction = packing_.solid_fraction();
         report_.stages.push_back(entry);
-        if (!entry.completed || end.bounds != 0) {
+        std::vector<Contact> contacts = end.contacts;
+        if (!entry.completed || (end.bounds != 0 && !complete(programme, weight, contacts))) {
             return std::nullopt;
         }
-        contacts_ = entry.contacts;
-        auto polished = attempt(end.contacts);
+        contacts_ = static_cast<int>(contacts.size());
+        auto polished = attempt(contacts);
         return polished.ok() ? std::optional(std::move(polished.value())) : std::nullopt;
+    }
+
+    /// Contacts that an interior-point method left open.
+    bool complete(ContactProgramme<Dim>& programme, double weight, std::vector<Contact>& contacts) {
+        return contacts.size() < packing_.q.size() && programme.complete(packing_, weight, contacts);
     }
 
     Result<Polished<Dim>> attempt(const std::vector<Contact>& contacts) {

@@ -155,7 +155,10 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
         return Failure{FailureKind::undecided,
                        "no bound of the inverse of the contact matrix was proved in double precision"};
     }
-    const VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
+    VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
+    if (vertex.verdict != Verdict::proved) { // large packings: gaps at the rounding of the coordinates are too many
+        vertex = enclose_vertex_double_double(packing, structure, factorisation, inverse);
+    }
     if (vertex.verdict != Verdict::proved) {
         return Failure{
             FailureKind::undecided,

@@ -42,9 +42,10 @@ class StopHandler : public ClpEventHandler {
 } // namespace
 
 template <int Dim>
-ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust, bool large,
+ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
                                         const std::atomic<bool>* stop)
-    : infinitesimal_(&infinitesimal), trust_(trust), stop_(stop), large_(large), inside_(large) {}
+    : infinitesimal_(&infinitesimal), trust_(trust), stop_(stop), method_(method),
+      inside_(method != ProgrammeMethod::simplex) {}
 
 template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
     // Two disks approach by at most 2 sqrt(Dim) trust: a pair farther apart cannot overlap after the step.
@@ -235,7 +236,8 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
         step.bounds += status != ClpSimplex::basic ? 1 : 0;
     }
     first_ = false;
-    inside_ = large_ && (many() || pivots > few_changes);
+    inside_ =
+        method_ == ProgrammeMethod::interior || (method_ == ProgrammeMethod::interior_first && pivots > few_changes);
     return step;
 }
 
@@ -279,7 +281,7 @@ bool ContactProgramme<Dim>::solve_inside(Rows& rows, const BoxedProgramme& progr
     row_status_ = std::move(row_status);
     first_ = false;
     // The simplex method needs a basis that is nearly right.
-    inside_ = many() || missing != 0 || step.changes > few_changes;
+    inside_ = method_ == ProgrammeMethod::interior || missing != 0 || step.changes > few_changes;
     return true;
 }
 

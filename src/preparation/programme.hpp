@@ -14,10 +14,12 @@
 
 namespace isostat::preparation {
 
-/// Beyond so many disks neither the simplex method (at 100 000 a programme with 419 changes had not ended after 330 s;
-/// the interior-point method takes 15 s) nor the descent (its products wander at 1e-3 for 240 steps: one step length
-/// for all the disks is that of the worst place).
-inline constexpr std::size_t many_disks = 50000;
+/// What solves the programmes.
+enum class ProgrammeMethod : unsigned char {
+    simplex,
+    interior_first, ///< interior points where many pivots are expected
+    interior        ///< interior points, unless they fail: the largest packings, after Newton steps
+};
 
 /// What one linear programme gave.
 struct ProgrammeStep {
@@ -40,9 +42,9 @@ struct ProgrammeStep {
 /// multipliers eps g of rattlers.
 template <int Dim> class ContactProgramme {
   public:
-    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step. `large`: many
-    /// pivots are expected at first.
-    ContactProgramme(const std::vector<double>& infinitesimal, double trust, bool large, const std::atomic<bool>* stop);
+    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step.
+    ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
+                     const std::atomic<bool>* stop);
 
     /// Minimises sum_a F_a dL_a - eps g.dx, F_a = product of the other lengths, over displacements within the trust
     /// bounds.
@@ -61,8 +63,15 @@ template <int Dim> class ContactProgramme {
     /// force fall. Moves `packing`. Outcome `optimal`: `contacts` may be tried (they are as many as columns, and have
     /// stayed the same, when `bounds` is 0) and are the basis of the next programme. `failed`: the packing is where it
     /// got to, and the programmes go on from there. Nothing is proved. `watch` is called after every step. Cost: 30 to
-    /// 190 factorisations for 10 000 disks, 260 to 290 for 20 000; no bound is known. Not tried above `many_disks`.
+    /// 190 factorisations for 10 000 disks, 260 to 290 for 20 000, 385 for 100 000; no bound is known.
     ProgrammeStep descend(Packing<Dim>& packing, double eps, const std::function<void(const ProgrammeStep&)>& watch);
+
+    /// The interior-point methods end in the middle of the optimal face where the cost hardly changes along it, as with
+    /// a rattler whose load is nearly balanced by one contact; then `contacts` are fewer than the coordinates. Follows
+    /// a mechanism of theirs downhill to the first pair of the last programme that closes, adds that, and so on:
+    /// `packing` moves a little. False, with both as far as it got, when nothing closes or too many are missing.
+    /// Nothing is proved. Cost: a factorisation per contact.
+    bool complete(Packing<Dim>& packing, double eps, std::vector<Contact>& contacts) const;
 
     /// The pairs that a programme at `packing` holds apart, sorted.
     [[nodiscard]] std::vector<Contact> candidates(const Packing<Dim>& packing) const;
@@ -72,13 +81,12 @@ template <int Dim> class ContactProgramme {
     void collect(const Packing<Dim>& packing, Rows& rows) const;
     BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
     InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
-    [[nodiscard]] bool many() const { return infinitesimal_->size() > Dim * many_disks; }
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
 
     const std::vector<double>* infinitesimal_;
     double trust_;
     const std::atomic<bool>* stop_;
-    bool large_;
+    ProgrammeMethod method_;
     bool first_ = true;
     bool inside_ = false;              ///< the next programme goes to the interior-point method
     std::vector<Contact> row_contact_; ///< sorted

@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
     for (unsigned long long seed = 1; seed <= 10; ++seed) {
         Packing<2> packing = loose_lattice(7, seed);
         const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
-        room::ContactProgramme<2> programme(g, 0.3, false, nullptr);
+        room::ContactProgramme<2> programme(g, 0.3, room::ProgrammeMethod::simplex, nullptr);
         for (int k = 0; k < 6; ++k) {
             const double area = packing.length(0) * packing.length(1);
             const room::ProgrammeStep step = programme.solve(packing, 1e-7);
@@ -116,8 +116,8 @@ BOOST_AUTO_TEST_CASE(a_step_of_a_programme_never_makes_an_overlap) {
 BOOST_AUTO_TEST_CASE(interior_points_and_the_simplex_method_end_at_the_same_point) {
     const auto compare = [](const Packing<2>& packing, unsigned long long seed, bool contacts) {
         const std::vector<double> g = generic_infinitesimal<2>(packing.radius, seed);
-        room::ContactProgramme<2> simplex(g, 0.3, false, nullptr);
-        room::ContactProgramme<2> interior(g, 0.3, true, nullptr);
+        room::ContactProgramme<2> simplex(g, 0.3, room::ProgrammeMethod::simplex, nullptr);
+        room::ContactProgramme<2> interior(g, 0.3, room::ProgrammeMethod::interior_first, nullptr);
         const room::ProgrammeStep expected = simplex.solve(packing, 1e-5);
         const room::ProgrammeStep step = interior.solve(packing, 1e-5);
         BOOST_REQUIRE((expected.outcome == room::ProgrammeStep::Outcome::optimal));
@@ -145,6 +145,35 @@ BOOST_AUTO_TEST_CASE(interior_points_and_the_simplex_method_end_at_the_same_poin
         }
         compare(shaken, 2, true);
     }
+}
+
+// As an interior-point method leaves them where the cost hardly changes along the way: here one, or two, are taken
+// away.
+BOOST_AUTO_TEST_CASE(contacts_left_open_are_found_along_their_mechanisms) {
+    const State<2> vertex = prepared(60, 3);
+    const std::vector<double>& g = vertex.load.infinitesimal;
+    room::ContactProgramme<2> programme(g, 0.3, room::ProgrammeMethod::interior_first, nullptr);
+    const std::vector<Contact> all = programme.solve(vertex.packing, 1e-7).contacts;
+    BOOST_TEST_REQUIRE(all.size() == vertex.packing.q.size());
+    for (std::size_t l = 0; l < all.size(); ++l) {
+        for (const std::size_t taken : {1U, 2U}) {
+            std::vector<Contact> contacts = all;
+            contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>(l));
+            if (taken == 2) {
+                contacts.erase(contacts.begin() + static_cast<std::ptrdiff_t>((l + 17) % contacts.size()));
+            }
+            Packing<2> packing = vertex.packing;
+            BOOST_TEST(programme.complete(packing, 1e-7, contacts));
+            if (taken == 1) {
+                BOOST_TEST((contacts == all), to_string<2>(all[l]));
+            }
+            BOOST_TEST(contacts.size() == all.size());
+            BOOST_TEST(smallest_gap(packing) > -1e-6);
+        }
+    }
+    std::vector<Contact> few(all.begin(), all.begin() + 20);
+    Packing<2> packing = vertex.packing;
+    BOOST_TEST(!programme.complete(packing, 1e-7, few));
 }
 
 BOOST_AUTO_TEST_CASE(an_infeasible_programme_has_no_interior_point) {

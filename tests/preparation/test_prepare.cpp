@@ -126,6 +126,27 @@ BOOST_AUTO_TEST_CASE(the_way_of_large_packings_ends_at_proved_vertices_of_the_sa
     BOOST_TEST(rattlers < 0.09);
 }
 
+// That of very large ones: Newton steps, and no simplex method.
+BOOST_AUTO_TEST_CASE(the_way_of_very_large_packings_ends_at_proved_vertices_too) {
+    for (int seed = 1; seed <= 3; ++seed) {
+        PreparationOptions options;
+        options.disks = 300;
+        options.seed = static_cast<std::uint64_t>(seed);
+        options.large_above = 100;
+        options.newton_above = 200;
+        const Outcome outcome = run(options);
+        must_be_vertex(outcome);
+        for (const std::size_t k : {6U, 7U, 8U, 9U}) {
+            const PreparationStage& stage = outcome.report.stages[k];
+            BOOST_TEST(stage.name.starts_with("newton steps at"), stage.name);
+            BOOST_TEST(stage.completed, "seed " << seed << ", " << stage.name);
+            BOOST_TEST(stage.residual < 3e-3);
+        }
+        BOOST_TEST(outcome.report.stages[9].overlap < outcome.report.stages[6].overlap / 50);
+        BOOST_TEST(outcome.report.pivots == 0);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_bits_and_another_seed_another_packing) {
     const Outcome first = run(60, 7);
     run(33, 5); // leaves nothing behind

@@ -53,11 +53,14 @@ struct PreparationOptions {
     double infinitesimal_weight = 1e-7; ///< eps of the linear programmes: weight of g against the mean contact force
     int max_programmes = 200;
     /// Above this number of disks: the dynamics presses harder first (1e-2 of the stiffness), in patches, with fewer
-    /// steps, and ends at 3 `relaxation`; an interior-point descent comes before the programmes (up to 50 000
-    /// disks) and mostly ends at their vertex; programmes that are expected to change many contacts, and all of them
-    /// above 50 000 disks, are solved by an interior-point method. The pivots of the simplex method grow as n (13 000
-    /// at n = 20 000, 5 ms each), interior-point iterations hardly do (24 at 20 000, 28 at 100 000).
+    /// steps, and ends at 3 `relaxation`; an interior-point descent comes before the programmes and mostly ends at
+    /// their vertex; programmes that are expected to change many contacts are solved by an interior-point method. The
+    /// pivots of the simplex method grow as n (13 000 at n = 20 000, 5 ms each), interior-point iterations hardly do
+    /// (24 at 20 000, 28 at 100 000).
     int large_above = 8192;
+    /// Above this number too: Newton steps follow the dynamics, at `softness` and down to a hundredth of it, and no
+    /// programme goes to the simplex method first (at 100 000 one with 419 changes had not ended after 330 s).
+    int newton_above = 50000;
 };
 
 /// Figures of one stage.

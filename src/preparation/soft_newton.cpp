@@ -1,0 +1,237 @@
+#include "preparation/soft_newton.hpp"
+
+#include "preparation/neighbours.hpp"
+
+#include <isostat/core/threads.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace isostat::preparation {
+
+namespace {
+
+/// Pairs are listed up to this gap, in the internal unit, and the list renewed when something has moved by a third of
+/// it: two disks approach by less than 2 sqrt(2) of that.
+constexpr double reach = 0.1;
+constexpr double renewal = reach / 3;
+/// Longest step of a disk, mean diameters: beyond it the normals are others.
+constexpr double longest_step = 0.1;
+/// The search ends where the slope is below this share of the first one.
+constexpr double flat = 0.3;
+constexpr int most_trials = 12;
+/// Damping in units of the stiffness: to begin with, how it changes, after steps below and above these shares of the
+/// whole, and its range.
+constexpr double first_damping = 1e-4;
+constexpr double damping_factor = 3;
+constexpr double short_step = 0.2;
+constexpr double long_step = 0.5;
+constexpr double least_damping = 1e-14;
+constexpr double most_damping = 1;
+/// Damping of a wall, per disk: it moves what it drags.
+constexpr double wall_damping = 0.3;
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+} // namespace
+
+template <int Dim>
+SoftNewton<Dim>::SoftNewton(Packing<Dim>& packing, const std::atomic<bool>* stop, std::function<void(double)> progress)
+    : packing_(packing), damping_(first_damping), stop_(stop), progress_(std::move(progress)) {
+    mean_diameter_ = 2 * std::accumulate(packing.radius.begin(), packing.radius.end(), 0.0) /
+                     static_cast<double>(packing.radius.size());
+}
+
+template <int Dim> void SoftNewton<Dim>::collect() {
+    PairList near;
+    find_pairs<Dim>(packing_.q, packing_.radius, reach, near);
+    pairs_.clear();
+    const int n = packing_.disk_count();
+    for (int i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        for (int p = near.start[k]; p < near.start[k + 1]; ++p) {
+            pairs_.push_back({ContactKind::disk_disk, i, near.partner[static_cast<std::size_t>(p)]});
+        }
+    }
+    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+        for (int i = 0; i < n; ++i) {
+            for (int a = 0; a < Dim; ++a) {
+                const Contact wall{kind, i, a};
+                if (gap(packing_, wall) < reach) {
+                    pairs_.push_back(wall);
+                }
+            }
+        }
+    }
+    start_.assign(1, 0);
+    column_.clear();
+    for (const Contact& pair : pairs_) {
+        const GapGradient<Dim> g = gap_gradient(packing_, pair);
+        column_.insert(column_.end(), g.coordinate.begin(), g.coordinate.begin() + g.count);
+        start_.push_back(static_cast<int>(column_.size()));
+    }
+    value_.resize(column_.size());
+    gap_.resize(pairs_.size());
+    anchor_ = packing_.q;
+    matrix_.emplace(packing_.q.size(), start_, column_);
+}
+
+template <int Dim> bool SoftNewton<Dim>::left_the_list() const {
+    for (std::size_t k = 0; k < anchor_.size(); ++k) {
+        if (std::abs(packing_.q[k] - anchor_[k]) > renewal) {
+            return true;
+        }
+    }
+    return anchor_.empty();
+}
+
+template <int Dim> void SoftNewton<Dim>::evaluate() {
+    const Pieces pieces{pairs_.size(), 8192};
+    parallel_pieces(pieces.count(), [&](std::size_t piece) {
+        for (std::size_t l = pieces.first(piece); l < pieces.last(piece); ++l) {
+            const GapGradient<Dim> g = gap_gradient(packing_, pairs_[l]);
+            std::copy_n(g.value.begin(), g.count, value_.begin() + start_[l]);
+            gap_[l] = gap(packing_, pairs_[l]);
+        }
+    });
+}
+
+template <int Dim> void SoftNewton<Dim>::gradient(double pressure, std::vector<double>& slope) const {
+    slope.assign(packing_.q.size(), 0.0);
+    for (std::size_t l = 0; l < gap_.size(); ++l) {
+        if (gap_[l] < 0) {
+            for (auto e = static_cast<std::size_t>(start_[l]); e < static_cast<std::size_t>(start_[l + 1]); ++e) {
+                slope[static_cast<std::size_t>(column_[e])] += gap_[l] * value_[e];
+            }
+        }
+    }
+    for (int a = 0; a < Dim; ++a) {
+        double face = pressure;
+        for (int b = 0; b < Dim; ++b) {
+            face *= b == a ? 1.0 : packing_.length(b);
+        }
+        slope[Dim * packing_.radius.size() + static_cast<std::size_t>(a)] += face;
+    }
+}
+
+template <int Dim> SoftMeasures SoftNewton<Dim>::measure(double pressure, const std::vector<double>& slope) const {
+    SoftMeasures now;
+    const std::size_t disks = Dim * packing_.radius.size();
+    for (std::size_t k = 0; k < disks; ++k) {
+        now.residual = std::max(now.residual, std::abs(slope[k]) / (pressure * mean_diameter_));
+    }
+    for (int a = 0; a < Dim; ++a) {
+        double face = pressure;
+        for (int b = 0; b < Dim; ++b) {
+            face *= b == a ? 1.0 : packing_.length(b);
+        }
+        now.pressure_error = std::max(now.pressure_error, std::abs(slope[disks + static_cast<std::size_t>(a)]) / face);
+    }
+    for (const double h : gap_) {
+        now.overlap = std::max(now.overlap, -h / mean_diameter_);
+        now.contacts += h < 0 ? 1 : 0;
+    }
+    return now;
+}
+
+template <int Dim> bool SoftNewton<Dim>::direction(const std::vector<double>& slope, std::vector<double>& step) {
+    const std::size_t disks = packing_.radius.size();
+    std::vector<double> diagonal(slope.size(), damping_);
+    for (std::size_t k = Dim * disks; k < diagonal.size(); ++k) {
+        diagonal[k] = damping_ * wall_damping * static_cast<double>(disks);
+    }
+    const auto block = [&](std::size_t l, std::size_t p, std::size_t r) {
+        return gap_[l] < 0 ? value_[p] * value_[r] : 0.0;
+    };
+    if (!matrix_->factorise(block, diagonal)) {
+        return false;
+    }
+    step.resize(slope.size());
+    std::transform(slope.begin(), slope.end(), step.begin(), [](double s) { return -s; });
+    matrix_->solve(step);
+    return true;
+}
+
+/// Moves the packing; returns the share of the step.
+template <int Dim>
+double SoftNewton<Dim>::search(double pressure, const std::vector<double>& slope, const std::vector<double>& step) {
+    double largest = 0;
+    for (std::size_t k = 0; k < Dim * packing_.radius.size(); ++k) {
+        largest = std::max(largest, std::abs(step[k]));
+    }
+    const double first = dot(slope, step); // negative
+    double share = std::min(1.0, longest_step * mean_diameter_ / largest);
+    double low = 0;
+    double low_slope = first;
+    double high = 0; // none yet
+    double high_slope = 0;
+    const std::vector<double> from = packing_.q;
+    std::vector<double> there;
+    for (int trial = 0;; ++trial) {
+        for (std::size_t k = 0; k < from.size(); ++k) {
+            packing_.q[k] = from[k] + share * step[k];
+        }
+        evaluate();
+        gradient(pressure, there);
+        const double now = dot(there, step);
+        if (std::abs(now) <= flat * std::abs(first) || trial + 1 == most_trials) {
+            return share;
+        }
+        if (now < 0) {
+            low = share;
+            low_slope = now;
+            if (high == 0) {
+                return share; // still falling at the end of the step
+            }
+        } else {
+            high = share;
+            high_slope = now;
+        }
+        // Where a straight line through the slopes at both ends vanishes, kept away from them.
+        const double zero = low + (high - low) * -low_slope / (high_slope - low_slope);
+        share = std::clamp(zero, low + 0.1 * (high - low), low + 0.9 * (high - low));
+    }
+}
+
+template <int Dim> SoftMeasures SoftNewton<Dim>::relax(double pressure, double tolerance, long max_steps) {
+    std::vector<double> slope;
+    std::vector<double> step;
+    SoftMeasures now;
+    double first = 0;
+    for (long k = 0;; ++k) {
+        if (left_the_list()) {
+            collect();
+        }
+        evaluate();
+        gradient(pressure, slope);
+        now = measure(pressure, slope);
+        now.steps = k;
+        const double worst = std::max(now.residual, now.pressure_error);
+        now.converged = worst < tolerance;
+        now.interrupted = stopped();
+        if (now.converged || now.interrupted || k >= max_steps) {
+            return now;
+        }
+        first = std::max(first, worst);
+        progress_(std::clamp(std::log(worst / first) / std::log(tolerance / first), 0.0, 1.0));
+        while (!direction(slope, step)) {
+            if (damping_ >= most_damping) {
+                return now;
+            }
+            damping_ *= damping_factor;
+        }
+        const double share = search(pressure, slope, step);
+        if (share > long_step) {
+            damping_ = std::max(damping_ / damping_factor, least_damping);
+        } else if (share < short_step) {
+            damping_ = std::min(damping_ * damping_factor, most_damping);
+        }
+    }
+}
+
+template class SoftNewton<2>;
+
+} // namespace isostat::preparation

@@ -316,32 +316,50 @@ double BlockCholesky::error_bound(double shift) const {
         trace += relative[i] * (2 * diagonal[i] + shift);
     }
     constexpr double good_enough = 0.01; // of the shift
-    const double sum = trace < good_enough * shift ? trace : std::min(trace, largest_row(relative, shift));
+    constexpr double of_use = 0.5;       // of the shift: above it the caller may give up
+    constexpr int most_passes = 5;
+    double sum = trace;
+    std::vector<double> x(n);
+    std::transform(relative.begin(), relative.end(), x.begin(), [](double g) { return 1 / std::sqrt(g); });
+    for (int pass = 0; pass < most_passes && !(sum < (pass == 0 ? good_enough : of_use) * shift); ++pass) {
+        sum = std::min(sum, largest_ratio(relative, shift, x));
+    }
     return sum * 1.01 + 1e-290; // 1.01: second order in gamma and the rounding of this sum; 1e-290: underflow
 }
 
-/// Largest gamma_{t_k} (|B||B|^T 1 + s + |L||L|^T 1)_k: less than the trace by about the number of rows.
-double BlockCholesky::largest_row(const std::vector<double>& relative, double shift) const {
+/// Largest (M x)_k / x_k for M = D^1/2 (|B||B|^T + s + |L||L|^T) D^1/2, D = diag(gamma_{t_k}), x > 0: above the norm of
+/// M, and less than its trace by about the number of rows. Leaves M x, scaled, in x: the next ratio is nearer the norm.
+double BlockCholesky::largest_ratio(const std::vector<double>& relative, double shift, std::vector<double>& x) const {
     const sparse::Matrix<double>& h = *h_;
+    std::vector<double> y(x.size()); // D^1/2 x
+    std::transform(x.begin(), x.end(), relative.begin(), y.begin(),
+                   [](double c, double g) { return c * std::sqrt(g); });
     std::vector<double> of_b(relative.size(), 0.0);
     for (std::size_t l = 0; l < static_cast<std::size_t>(h.cols); ++l) {
         double sum = 0;
         for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
-            sum += std::abs(h.value[e]);
+            sum += std::abs(h.value[e]) * y[static_cast<std::size_t>(h.row[e])];
         }
         for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
             of_b[static_cast<std::size_t>(h.row[e])] += std::abs(h.value[e]) * sum;
         }
     }
+    std::vector<std::array<double, 2>> weight(blocks_,
+                                              {0.0, 0.0}); // y, block by block; 0 where a row only fills up one
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        weight[static_cast<std::size_t>(position_[i / 2])][i % 2] = y[i];
+    }
     std::vector<std::array<double, 2>> of_l(blocks_, {0.0, 0.0});
     for (std::size_t j = 0; j < blocks_; ++j) {
         const auto& [l00, l10, l11] = pivot_[j];
-        double first = l00 + std::abs(l10); // sums of the two columns
-        double second = l11;
+        const std::array<double, 2>& own = weight[j];
+        double first = l00 * own[0] + std::abs(l10) * own[1]; // sums of the two columns
+        double second = l11 * own[1];
         for (auto k = static_cast<std::size_t>(start_[j]); k < static_cast<std::size_t>(start_[j + 1]); ++k) {
             const std::array<double, 4>& l = value_[k].value;
-            first += std::abs(l[0]) + std::abs(l[1]);
-            second += std::abs(l[2]) + std::abs(l[3]);
+            const std::array<double, 2>& w = weight[static_cast<std::size_t>(row_[k])];
+            first += std::abs(l[0]) * w[0] + std::abs(l[1]) * w[1];
+            second += std::abs(l[2]) * w[0] + std::abs(l[3]) * w[1];
         }
         of_l[j][0] += l00 * first;
         of_l[j][1] += std::abs(l10) * first + l11 * second;
@@ -353,9 +371,16 @@ double BlockCholesky::largest_row(const std::vector<double>& relative, double sh
         }
     }
     double largest = 0;
+    double largest_x = 0;
     for (std::size_t i = 0; i < relative.size(); ++i) {
         const double l = of_l[static_cast<std::size_t>(position_[i / 2])][i % 2];
-        largest = std::max(largest, relative[i] * (of_b[i] + shift + l));
+        const double image = std::sqrt(relative[i]) * (of_b[i] + shift * y[i] + l);
+        largest = std::max(largest, image / x[i]);
+        x[i] = image;
+        largest_x = std::max(largest_x, image);
+    }
+    for (double& c : x) {
+        c = std::max(c / largest_x, 1e-9); // any x > 0 will do: ratios must not over- or underflow
     }
     return largest;
 }

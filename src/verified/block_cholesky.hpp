@@ -42,7 +42,7 @@ class BlockCholesky {
 
     void arrange(const std::vector<int>& order);
     void analyse();
-    [[nodiscard]] double largest_row(const std::vector<double>& relative, double shift) const;
+    double largest_ratio(const std::vector<double>& relative, double shift, std::vector<double>& x) const;
 
     const sparse::Matrix<double>* h_ = nullptr;
     std::size_t blocks_ = 0;

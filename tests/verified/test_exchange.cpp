@@ -10,6 +10,7 @@
 #include <isostat/statics/statics.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
+#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -238,6 +239,55 @@ BOOST_AUTO_TEST_CASE(the_rounding_of_a_cholesky_factorisation_is_within_its_boun
         above += low > smallest * (1 + 0x1p-51) ? 1 : 0;
     }
     BOOST_TEST(above > 0); // where the bound is needed
+}
+
+// A chain whose grains all touch one wall: row n - 1 is full, in L too. By dense matrices in the natural order, which
+// has the least fill: the norm of the matrix M of V1, and what its largest row says of it.
+BOOST_AUTO_TEST_CASE(the_bound_of_the_rounding_comes_near_the_norm_that_it_bounds) {
+    for (const int n : {60, 121, 240}) {
+        sparse::Matrix<double> h = chain(n - 1);
+        h.rows = h.cols = n;
+        sparse::Matrix<double> walled;
+        walled.rows = walled.cols = n;
+        walled.start = {0};
+        for (int l = 0; l < n; ++l) {
+            for (int e = l + 1 < n ? h.start[static_cast<std::size_t>(l)] : 0;
+                 l + 1 < n && e < h.start[static_cast<std::size_t>(l) + 1]; ++e) {
+                walled.row.push_back(h.row[static_cast<std::size_t>(e)]);
+                walled.value.push_back(h.value[static_cast<std::size_t>(e)]);
+            }
+            walled.row.push_back(n - 1);
+            walled.value.push_back(l + 1 < n ? 0.05 : 1.0);
+            walled.start.push_back(static_cast<int>(walled.row.size()));
+        }
+        const auto size = static_cast<Eigen::Index>(n);
+        Eigen::MatrixXd b = Eigen::MatrixXd::Zero(size, size);
+        for (int l = 0; l < n; ++l) {
+            for (int e = walled.start[static_cast<std::size_t>(l)]; e < walled.start[static_cast<std::size_t>(l) + 1];
+                 ++e) {
+                b(walled.row[static_cast<std::size_t>(e)], l) = walled.value[static_cast<std::size_t>(e)];
+            }
+        }
+        constexpr double shift = 1e-20;
+        const Eigen::MatrixXd l = Eigen::MatrixXd((b * b.transpose()).llt().matrixL());
+        Eigen::VectorXd root(size);
+        for (Eigen::Index k = 0; k < size; ++k) {
+            const auto entries = (b.row(k).array() != 0).count() + (l.row(k).array().abs() > 1e-13).count() + 4;
+            root(k) = std::sqrt(static_cast<double>(entries) * 0x1p-53);
+        }
+        const Eigen::MatrixXd sum = b.cwiseAbs() * b.cwiseAbs().transpose() + l.cwiseAbs() * l.cwiseAbs().transpose();
+        const Eigen::MatrixXd m = root.asDiagonal() * sum * root.asDiagonal();
+        const double norm = m.operatorNorm();
+        const double row = (root.cwiseAbs2().asDiagonal() * sum).rowwise().sum().maxCoeff();
+        FillOrder order;
+        BlockCholesky cholesky;
+        cholesky.set(walled, order);
+        BOOST_TEST_REQUIRE(cholesky.factorise(shift));
+        const double bound = cholesky.error_bound(shift);
+        BOOST_TEST(bound > 0.9 * norm); // in its own order
+        BOOST_TEST(bound < 3 * norm);   // zeros in blocks are counted
+        BOOST_TEST(bound < row);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(rows_of_walls_are_scaled_down_by_powers_of_two_and_no_others) {

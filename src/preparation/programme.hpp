@@ -79,8 +79,8 @@ template <int Dim> class ContactProgramme {
   private:
     struct Rows;
     void collect(const Packing<Dim>& packing, Rows& rows) const;
-    BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
-    InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
+    [[nodiscard]] BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
+    [[nodiscard]] InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
 
     const std::vector<double>* infinitesimal_;

@@ -18,13 +18,27 @@ class Plan {
     std::vector<PlanEntry> entries_;
 };
 
+/// Whether more disks are prepared than that.
+bool prepares_more(const Scene& scene, int disks) {
+    const PreparationOptions& options = scene.preparation;
+    const auto given = static_cast<int>(options.radii.size());
+    return scene.start.empty() && (given > 0 ? given : options.disks) > disks;
+}
+
 void add_stages(Plan& plan, const Scene& scene) {
     const bool prepares = scene.start.empty();
     const std::string given = fmt::format("the packing is read from {}", scene.start.string());
     plan.add("stage", "read the start", !prepares, prepares ? "the packing is prepared from random disks" : given);
-    plan.add("stage", "damped dynamics", prepares, prepares ? "random disks to a relaxed soft packing" : given);
-    plan.add("stage", "sequential linear programmes", prepares,
-             prepares ? "soft packing to a vertex: the contacts are the rows of the basis" : given);
+    std::string soft = "random disks to a relaxed soft packing";
+    if (const int above = scene.preparation.newton_above; prepares_more(scene, above)) {
+        soft += fmt::format(", with Newton steps at the end (more than {} disks)", above);
+    }
+    plan.add("stage", "damped dynamics", prepares, prepares ? soft : given);
+    std::string rigid = "soft packing to a vertex: the contacts are the rows of the basis";
+    if (const int above = scene.preparation.large_above; prepares_more(scene, above)) {
+        rigid = fmt::format("soft packing to a vertex, after an interior-point descent (more than {} disks)", above);
+    }
+    plan.add("stage", "sequential linear programmes", prepares, prepares ? rigid : given);
     plan.add("stage", "Newton on the contacts", prepares, prepares ? "all gaps of the vertex to rounding" : given);
     plan.add("stage", "trajectory", !scene.programme.empty(),
              scene.programme.empty() ? "the scene has no [[programme]]"
@@ -45,8 +59,12 @@ void add_solvers(Plan& plan, const Scene& scene) {
     plan.add("solver", "sparse LU (KLU)", true, "forces and mechanisms");
     plan.add("solver", "double-double", true,
              "only where the bound of the double precision result does not decide a sign");
-    plan.add("solver", "dual simplex (Clp)", prepares,
-             prepares ? "the linear programmes of the preparation" : "there is no preparation");
+    const bool inside = prepares_more(scene, scene.preparation.newton_above);
+    plan.add("solver", "dual simplex (Clp)", prepares && !inside,
+             !prepares ? "there is no preparation"
+             : inside  ? fmt::format("more than {} disks: interior points solve the programmes, unless they fail",
+                                     scene.preparation.newton_above)
+                       : "the linear programmes of the preparation");
     plan.add("solver", "infinitesimal loads", true,
              scene.infinitesimal_seed ? "rattlers rest on two contacts each; made from infinitesimal_seed"
              : prepares               ? "rattlers rest on two contacts each; made from the seed of the packing"

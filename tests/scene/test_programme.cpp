@@ -131,4 +131,23 @@ BOOST_AUTO_TEST_CASE(the_plan_follows_the_scene) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(the_plan_says_how_packings_of_a_size_are_prepared) {
+    for (const auto& [disks, dynamics, programmes, simplex] :
+         {std::tuple{8192, "to a relaxed soft packing", "rows of the basis", true},
+          {8193, "to a relaxed soft packing", "interior-point descent", true},
+          {50000, "to a relaxed soft packing", "interior-point descent", true},
+          {50001, "Newton steps", "interior-point descent", false}}) {
+        const Scene scene = parse("[packing]\ndisks = " + std::to_string(disks) + "\n");
+        for (const PlanEntry& entry : make_plan(scene)) {
+            if (entry.name == "damped dynamics") {
+                BOOST_TEST(entry.reason.find(dynamics) != std::string::npos, entry.reason);
+            } else if (entry.name == "sequential linear programmes") {
+                BOOST_TEST(entry.reason.find(programmes) != std::string::npos, entry.reason);
+            } else if (entry.name == "dual simplex (Clp)") {
+                BOOST_TEST(entry.used == simplex, entry.reason);
+            }
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

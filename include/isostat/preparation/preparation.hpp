@@ -32,7 +32,7 @@ struct PreparationProgress {
     std::string text;
 };
 
-/// What to prepare. The defaults of the last group suit sizes 1 ... 10^4; they change the way and the cost, never the
+/// What to prepare. The defaults of the last group suit sizes 1 ... 10^5; they change the way and the cost, never the
 /// validity.
 struct PreparationOptions {
     int disks = 0;             ///< n >= 1; ignored when `radii` is given

@@ -15,7 +15,7 @@ constexpr std::size_t most_missing = 20;
 /// Added to the squares of the singular values: far below those of packings, far above rounding.
 constexpr double shift = 1e-13;
 constexpr int inverse_iterations = 6;
-/// Approach of a pair, per displacement, below which it counts as none: the mechanism is known to some 1e-10.
+/// Approach of a pair, per displacement, below which it counts as none: rounding of the mechanism.
 constexpr double no_approach = 1e-9;
 
 void normalise(std::vector<double>& x) {

@@ -108,10 +108,7 @@ template <int Dim> class VertexSearch {
                 continue;
             }
             move(step);
-            if (step.bounds != 0 && step.changes <= settled_pivots && complete(programme, weight, step.contacts)) {
-                step.bounds = 0;
-            }
-            if (!worth_an_attempt(step)) {
+            if (!worth_an_attempt(step) || (step.bounds != 0 && !complete(programme, weight, step.contacts))) {
                 continue;
             }
             auto polished = attempt(step.contacts);
@@ -229,7 +226,7 @@ template <int Dim> class VertexSearch {
     [[nodiscard]] bool worth_an_attempt(const ProgrammeStep& step) const {
         const double below = step.changes <= settled_pivots ? attempt_below : attempt_always_below;
         return programmes_ > 1 // the first one keeps the overlaps of the start
-               && step.bounds == 0 && step.largest <= below * scale_.mean_radius();
+               && step.largest <= below * scale_.mean_radius();
     }
 
     void record(bool completed) {

@@ -117,6 +117,31 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
     }
 }
 
+template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach) {
+    PairList pairs;
+    find_pairs<Dim>(packing.q, packing.radius, reach, pairs);
+    std::vector<Contact> near;
+    const int n = packing.disk_count();
+    for (int i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
+            near.push_back({ContactKind::disk_disk, i, pairs.partner[static_cast<std::size_t>(p)]});
+        }
+    }
+    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+        for (int i = 0; i < n; ++i) {
+            for (int a = 0; a < Dim; ++a) {
+                const Contact wall{kind, i, a};
+                if (gap(packing, wall) < (kind == ContactKind::upper_wall ? upper_reach : reach)) {
+                    near.push_back(wall);
+                }
+            }
+        }
+    }
+    return near;
+}
+
+template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);
 template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&);
 
 } // namespace isostat::preparation

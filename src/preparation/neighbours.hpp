@@ -3,6 +3,9 @@
 /// Every pair of disks closer than a given reach, by a grid of cells. Overlaps are allowed, so that soft packings have
 /// complete lists too.
 
+#include <isostat/contact/contact.hpp>
+#include <isostat/packing/packing.hpp>
+
 #include <vector>
 
 namespace isostat::preparation {
@@ -18,6 +21,11 @@ struct PairList {
 template <int Dim>
 void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs);
 
+/// The same with the disks near walls: pairs and lower walls with gap < `reach`, upper walls with gap < `upper_reach`,
+/// sorted.
+template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach);
+
+extern template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);
 extern template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&);
 
 } // namespace isostat::preparation

@@ -38,7 +38,8 @@ constexpr long steps_large = 60000;
 /// sample of 100 000 disks: without them the products of the descent wander at 1e-3 for 500 steps and more.
 constexpr std::array<double, 4> newton_divisors{1, 5, 25, 100};
 constexpr double newton_tolerance = 3e-3;
-constexpr long most_newton_steps = 2500; ///< at each: n = 100 000 takes 2500, 1500, 600, 640
+constexpr long most_newton_steps =
+    2500; ///< at each: n = 100 000 takes 589 and 638 at the last two, all of them at the first
 /// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
 /// diameter.
 constexpr double compression_rate = 1e-4;
@@ -178,13 +179,11 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
         }
     }
     if (large && packing.disk_count() > options.newton_above) {
-        std::function<void(double)> tell;
-        SoftNewton<Dim> newton(packing, options.stop, [&tell](double fraction) { tell(fraction); });
+        SoftNewton<Dim> newton(packing, options.stop);
         for (const double divisor : newton_divisors) {
             const double pressure = options.softness / divisor;
             if (!record(fmt::format("newton steps at {:.0e}", pressure), [&](const auto& progress) {
-                    tell = progress;
-                    return newton.relax(pressure, newton_tolerance, most_newton_steps);
+                    return newton.relax(pressure, newton_tolerance, most_newton_steps, progress);
                 })) {
                 return interrupted();
             }

@@ -50,26 +50,10 @@ ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal
 template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
     // Two disks approach by at most 2 sqrt(Dim) trust: a pair farther apart cannot overlap after the step.
     const double reach = 2 * std::sqrt(static_cast<double>(Dim)) * trust_ * (1 + 1e-9);
-    PairList pairs;
-    find_pairs<Dim>(packing.q, packing.radius, reach, pairs);
-    const int n = packing.disk_count();
-    for (int i = 0; i < n; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
-            rows.add(packing, {ContactKind::disk_disk, i, pairs.partner[static_cast<std::size_t>(p)]});
-        }
-    }
     // A wall moves farther than a disk: look as far as both together can go.
     const double wall_reach = (wall_trust + 1) * trust_ * (1 + 1e-9);
-    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (int i = 0; i < n; ++i) {
-            for (int a = 0; a < Dim; ++a) {
-                const Contact wall{kind, i, a};
-                if (isostat::gap(packing, wall) < (kind == ContactKind::upper_wall ? wall_reach : reach)) {
-                    rows.add(packing, wall);
-                }
-            }
-        }
+    for (const Contact& contact : near_contacts(packing, reach, wall_reach)) {
+        rows.add(packing, contact);
     }
 }
 

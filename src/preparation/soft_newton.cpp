@@ -39,33 +39,14 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 } // namespace
 
 template <int Dim>
-SoftNewton<Dim>::SoftNewton(Packing<Dim>& packing, const std::atomic<bool>* stop, std::function<void(double)> progress)
-    : packing_(packing), damping_(first_damping), stop_(stop), progress_(std::move(progress)) {
+SoftNewton<Dim>::SoftNewton(Packing<Dim>& packing, const std::atomic<bool>* stop)
+    : packing_(packing), damping_(first_damping), stop_(stop) {
     mean_diameter_ = 2 * std::accumulate(packing.radius.begin(), packing.radius.end(), 0.0) /
                      static_cast<double>(packing.radius.size());
 }
 
 template <int Dim> void SoftNewton<Dim>::collect() {
-    PairList near;
-    find_pairs<Dim>(packing_.q, packing_.radius, reach, near);
-    pairs_.clear();
-    const int n = packing_.disk_count();
-    for (int i = 0; i < n; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        for (int p = near.start[k]; p < near.start[k + 1]; ++p) {
-            pairs_.push_back({ContactKind::disk_disk, i, near.partner[static_cast<std::size_t>(p)]});
-        }
-    }
-    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (int i = 0; i < n; ++i) {
-            for (int a = 0; a < Dim; ++a) {
-                const Contact wall{kind, i, a};
-                if (gap(packing_, wall) < reach) {
-                    pairs_.push_back(wall);
-                }
-            }
-        }
-    }
+    pairs_ = near_contacts(packing_, reach, reach);
     start_.assign(1, 0);
     column_.clear();
     for (const Contact& pair : pairs_) {
@@ -196,7 +177,9 @@ double SoftNewton<Dim>::search(double pressure, const std::vector<double>& slope
     }
 }
 
-template <int Dim> SoftMeasures SoftNewton<Dim>::relax(double pressure, double tolerance, long max_steps) {
+template <int Dim>
+SoftMeasures SoftNewton<Dim>::relax(double pressure, double tolerance, long max_steps,
+                                    const std::function<void(double)>& progress) {
     std::vector<double> slope;
     std::vector<double> step;
     SoftMeasures now;
@@ -216,7 +199,7 @@ template <int Dim> SoftMeasures SoftNewton<Dim>::relax(double pressure, double t
             return now;
         }
         first = std::max(first, worst);
-        progress_(std::clamp(std::log(worst / first) / std::log(tolerance / first), 0.0, 1.0));
+        progress(std::clamp(std::log(worst / first) / std::log(tolerance / first), 0.0, 1.0));
         while (!direction(slope, step)) {
             if (damping_ >= most_damping) {
                 return now;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <numeric>
 
@@ -322,7 +323,11 @@ double BlockCholesky::error_bound(double shift) const {
     std::vector<double> x(n);
     std::transform(relative.begin(), relative.end(), x.begin(), [](double g) { return 1 / std::sqrt(g); });
     for (int pass = 0; pass < most_passes && !(sum < (pass == 0 ? good_enough : of_use) * shift); ++pass) {
-        sum = std::min(sum, largest_ratio(relative, shift, x));
+        const double ratio = largest_ratio(relative, shift, x);
+        sum = std::min(sum, ratio);
+        if (std::isinf(ratio)) {
+            break;
+        }
     }
     return sum * 1.01 + 1e-290; // 1.01: second order in gamma and the rounding of this sum; 1e-290: underflow
 }
@@ -344,8 +349,8 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
             of_b[static_cast<std::size_t>(h.row[e])] += std::abs(h.value[e]) * sum;
         }
     }
-    std::vector<std::array<double, 2>> weight(blocks_,
-                                              {0.0, 0.0}); // y, block by block; 0 where a row only fills up one
+    // y, block by block; 0 for the row that only fills up the last one.
+    std::vector<std::array<double, 2>> weight(blocks_, {0.0, 0.0});
     for (std::size_t i = 0; i < y.size(); ++i) {
         weight[static_cast<std::size_t>(position_[i / 2])][i % 2] = y[i];
     }
@@ -375,6 +380,9 @@ double BlockCholesky::largest_ratio(const std::vector<double>& relative, double 
     for (std::size_t i = 0; i < relative.size(); ++i) {
         const double l = of_l[static_cast<std::size_t>(position_[i / 2])][i % 2];
         const double image = std::sqrt(relative[i]) * (of_b[i] + shift * y[i] + l);
+        if (!std::isfinite(image)) { // maxima do not see a NaN
+            return std::numeric_limits<double>::infinity();
+        }
         largest = std::max(largest, image / x[i]);
         x[i] = image;
         largest_x = std::max(largest_x, image);

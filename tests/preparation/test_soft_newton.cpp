@@ -40,12 +40,12 @@ BOOST_AUTO_TEST_SUITE(preparation)
 BOOST_AUTO_TEST_CASE(newton_steps_end_where_the_dynamics_find_every_force_balanced) {
     for (const double squeeze : {0.9, 0.95}) {
         Packing<2> packing = pressed(14, squeeze);
-        room::SoftNewton<2> newton(packing, nullptr, [](double) {});
+        room::SoftNewton<2> newton(packing, nullptr);
         double volume = 0;
         for (const double pressure : {1e-3, 1e-4, 1e-5}) {
             const room::SoftMeasures before = judged(packing, pressure);
             BOOST_TEST(std::max(before.residual, before.pressure_error) > 0.5);
-            const room::SoftMeasures made = newton.relax(pressure, 1e-6, 3000);
+            const room::SoftMeasures made = newton.relax(pressure, 1e-6, 3000, [](double) {});
             BOOST_TEST(made.converged);
             BOOST_TEST(made.steps > 2);
             const room::SoftMeasures after = judged(packing, pressure);
@@ -63,8 +63,8 @@ BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_a
     const auto relaxed = [](int threads) {
         const Threads scope(threads);
         Packing<2> packing = pressed(30, 0.9);
-        room::SoftNewton<2> newton(packing, nullptr, [](double) {});
-        (void)newton.relax(1e-3, 1e-6, 20);
+        room::SoftNewton<2> newton(packing, nullptr);
+        (void)newton.relax(1e-3, 1e-6, 20, [](double) {});
         return packing.q;
     };
     const auto one = relaxed(1);
@@ -72,8 +72,8 @@ BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_a
     BOOST_TEST((one != pressed(30, 0.9).q));
     std::atomic<bool> stop{true};
     Packing<2> packing = pressed(10, 0.9);
-    room::SoftNewton<2> newton(packing, &stop, [](double) {});
-    const room::SoftMeasures made = newton.relax(1e-3, 1e-6, 20);
+    room::SoftNewton<2> newton(packing, &stop);
+    const room::SoftMeasures made = newton.relax(1e-3, 1e-6, 20, [](double) {});
     BOOST_TEST(made.interrupted);
     BOOST_TEST(made.steps == 0);
     BOOST_TEST((packing.q == pressed(10, 0.9).q));

@@ -40,12 +40,20 @@ Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool h
     }
     const Solver solver(problem);
     inverse = bound_inverse(problem, solver, arithmetic);
+    if (inverse.found) {
+        vertex = find_vertex(problem, solver, inverse);
+    }
+    if (inverse.singular_value > 0 && !vertex.found && arithmetic == CheckerArithmetic::automatic) {
+        if (InverseBound by_rows = bound_inverse(problem, solver, CheckerArithmetic::rows); by_rows.found) {
+            inverse = std::move(by_rows);
+            vertex = find_vertex(problem, solver, inverse);
+        }
+    }
     if (!inverse.found) {
         rank = eliminated_rank(problem);
         return;
     }
     rank = problem.dofs();
-    vertex = find_vertex(problem, solver, inverse);
     if (vertex.found) {
         finite_load = checker::finite_load(problem, state, vertex);
         unit_load = checker::unit_load(problem, state, vertex);

@@ -4,9 +4,6 @@ namespace isostat::checker {
 
 namespace {
 
-/// K1 (b): an entry of A differs by at most 2 |q - q'|, a row has four.
-constexpr int row_change = 8;
-
 Range component(const Problem& problem, const Velocities::Solution& v, std::size_t k) {
     return problem.dof_of[k] >= 0 ? Range::around(v.middle[k], v.radius) : Range(Rational(0));
 }
@@ -67,7 +64,8 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
     for (const Rational& c : v.middle) {
         fastest = std::max<Rational>(fastest, abs(c));
     }
-    v.radius = inverse_.row_sum / (1 - vertex_.row_residual) * (open + row_change * vertex_.radius * fastest);
+    v.radius =
+        short_above(inverse_.row_sum / (1 - vertex_.row_residual) * (open + row_curvature * vertex_.radius * fastest));
     return v;
 }
 

@@ -133,7 +133,7 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
     for (const Range& r : residual) {
         worst = std::max<Rational>(worst, std::max<Rational>(abs(r.lower), abs(r.upper)));
     }
-    worst /= 1 - vertex.column_residual;
+    worst = short_above(worst / (1 - vertex.column_residual));
     std::vector<Range> forces;
     for (std::size_t l = 0; l < n; ++l) {
         const Range per_length = Range::around(g[l], worst * inverse.column_sum[l]);

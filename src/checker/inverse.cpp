@@ -1,6 +1,7 @@
 #include "checker/inverse.hpp"
 
 #include "checker/elimination.hpp"
+#include "checker/singular_value.hpp"
 
 #include <cstdint>
 #include <numeric>
@@ -76,6 +77,9 @@ struct Sums {
         }
         result.column_sum_max = *std::max_element(result.column_sum.begin(), result.column_sum.end());
         result.found = result.residual_row < 1 && result.residual_column < 1;
+        if (result.quadratic_sum != 0) {
+            result.regular_within = (1 - result.residual_row) / (row_curvature * result.quadratic_sum);
+        }
         return result;
     }
 };
@@ -281,14 +285,48 @@ InverseBound bound_rational(const Problem& problem, const Columns<Integer>& colu
     return rows.bound("exact elimination");
 }
 
+/// At least the square root, by less than 2^-20.
+Rational root(unsigned long value) {
+    return Rational(sqrt(shifted_left(Integer(value), 40)) + 1) * power_of_two(-20);
+}
+
+/// From the smallest singular value; R is the inverse.
+InverseBound bound_by_singular_value(const Problem& problem) {
+    const std::optional<Rational> sigma = smallest_singular_value(problem);
+    if (!sigma) {
+        return {};
+    }
+    InverseBound bound;
+    bound.found = true;
+    bound.arithmetic = "64-bit integers";
+    bound.singular_value = *sigma;
+    const auto size = static_cast<unsigned long>(problem.dofs());
+    bound.row_sum = short_above(root(size) / *sigma);
+    bound.column_sum_max = bound.row_sum;
+    bound.column_sum.assign(size, bound.row_sum);
+    const unsigned long touching = problem.most_quadratic();
+    if (touching > 0) {
+        bound.quadratic_sum = bound.row_sum;
+        bound.regular_within = *sigma / (4 * root(touching));
+    }
+    return bound;
+}
+
 } // namespace
 
 InverseBound bound_inverse(const Problem& problem, const Solver& solver, CheckerArithmetic arithmetic) {
+    InverseBound bound;
+    if (arithmetic == CheckerArithmetic::automatic || arithmetic == CheckerArithmetic::singular_value) {
+        bound = bound_by_singular_value(problem);
+    }
+    if (bound.found || arithmetic == CheckerArithmetic::singular_value) {
+        return bound;
+    }
     const Columns<Integer> columns = columns_of(problem);
     const auto allowed = [arithmetic](CheckerArithmetic kind) {
-        return arithmetic == CheckerArithmetic::automatic || arithmetic == kind;
+        return arithmetic == CheckerArithmetic::automatic || arithmetic == CheckerArithmetic::rows ||
+               arithmetic == kind;
     };
-    InverseBound bound;
     if (allowed(CheckerArithmetic::fixed64) && solver.usable()) {
         bound = bound_fixed64(problem, solver, columns);
     }

@@ -30,10 +30,13 @@ ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, 
     }
     std::string stored = fmt::format("{}, rank {} as stored (exact elimination)", counts, *evidence.rank);
     if (evidence.inverse.found) {
-        const double residual = rounded_up(evidence.inverse.residual_row);
-        check.numbers.emplace_back("inverse_residual", residual);
-        stored = fmt::format("{}, rank {} as stored (|I - RA| <= {:.1g}, {})", counts, *evidence.rank, residual,
-                             evidence.inverse.arithmetic);
+        const bool by_sigma = evidence.inverse.singular_value > 0;
+        const double bound =
+            by_sigma ? rounded_down(evidence.inverse.singular_value) : rounded_up(evidence.inverse.residual_row);
+        check.numbers.emplace_back(by_sigma ? "singular_value" : "inverse_residual", bound);
+        stored =
+            fmt::format("{}, rank {} as stored ({} {:.2g}, {})", counts, *evidence.rank,
+                        by_sigma ? "smallest singular value >=" : "|I - RA| <=", bound, evidence.inverse.arithmetic);
     }
     if (!at_vertex) {
         return answer(check, Verdict::proved, stored);
@@ -66,7 +69,7 @@ ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool
     }
     exists = vertex.moved_most <= radius;
     const bool only_one = std::isinf(claim.unique_radius)
-                              ? evidence.inverse.quadratic_sum == 0
+                              ? !evidence.inverse.regular_within
                               : unique_within(evidence.inverse, vertex, Rational(claim.unique_radius));
     if (exists && only_one) {
         return answer(check, Verdict::proved, found);

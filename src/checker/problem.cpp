@@ -137,6 +137,18 @@ Problem::Problem(const State<2>& state, bool held_allowed) {
     }
 }
 
+unsigned long Problem::most_quadratic() const {
+    unsigned long most = 0;
+    for (const std::vector<int>& touching : contacts_of) {
+        unsigned long quadratic = 0;
+        for (const int l : touching) {
+            quadratic += rows[static_cast<std::size_t>(l)].quadratic ? 1 : 0;
+        }
+        most = std::max(most, quadratic);
+    }
+    return most;
+}
+
 Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const {
     const Row& row = rows[static_cast<std::size_t>(contact)];
     const auto slot = static_cast<std::size_t>(k);

@@ -21,6 +21,9 @@ struct Row {
     std::array<int, 4> sign{};       ///< walls only
 };
 
+/// K1 (b): a row times a vector changes by at most this, times the distance, times the largest component.
+inline constexpr int row_curvature = 8;
+
 /// Lengths are integers in units of 2^fine: stored numbers are multiples of 2^(fine + spare), so that `spare` bits are
 /// left for corrections.
 class Problem {
@@ -45,6 +48,8 @@ class Problem {
 
     [[nodiscard]] int dofs() const { return static_cast<int>(coordinate_of.size()); }
     [[nodiscard]] int contacts() const { return static_cast<int>(rows.size()); }
+    /// Most contacts of two disks that touch one degree of freedom.
+    [[nodiscard]] unsigned long most_quadratic() const;
     [[nodiscard]] Integer weight() const { return shifted_left(1, weight_bits); }
     /// Entry k of row l of A at a configuration, k < row.count.
     [[nodiscard]] Integer entry(int contact, int k, const std::vector<Integer>& q) const;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Exact numbers of the checker: GMP integers, rationals, and ranges of rationals. No operation rounds.
+/// Exact numbers of the checker: GMP integers, rationals, and ranges of rationals. Only quotients of ranges are
+/// rounded, outwards.
 
 #include <gmpxx.h>
 
@@ -62,6 +63,18 @@ inline double rounded_down(const Rational& value) {
     return -rounded_up(-value);
 }
 
+/// At least a rational, by less than 2^-250 of it: quotients become binary fractions, with which all is quicker.
+inline Rational short_above(const Rational& value) {
+    if (value == 0) {
+        return value;
+    }
+    const long shift = 256 - bits(value.get_num()) + bits(value.get_den());
+    const Rational scaled = value * power_of_two(shift);
+    Integer above;
+    mpz_cdiv_q(above.get_mpz_t(), scaled.get_num_mpz_t(), scaled.get_den_mpz_t());
+    return Rational(above) * power_of_two(-shift);
+}
+
 /// All numbers from lower to upper.
 struct Range {
     Rational lower;
@@ -88,9 +101,10 @@ inline Range operator*(const Range& a, const Range& b) {
     const Rational s = a.upper * b.upper;
     return {std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s))};
 }
-/// \pre !b.has_zero()
+/// A range that contains the quotient, and hardly more. \pre !b.has_zero()
 inline Range operator/(const Range& a, const Range& b) {
-    return a * Range(1 / b.upper, 1 / b.lower);
+    const Range exact = a * Range(1 / b.upper, 1 / b.lower);
+    return {-short_above(-exact.lower), short_above(exact.upper)};
 }
 
 } // namespace isostat::checker

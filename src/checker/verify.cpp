@@ -2,6 +2,9 @@
 
 #include <isostat/checker/verify.hpp>
 
+#include <algorithm>
+#include <optional>
+
 namespace isostat {
 
 namespace {
@@ -28,11 +31,7 @@ std::string vertex_obstacle(const Evidence& evidence, const CertificateClaims& c
     return exists ? "" : "speaks of a true vertex within the claimed radius, which is not proved";
 }
 
-} // namespace
-
-Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic) {
-    const CertificateClaims& claims = certificate.claims;
-    const Evidence evidence(certificate.state, arithmetic);
+Verification judge(const CertificateClaims& claims, const Evidence& evidence) {
     Verification result;
     bool exists = false;
     const auto add = [&result](const char* name, bool claimed, const std::string& why_not, const auto& judge) {
@@ -60,6 +59,30 @@ Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic
         result.verdict = both(result.verdict, check.verdict);
     }
     return result;
+}
+
+/// Whether the claim about the vertex is made and not decided.
+bool leaves_vertex_open(const Verification& result) {
+    return std::any_of(result.checks.begin(), result.checks.end(), [](const ClaimCheck& check) {
+        return check.claim == "vertex" && check.claimed && check.verdict == Verdict::undecided;
+    });
+}
+
+} // namespace
+
+Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic) {
+    const auto judged = [&certificate](const Evidence& evidence) { return judge(certificate.claims, evidence); };
+    std::optional<Verification> first;
+    {
+        const Evidence evidence(certificate.state, arithmetic);
+        first = judged(evidence);
+        if (arithmetic != CheckerArithmetic::automatic || evidence.inverse.singular_value == 0 ||
+            !leaves_vertex_open(*first)) {
+            return *first;
+        }
+    }
+    Verification by_rows = judged(Evidence(certificate.state, CheckerArithmetic::rows));
+    return leaves_vertex_open(by_rows) ? *first : by_rows;
 }
 
 } // namespace isostat

@@ -4,10 +4,6 @@ namespace isostat::checker {
 
 namespace {
 
-/// |x_i - x_j - (the same elsewhere)| is at most twice the distance; a row of two disks has four entries, and two
-/// factors of it meet in a second derivative (K1).
-constexpr int curvature = 8;
-
 /// Newton steps with the factorisation at the stored configuration and exact residuals.
 std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
     std::vector<Integer> q = problem.stored;
@@ -49,7 +45,7 @@ Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
 
 TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse) {
     TrueVertex vertex;
-    const Rational slope = curvature * inverse.quadratic_sum;
+    const Rational slope = row_curvature * inverse.quadratic_sum;
     std::vector<std::vector<Integer>> starts{problem.stored};
     if (solver.usable()) {
         starts.insert(starts.begin(), improved(problem, solver));
@@ -68,21 +64,12 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
             continue;
         }
         vertex.middle = start;
-        vertex.radius = 2 * step / room;
+        vertex.radius = short_above(2 * step / room);
         vertex.moved_least = std::max<Rational>(0, moved - vertex.radius);
         vertex.moved_most = moved + vertex.radius;
-        std::size_t most = 0;
-        for (const std::vector<int>& touching : problem.contacts_of) {
-            std::size_t quadratic = 0;
-            for (const int l : touching) {
-                quadratic += problem.rows[static_cast<std::size_t>(l)].quadratic ? 1 : 0;
-            }
-            most = std::max(most, quadratic);
-        }
         vertex.row_residual = inverse.residual_row + slope * vertex.moved_most;
-        vertex.column_residual = inverse.residual_column + inverse.column_sum_max * 2 *
-                                                               Rational(static_cast<unsigned long>(most)) *
-                                                               vertex.moved_most;
+        vertex.column_residual = inverse.residual_column +
+                                 inverse.column_sum_max * 2 * Rational(problem.most_quadratic()) * vertex.moved_most;
         vertex.found = vertex.row_residual < 1 && vertex.column_residual < 1;
         if (vertex.found) {
             return vertex;
@@ -92,14 +79,14 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
 }
 
 bool unique_within(const InverseBound& inverse, const TrueVertex& vertex, const Rational& distance) {
-    return inverse.residual_row + curvature * inverse.quadratic_sum * (vertex.moved_most + distance) / 2 < 1;
+    return !inverse.regular_within || (vertex.moved_most + distance) / 2 < *inverse.regular_within;
 }
 
 double largest_unique_distance(const InverseBound& inverse, const TrueVertex& vertex) {
-    if (inverse.quadratic_sum == 0) {
+    if (!inverse.regular_within) {
         return std::numeric_limits<double>::infinity();
     }
-    const Rational limit = 2 * (1 - inverse.residual_row) / (curvature * inverse.quadratic_sum) - vertex.moved_most;
+    const Rational limit = 2 * *inverse.regular_within - vertex.moved_most;
     return std::max(0.0, rounded_down(limit * (1 - power_of_two(-40))));
 }
 

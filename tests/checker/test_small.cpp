@@ -53,8 +53,9 @@ Interval neighbours(double value) {
 BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(every_arithmetic_proves_the_small_cases) {
-    for (const CheckerArithmetic arithmetic : {CheckerArithmetic::automatic, CheckerArithmetic::fixed64,
-                                               CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+    for (const CheckerArithmetic arithmetic :
+         {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
+          CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
         is_proved(crafted::one_disk(1, 2), arithmetic);
         is_proved(crafted::two_disks(1, 2, 1, 1), arithmetic);
         is_proved(crafted::three_disks(1, 1.1, 1.3, 1, 1), arithmetic);
@@ -193,8 +194,9 @@ BOOST_AUTO_TEST_CASE(a_family_that_approaches_a_singular_matrix) {
         BOOST_TEST((verdict_of(verify(certificate), "counting") == Verdict::refuted), "2^" << exponent);
     }
     certificate.state = small_states::between_two(0);
-    for (const CheckerArithmetic arithmetic : {CheckerArithmetic::automatic, CheckerArithmetic::fixed64,
-                                               CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+    for (const CheckerArithmetic arithmetic :
+         {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
+          CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
         certificate.claims.counting = CountingClaim{2, 2, 2, 0, 0, Rung::exact};
         BOOST_TEST((verdict_of(verify(certificate, arithmetic), "counting") == Verdict::refuted));
         certificate.claims.counting = CountingClaim{2, 2, 1, 1, 1, Rung::exact};

@@ -2,7 +2,7 @@
 /// \file
 /// An independent checker of certificates. It shares with the program that made a certificate only the data (states,
 /// contacts, claims) and the reader of the file: no matrix, bound, solver or list of neighbours. Mathematics:
-/// proofs/checker.md (K1 to K11).
+/// proofs/checker.md (K1 to K15).
 
 #include <isostat/core/verdict.hpp>
 #include <isostat/io/certificate_file.hpp>
@@ -33,12 +33,14 @@ struct Verification {
     Verdict verdict = Verdict::undecided;
 };
 
-/// Which integers the bound of the inverse is computed with. All of them prove; they differ in reach and cost.
+/// How the inverse is bounded. All of them prove; they differ in reach and cost.
 enum class CheckerArithmetic {
-    automatic, ///< the first of the others that succeeds
-    fixed64,   ///< rows of 64-bit integers, products in 128 bits: coordinates on a common grid of at most 2^60 steps
-    gmp,       ///< rows of GMP integers, refined: any coordinates, condition numbers up to about 1e14
-    rational   ///< exact inverse: at most `largest_exact_matrix` contacts, any regular matrix
+    automatic,      ///< the first of the others that is good enough for the claim about the vertex
+    singular_value, ///< a sparse Cholesky factor, its residual in 64-bit integers: condition numbers up to about 1e7
+    rows,           ///< row by row of an approximate inverse: the first of the following that succeeds
+    fixed64, ///< rows of 64-bit integers, products in 128 bits: coordinates on a common grid of at most 2^60 steps
+    gmp,     ///< rows of GMP integers, refined: any coordinates, condition numbers up to about 1e14
+    rational ///< exact inverse: at most `largest_exact_matrix` contacts, any regular matrix
 };
 
 /// Largest number of rows and columns for which the checker eliminates exactly.
@@ -46,8 +48,8 @@ inline constexpr int largest_exact_matrix = 100;
 
 /// Checks every claim from the state and the claims alone. Does not throw on false claims. Coordinates, radii and loads
 /// are the stored doubles, taken as exact rationals. Supported: all that `State<2>` can hold, except held coordinates:
-/// then every claim is undecided. Cost: N solves with a sparse factorisation of which nothing is trusted, and 4 N^2
-/// integer products; memory O(N).
+/// then every claim is undecided. Cost: some sparse factorisations, of which nothing is trusted, and as many integer
+/// products as one of them takes; where that does not suffice N solves and 4 N^2 integer products. Memory: the factors.
 Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic = CheckerArithmetic::automatic);
 
 } // namespace isostat

@@ -38,10 +38,8 @@ Solver::Solver(const Problem& problem) {
     }
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SparseMatrix<double> transposed = matrix.transpose();
     lu_.compute(matrix);
-    transposed_.compute(transposed);
-    usable_ = lu_.info() == Eigen::Success && transposed_.info() == Eigen::Success;
+    usable_ = lu_.info() == Eigen::Success;
 }
 
 } // namespace isostat::checker

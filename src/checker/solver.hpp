@@ -10,7 +10,7 @@
 
 namespace isostat::checker {
 
-/// Sparse LU factorisations in double of the scaled matrix A / 2^scale at the stored coordinates, and of its transpose.
+/// A sparse LU factorisation in double of the scaled matrix A / 2^scale at the stored coordinates.
 class Solver {
   public:
     explicit Solver(const Problem& problem);
@@ -21,14 +21,13 @@ class Solver {
     /// (A / 2^scale)^-1 b: b per contact, result per degree of freedom.
     [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return lu_.solve(b); }
     /// (A / 2^scale)^-T b: b per degree of freedom, result per contact.
-    [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const { return transposed_.solve(b); }
+    [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const { return lu_.transpose().solve(b); }
 
   private:
     using Lu = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>;
     long scale_ = 0;
     bool usable_ = false;
-    Lu lu_;
-    Lu transposed_;
+    mutable Lu lu_; ///< its transposed view is not const
 };
 
 /// value * 2^shift, rounded towards zero; 0 for what is not finite.

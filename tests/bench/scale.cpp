@@ -1,7 +1,7 @@
 // The command-line program on large packings: CPU time and memory of the preparation, of an inspection, of a
-// certificate and of a stretch of trajectory (per arc, its equilibria included), and their growth with n. Every stage
-// is a process of its own; its CPU time (all threads, user and system) and its largest resident memory are what the
-// operating system counted. The status is 1 when a stage did not end as it should. Usage:
+// certificate, of its verification and of a stretch of trajectory (per arc, its equilibria included), and their growth
+// with n. Every stage is a process of its own; its CPU time (all threads, user and system) and its largest resident
+// memory are what the operating system counted. The status is 1 when a stage did not end as it should. Usage:
 //   bench_scale [--json FILE] [--isostat PROGRAM] [--work DIR] [--threads T] [--equilibria E] [--arcs A] [n | FILE ...]
 // A number of disks is prepared with seed 1 (its state stays in DIR), a state file is taken as it is.
 #include "bench/shared/report.hpp"
@@ -178,6 +178,8 @@ int main(int argc, char** argv) {
         const Cost certified =
             measure({settings.isostat, "certify", state, "-o", certificate, "--json", "--threads", threads});
         scale.add(n, "certificate", certified, 1, verdict(certified, certified.status == 0));
+        const Cost verified = measure({settings.isostat, "verify", certificate, "--json"});
+        scale.add(n, "verification", verified, 1, verdict(verified, verified.status == 0));
         for (const std::string level : {"plain", "decisions"}) {
             const std::filesystem::path scene = settings.work / "run.toml";
             std::ofstream(scene) << scene_of_run(settings, state, level);

@@ -34,9 +34,8 @@ ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, 
         const double bound =
             by_sigma ? rounded_down(evidence.inverse.singular_value) : rounded_up(evidence.inverse.residual_row);
         check.numbers.emplace_back(by_sigma ? "singular_value" : "inverse_residual", bound);
-        stored =
-            fmt::format("{}, rank {} as stored ({} {:.2g}, {})", counts, *evidence.rank,
-                        by_sigma ? "smallest singular value >=" : "|I - RA| <=", bound, evidence.inverse.arithmetic);
+        stored = fmt::format("{}, rank {} as stored ({} {:.2g}, {})", counts, *evidence.rank,
+                             by_sigma ? "singular values of A >=" : "|I - RA| <=", bound, evidence.inverse.arithmetic);
     }
     if (!at_vertex) {
         return answer(check, Verdict::proved, stored);

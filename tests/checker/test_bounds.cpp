@@ -1,4 +1,5 @@
 // The bounds of the inverse against a dense inverse in long double: never below it, and not much above.
+#include "checker/dense.hpp"
 #include "checker/forces.hpp"
 #include "checker/gaps.hpp"
 #include "checker/inverse.hpp"
@@ -16,27 +17,12 @@ using namespace isostat;
 
 namespace {
 
-/// The derivative at the stored coordinates, walls with their weight, in real lengths.
-maker::Matrix derivative(const checker::Problem& problem) {
-    maker::Matrix a = maker::Matrix::Zero(problem.contacts(), problem.dofs());
-    for (int l = 0; l < problem.contacts(); ++l) {
-        const checker::Row& row = problem.rows[static_cast<std::size_t>(l)];
-        for (int k = 0; k < row.count; ++k) {
-            const int dof = problem.dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-            if (dof >= 0) {
-                a(l, dof) = problem.length(problem.entry(l, k, problem.stored)).get_d();
-            }
-        }
-    }
-    return a;
-}
-
 void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
     const checker::Problem problem(state);
     const checker::Solver solver(problem);
     const checker::InverseBound bound = checker::bound_inverse(problem, solver, arithmetic);
     BOOST_REQUIRE(bound.found);
-    const maker::Matrix inverse = derivative(problem).inverse();
+    const maker::Matrix inverse = dense::derivative(problem).inverse();
     const maker::Matrix sizes = inverse.cwiseAbs();
     const auto near = [](const checker::Rational& upper, maker::Real value) {
         // R is the inverse to a relative 1e-9 here, and the oracle to 1e-12.

@@ -1,4 +1,5 @@
 // The bound of the smallest singular value: never above a dense one, not far below it, none for singular matrices.
+#include "checker/dense.hpp"
 #include "checker/inverse.hpp"
 #include "checker/maker.hpp"
 #include "checker/singular_value.hpp"
@@ -19,24 +20,9 @@ using isostat::checker::Solver;
 
 namespace {
 
-/// Of the derivative at the stored coordinates, in real lengths.
-Eigen::MatrixXd derivative(const Problem& problem) {
-    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(problem.contacts(), problem.dofs());
-    for (int l = 0; l < problem.contacts(); ++l) {
-        const isostat::checker::Row& row = problem.rows[static_cast<std::size_t>(l)];
-        for (int k = 0; k < row.count; ++k) {
-            const int dof = problem.dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-            if (dof >= 0) {
-                a(l, dof) = problem.length(problem.entry(l, k, problem.stored)).get_d();
-            }
-        }
-    }
-    return a;
-}
-
 void agrees_with_a_dense_one(const State<2>& state) {
     const Problem problem(state);
-    const Eigen::MatrixXd a = derivative(problem);
+    const Eigen::MatrixXd a = dense::derivative(problem).cast<double>();
     const double sigma = Eigen::BDCSVD<Eigen::MatrixXd>(a).singularValues().minCoeff();
     const double error = 1e-13 * a.norm();
     const auto bound = smallest_singular_value(problem);
@@ -92,8 +78,7 @@ BOOST_AUTO_TEST_CASE(a_singular_value_that_approaches_zero_is_never_overstated) 
     BOOST_TEST(!smallest_singular_value(Problem(small_states::between_two(0))).has_value());
 }
 
-// One contact twice: the rounding of an approximate factor must not make a regular matrix of it. Moved a little, the
-// second is another contact, with a singular value that doubles still see or do not.
+// One contact twice: the rounding of an approximate factor must not make a regular matrix of it.
 BOOST_AUTO_TEST_CASE(a_singular_matrix_of_a_large_state_has_no_bound) {
     State<2> state = sample("vertex400.txt");
     const auto is_pair = [](const Contact& c) { return c.kind == ContactKind::disk_disk; };

@@ -288,6 +288,12 @@ bool Errand::underway() const {
     return task_ != nullptr && task_->sent && task_->stage.load(std::memory_order_acquire) != Task::done;
 }
 
+void Errand::begin_here() {
+    if (task_ != nullptr && task_->claim()) {
+        task_->perform();
+    }
+}
+
 void Errand::finish() {
     if (task_ == nullptr) {
         return;

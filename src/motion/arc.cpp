@@ -79,11 +79,14 @@ template <int Dim> class Follower {
   public:
     Follower(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
              ContactId opened, int direction, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
-             const ArcOptions& options)
+             const ArcOptions& options, std::vector<Contact> open = {})
         : structure_(&structure), factorisation_(&factorisation), slot_(opened.index()),
           opened_(structure.contacts()[opened.index()]), power_(power), candidates_(candidates), options_(options),
           start_(start), q_(start), size_(static_cast<std::size_t>(structure.size())), rhs_(size_),
-          y_(start.q.size(), 0.0) {
+          y_(start.q.size(), 0.0), active_(std::move(open)) {
+        if (!active_.empty()) {
+            complete_candidates();
+        }
         step_limit_ = options.step_fraction * start.min_radius();
         fresh_slot_mechanism();
         tangent_ = mechanism_;
@@ -94,6 +97,13 @@ template <int Dim> class Follower {
 
     /// Tangent, curvature and the first event that they predict, at the start.
     void begin();
+    /// \pre begin()
+    [[nodiscard]] std::optional<typename ArcDeparture<Dim>::Expected> expected() const {
+        if (!predicted_ || !(s_event_ <= step_limit_)) {
+            return std::nullopt;
+        }
+        return typename ArcDeparture<Dim>::Expected{active_[event_], predicted(s_event_)};
+    }
     /// \pre begin()
     Result<Arc<Dim>> run();
 
@@ -381,13 +391,32 @@ template <int Dim> class Follower {
         if (active_.empty()) {
             const ContactSet kept(structure_->contacts(), q_.disk_count());
             active_.reserve(candidates_.contacts.size());
-            std::copy_if(
-                candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
-                [&](const Contact& c) { return c != opened_ && !kept.contains(c) && !listed(options_.resting, c); });
-            if (opened_.kind != ContactKind::held) {
-                active_.push_back(opened_); // it may close again
-            }
+            std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                         [&](const Contact& c) { return !kept.contains(c); });
+            complete_candidates();
         }
+    }
+    /// Of the open ones, those that take part; with the one that opens, which may close again.
+    void complete_candidates() {
+        std::erase_if(active_, [&](const Contact& c) { return c == opened_ || listed(options_.resting, c); });
+        if (opened_.kind != ContactKind::held) {
+            active_.push_back(opened_);
+        }
+    }
+
+    /// The other way round at the end of the arc.
+    std::vector<Contact> open_at_end(const Contact& closed) {
+        if (!options_.resting.empty() || active_.empty()) {
+            return {};
+        }
+        if (opened_.kind != ContactKind::held) {
+            active_.pop_back();
+        }
+        std::erase(active_, closed);
+        if (opened_.kind != ContactKind::held && opened_ != closed) {
+            active_.insert(std::lower_bound(active_.begin(), active_.end(), opened_), opened_);
+        }
+        return std::move(active_);
     }
 
     static bool listed(const std::vector<Contact>& list, const Contact& c) {
@@ -413,6 +442,7 @@ template <int Dim> class Follower {
         arc.power = power;
         arc.tangent = std::move(tangent);
         arc.opening = std::move(opening_);
+        arc.open = open_at_end(closed);
         arc.steps = steps_;
         arc.factorisations = factorisations_;
         arc.passes = passes_;
@@ -856,13 +886,18 @@ template <int Dim> struct ArcDeparture<Dim>::Implementation {
 template <int Dim>
 ArcDeparture<Dim>::ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
                                 const Factorisation& factorisation, ContactId opened, int direction,
-                                const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options)
-    : implementation_(new Implementation{
-          Follower<Dim>(start, structure, factorisation, opened, direction, power, candidates, options)}) {
+                                const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options,
+                                std::vector<Contact> open)
+    : implementation_(new Implementation{Follower<Dim>(start, structure, factorisation, opened, direction, power,
+                                                       candidates, options, std::move(open))}) {
     implementation_->follower.begin();
 }
 template <int Dim> ArcDeparture<Dim>::ArcDeparture(ArcDeparture&&) noexcept = default;
 template <int Dim> ArcDeparture<Dim>::~ArcDeparture() = default;
+
+template <int Dim> std::optional<typename ArcDeparture<Dim>::Expected> ArcDeparture<Dim>::expected() const {
+    return implementation_->follower.expected();
+}
 
 template <int Dim> Result<Arc<Dim>> ArcDeparture<Dim>::follow() {
     return implementation_->follower.run();

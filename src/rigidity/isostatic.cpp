@@ -244,16 +244,20 @@ template <int Dim> Result<IsostaticStructure<Dim>> RankProof<Dim>::conclude() {
 }
 
 template <int Dim>
-std::optional<ExchangedContacts<Dim>> IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous,
-                                                                        const Packing<Dim>& packing, ContactId slot,
-                                                                        const Contact& contact) {
+std::optional<ExchangedContacts<Dim>>
+IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous, const Packing<Dim>& packing, ContactId slot,
+                                  const Contact& contact, const ExchangedContacts<Dim>* guess) {
     ExchangedContacts<Dim> next;
     next.slot_ = static_cast<int>(slot.index());
     next.contacts_ = previous.contacts_;
     next.contacts_[slot.index()] = contact;
     next.dofs_ = previous.dofs_;
     next.matrix_ = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *next.dofs_, next.contacts_));
-    if (same_pattern_elsewhere(*previous.matrix_, *next.matrix_, slot.index())) {
+    next.foreseen_ = guess != nullptr && guess->contacts_ == next.contacts_ &&
+                     guess->matrix_->start == next.matrix_->start && guess->matrix_->row == next.matrix_->row;
+    if (next.foreseen_) {
+        next.matching_ = guess->matching_;
+    } else if (same_pattern_elsewhere(*previous.matrix_, *next.matrix_, slot.index())) {
         next.matching_ =
             sparse::repaired_matching(previous.matching_, next.matrix_->start, next.matrix_->row, next.slot_);
     } else { // a normal turned into or out of an axis: other columns changed their pattern too

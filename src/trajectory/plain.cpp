@@ -24,6 +24,35 @@ std::pair<double, double> work_of(const Load<Dim>& load, const Packing<Dim>& fro
     return {work, 1e-12 * size};
 }
 
+/// Passes for the forces of a foreseen vertex: as many as find out which is most negative, mostly.
+constexpr int foreseeing_passes = 1;
+
+template <int Dim>
+ForeseenVertex<Dim> foresee(const PlainVertex<Dim>& from, const ApproximateInverse& approximate, const Load<Dim>& load,
+                            ContactId opens, const typename ArcDeparture<Dim>::Expected& expected) {
+    ForeseenVertex<Dim> foreseen;
+    foreseen.contacts = IsostaticStructure<Dim>::exchange(from.structure, expected.end, opens, expected.closes);
+    if (!foreseen.contacts) {
+        return foreseen;
+    }
+    foreseen.loaded = from.loaded();
+    const sparse::Matrix<double>& h = foreseen.contacts->matrix();
+    foreseen.backbone = sparse::structural_nonzeros(h.start, h.row, foreseen.contacts->matching(), foreseen.loaded);
+    const auto structure = IsostaticStructure<Dim>::without_proof(*foreseen.contacts);
+    foreseen.approximate = approximate.exchanged(foreseen.contacts->slot(), h);
+    const Factorisation factorisation(structure, *foreseen.approximate);
+    foreseen.force = on_dofs(load.external_force(expected.end), structure.dofs());
+    factorisation.solve_forces_until(foreseen.force, from.force, [&](std::span<const double>, double) {
+        return ++foreseen.passes == foreseeing_passes;
+    });
+    const std::size_t opens_next = most_negative(foreseen.force, structure.contacts(), foreseen.backbone);
+    if (opens_next < foreseen.force.size() && structure.contacts()[opens_next].kind != ContactKind::held) {
+        foreseen.opens = ContactId(opens_next);
+        (void)foreseen.approximate->mechanism(static_cast<int>(opens_next)); // the departure finds it there
+    }
+    return foreseen;
+}
+
 } // namespace
 
 template <int Dim>
@@ -46,7 +75,7 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
     if (auto stop = calls.begin(record)) {
         return *stop;
     }
-    const int force_passes = here_ ? factorisation_->passes() : 0; // of others at the start
+    const int force_passes = here_ ? here_->passes() : 0; // of others at the start
     const PowerLoad<Dim> power{&load_, opening_.infinitesimal, at_limit_};
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
     std::optional<Factorisation> block;
@@ -61,7 +90,21 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
     if (departure != nullptr) {
         factorisation_ = &departure->factorisation;
     }
-    auto arc = departure != nullptr ? departure->arc.take()->follow() : attempt(block ? *block : *factorisation_);
+    std::optional<typename ArcDeparture<Dim>::Expected> expected;
+    Promised<ForeseenVertex<Dim>> foreseeing;
+    auto arc = [&] {
+        if (departure == nullptr) {
+            return attempt(block ? *block : *factorisation_);
+        }
+        const std::unique_ptr<ArcDeparture<Dim>> begun = departure->arc.take();
+        expected = begun->expected();
+        if (expected) {
+            foreseeing = Promised<ForeseenVertex<Dim>>([this, &expected] {
+                return foresee(*here_, factorisation_->approximate(), load_, opening_.contact, *expected);
+            });
+        }
+        return begun->follow();
+    }();
     if ((!arc.ok() || arc.value().closed == record.opened) && (block || !factorisation_->is_fresh())) {
         arc = attempt(Factorisation(*structure_));
     }
@@ -82,16 +125,27 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
     if (load_.kind == LoadKind::nominal && work < -unknown) {
         return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} along {}", -work, names())};
     }
-    auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, opening_.contact, path.closed);
+    std::optional<ForeseenVertex<Dim>> foreseen;
+    if (expected && expected->closes == path.closed) {
+        foreseen = foreseeing.take();
+    }
+    foreseeing = {}; // it reads this vertex
+    auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, opening_.contact, path.closed,
+                                                  foreseen && foreseen->contacts ? &*foreseen->contacts : nullptr);
     if (!next) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contacts are structurally singular at the end of {}", names())};
+    }
+    if (!next->foreseen()) {
+        foreseen.reset();
     }
     std::optional<ApproximateInverse> approximate;
     wear_.add(path.passes + force_passes, factorisation_->approximate());
     if (auto renewed = renewal_.after(next->slot(), next->matrix())) {
         approximate = std::move(renewed);
         wear_.renew();
+    } else if (foreseen && !calls.arrived) { // the new column is the foreseen one, which only a proof would notice
+        approximate = std::move(foreseen->approximate);
     } else {
         approximate = factorisation_->approximate().exchanged(next->slot(), next->matrix());
     }
@@ -105,7 +159,8 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
     }
     const std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
     here_ = std::make_unique<PlainVertex<Dim>>(std::move(path.end), std::move(unproved), *approximate, load_, guess,
-                                               options_.rule, candidates_, arc_options_);
+                                               options_.rule, candidates_, arc_options_, std::move(path.open),
+                                               foreseen ? &*foreseen : nullptr);
     packing_ = &here_->packing;
     structure_ = &here_->structure;
     factorisation_ = &here_->factorisation;

@@ -17,44 +17,115 @@
 
 namespace isostat {
 
+/// The vertex at the end of an arc as the start of the arc foretells it, worked out while the arc is followed.
+template <int Dim> struct ForeseenVertex {
+    std::optional<ExchangedContacts<Dim>> contacts;
+    std::vector<int> loaded;             ///< degrees of freedom
+    std::vector<unsigned char> backbone; ///< with these
+    std::vector<double> force;           ///< after a few passes
+    std::optional<ApproximateInverse> approximate;
+    ContactId opens; ///< what opens next, with these forces; or none
+    int passes = 0;
+};
+
+/// A force as the choice of what opens compares it.
+inline double signed_size(const Contact& contact, double force) {
+    return contact.kind == ContactKind::held ? -std::abs(force) : force;
+}
+
+/// The most negative of the forces that are not structural zeros; their number when none is negative.
+inline std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
+                                 const std::vector<unsigned char>& backbone) {
+    std::size_t best = f.size();
+    double smallest = 0;
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        const double size = signed_size(contacts[l], f[l]);
+        if (size < smallest && backbone[l] != 0) {
+            smallest = size;
+            best = l;
+        }
+    }
+    return best;
+}
+
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
   public:
-    /// `guess`: forces in the same slots.
+    /// `guess`: forces in the same slots. `open`: see `Arc`. `foreseen`: of the same pattern, or null.
     PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, const ApproximateInverse& approximate, const Load<Dim>& load,
                 const std::vector<double>& guess, OpeningRule rule, CandidateList<Dim>& candidates,
-                const ArcOptions& options)
+                const ArcOptions& options, std::vector<Contact> open, ForeseenVertex<Dim>* foreseen)
         : packing(std::move(p)), structure(std::move(s)), factorisation(structure, approximate), load_(load) {
         const DofMap<Dim>& dofs = structure.dofs();
         force = on_dofs(load.external_force(packing), dofs);
         const std::vector<double> unit = on_dofs(load.unit_force(packing), dofs);
-        std::vector<int> loaded;
         for (std::size_t mu = 0; mu < force.size(); ++mu) {
             if (force[mu] != 0 || unit[mu] != 0) {
-                loaded.push_back(static_cast<int>(mu));
+                loaded_.push_back(static_cast<int>(mu));
             }
         }
         const sparse::Matrix<double>& h = structure.matrix();
-        Promised<std::vector<unsigned char>> backbone([&h, this, loaded = std::move(loaded)] {
-            return sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded);
-        });
+        Promised<std::vector<unsigned char>> backbone;
+        if (foreseen != nullptr && foreseen->loaded == loaded_) {
+            backbone_ = std::move(foreseen->backbone);
+        } else {
+            foreseen = nullptr;
+            backbone = Promised<std::vector<unsigned char>>(
+                [&h, this] { return sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded_); });
+        }
+        const bool departs = rule == OpeningRule::most_negative;
+        if (departs && renew_candidates(candidates, packing)) { // not by an errand that may be dropped
+            open.clear();
+        }
+        const auto depart = [&](std::size_t chosen) {
+            departure_.reset(new Departure{ContactId(chosen), Factorisation(structure, approximate), {}});
+        };
+        if (foreseen != nullptr) {
+            foreseen_passes_ = foreseen->passes;
+            if (departs && foreseen->opens.valid()) {
+                depart(foreseen->opens.index());
+            }
+        }
+        const auto begin_arc = [this, &candidates, options, open = std::move(open)] {
+            departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>(
+                [this, &factors = departure_->factorisation, opened = departure_->opened, &candidates, options, open] {
+                    return std::make_unique<ArcDeparture<Dim>>(packing, structure, factors, opened, +1,
+                                                               PowerLoad<Dim>{&load_, false, false}, candidates,
+                                                               options, open);
+                });
+        };
         load_on_dofs_ = force;
-        error_ = safety * factorisation.solve_forces_until(force, guess, [&](std::span<const double> f, double error) {
-            if (backbone.pending()) {
-                backbone_ = backbone.take();
+        const std::vector<double>& from = foreseen != nullptr ? foreseen->force : guess;
+        const auto solve = [&] {
+            const auto enough = [&](std::span<const double> f, double error) {
+                if (backbone.pending()) {
+                    backbone_ = backbone.take();
+                }
+                error_ = safety * error;
+                if (!departs) {
+                    return false;
+                }
+                const std::size_t chosen = most_negative(f, structure.contacts(), backbone_);
+                if (!departure_ && chosen < f.size() && structure.contacts()[chosen].kind != ContactKind::held) {
+                    depart(chosen);
+                    begin_arc();
+                }
+                const bool begun = departure_ && departure_->opened == ContactId(chosen);
+                const double asked = begun ? accuracy_with_velocity : recorded_accuracy;
+                return (chosen == f.size() || error_ <= asked * std::abs(f[chosen])) && clear(f, chosen);
+            };
+            error_ = safety * factorisation.solve_forces_until(force, from, enough);
+        };
+        if (departure_) {
+            Errand solving(solve);
+            begin_arc();
+            if (solving.underway()) {
+                departure_->arc.begin_here();
             }
-            error_ = safety * error;
-            if (rule != OpeningRule::most_negative) {
-                return false;
-            }
-            const std::size_t chosen = most_negative(f);
-            if (!departure_ && chosen < f.size() && structure.contacts()[chosen].kind != ContactKind::held) {
-                depart(approximate, ContactId(chosen), candidates, options);
-            }
-            const bool begun = departure_ && departure_->opened == ContactId(chosen);
-            const double enough = begun ? accuracy_with_velocity : recorded_accuracy;
-            return (chosen == f.size() || error_ <= enough * std::abs(f[chosen])) && clear(f, chosen);
-        });
+            solving.finish();
+        } else {
+            solve();
+        }
         if (backbone.pending()) {
             backbone_ = backbone.take();
         }
@@ -66,6 +137,10 @@ template <int Dim> class PlainVertex {
     std::vector<double> force; ///< finite forces
 
     [[nodiscard]] bool is_structural_zero(std::size_t l) const { return backbone_[l] == 0; }
+    /// Of the factors, for forces.
+    [[nodiscard]] int passes() const { return factorisation.passes() + foreseen_passes_; }
+    /// Degrees of freedom.
+    [[nodiscard]] const std::vector<int>& loaded() const { return loaded_; }
     /// Forces of the infinitesimal loads.
     [[nodiscard]] const std::vector<double>& infinitesimal() {
         if (infinitesimal_.empty()) {
@@ -129,52 +204,27 @@ template <int Dim> class PlainVertex {
     static constexpr double accuracy_with_velocity = 1e-3;
     static constexpr double safety = 30;
 
-    void depart(const ApproximateInverse& approximate, ContactId opened, CandidateList<Dim>& candidates,
-                const ArcOptions& options) {
-        renew_candidates(candidates, packing); // not by an errand that may be dropped
-        departure_.reset(new Departure{opened, Factorisation(structure, approximate), {}});
-        departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>(
-            [this, &factors = departure_->factorisation, opened, &candidates, options] {
-                return std::make_unique<ArcDeparture<Dim>>(packing, structure, factors, opened, +1,
-                                                           PowerLoad<Dim>{&load_, false, false}, candidates, options);
-            });
-    }
     void refine() {
         std::vector<double> better = load_on_dofs_;
         factorisation.solve_forces_from(better, force, accuracy);
         force = std::move(better);
         error_ = 0;
     }
-    [[nodiscard]] std::size_t most_negative(std::span<const double> f) const {
-        std::size_t best = f.size();
-        double smallest = 0;
-        for (std::size_t l = 0; l < f.size(); ++l) {
-            const double size = signed_size(f, l);
-            if (size < smallest && !is_structural_zero(l)) {
-                smallest = size;
-                best = l;
-            }
-        }
-        return best;
-    }
     /// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is
     /// none for all.
     [[nodiscard]] bool clear(std::span<const double> f, std::size_t chosen) const {
-        const double bar = chosen < f.size() ? signed_size(f, chosen) + 2 * error_ : error_;
+        const double bar =
+            chosen < f.size() ? signed_size(structure.contacts()[chosen], f[chosen]) + 2 * error_ : error_;
         if (chosen < f.size() && bar >= error_) {
             return false; // it may be 0
         }
         for (std::size_t l = 0; l < f.size(); ++l) {
-            if (l != chosen && signed_size(f, l) <= bar && !is_structural_zero(l)) {
+            if (l != chosen && signed_size(structure.contacts()[l], f[l]) <= bar && !is_structural_zero(l)) {
                 return false;
             }
         }
         return true;
     }
-    [[nodiscard]] double signed_size(std::span<const double> f, std::size_t l) const {
-        return structure.contacts()[l].kind == ContactKind::held ? -std::abs(f[l]) : f[l];
-    }
-
     /// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
     std::optional<Opening> stage(bool finite, OpeningRule rule, std::uint64_t random_bits) {
         if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
@@ -182,7 +232,7 @@ template <int Dim> class PlainVertex {
         }
         const std::vector<double>& f = finite ? force : infinitesimal();
         const auto& contacts = structure.contacts();
-        const auto size = [&](std::size_t l) { return signed_size(f, l); };
+        const auto size = [&](std::size_t l) { return signed_size(contacts[l], f[l]); };
         std::vector<std::size_t> negative;
         for (std::size_t l = 0; l < contacts.size(); ++l) {
             if (is_structural_zero(l) != finite && size(l) < 0) {
@@ -231,9 +281,11 @@ template <int Dim> class PlainVertex {
     }
 
     const Load<Dim>& load_;
+    std::vector<int> loaded_;
     std::vector<unsigned char> backbone_;
     std::vector<double> infinitesimal_;
     std::vector<double> load_on_dofs_;
+    int foreseen_passes_ = 0;
     double error_ = 0;                     ///< of the finite forces, with a margin; 0: they are as accurate as they get
     std::unique_ptr<Departure> departure_; ///< last: it uses the rest
 };

@@ -41,6 +41,9 @@ class Errand {
     /// Waits for work that was begun; work that was not is never done.
     ~Errand();
 
+    /// Does the work in this thread unless another has begun it. `finish` is still due: what the work threw and counted
+    /// waits for it.
+    void begin_here();
     /// Returns when the work is done; throws what it threw. Afterwards there is nothing to do.
     void finish();
     /// There is work that `finish` was not called for.
@@ -71,6 +74,7 @@ template <class Value> class Promised {
     }
     [[nodiscard]] bool pending() const { return errand_.pending(); }
     [[nodiscard]] bool underway() const { return errand_.underway(); }
+    void begin_here() { errand_.begin_here(); }
 
   private:
     std::shared_ptr<std::optional<Value>> value_;

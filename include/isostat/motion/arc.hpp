@@ -46,7 +46,9 @@ template <int Dim> struct Arc {
     double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as good as t
     std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
     std::vector<double>
-        opening;             ///< velocity at the start, on coordinates, that opens the contact at unit rate: a guess
+        opening; ///< velocity at the start, on coordinates, that opens the contact at unit rate: a guess
+    /// The candidates that are not contacts at the end, in the order of the list; empty: not known.
+    std::vector<Contact> open;
     double displacement = 0; ///< largest displacement of a coordinate
     int steps = 0;           ///< predictor steps
     int factorisations = 0;  ///< structures proved and factorised along the way (long arcs only)
@@ -77,14 +79,22 @@ template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const P
 
 /// An arc of which tangent, curvature and the candidates at the start are worked out: the part that can be done beside
 /// other work on the same vertex. `follow` is then what `follow_arc` is. What the constructor refers to must outlive
-/// it. The candidates are made anew only when `renew_candidates` would. Cost: about half the solves of a short arc.
+/// it. The candidates are made anew only when `renew_candidates` would. `open`: those that are not contacts of the
+/// structure, if they are at hand (`Arc::open` of the arc before). Cost: about half the solves of a short arc.
 template <int Dim> class ArcDeparture {
   public:
     ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
                  const Factorisation& factorisation, ContactId opened, int direction, const PowerLoad<Dim>& power,
-                 CandidateList<Dim>& candidates, const ArcOptions& options);
+                 CandidateList<Dim>& candidates, const ArcOptions& options, std::vector<Contact> open = {});
     ArcDeparture(ArcDeparture&&) noexcept;
     ~ArcDeparture();
+    /// The end as the start foretells it.
+    struct Expected {
+        Contact closes;
+        Packing<Dim> end; ///< not on the curve
+    };
+    /// A guess. Nothing when no contact closes within the first step.
+    [[nodiscard]] std::optional<Expected> expected() const;
     /// Once.
     Result<Arc<Dim>> follow();
 

@@ -37,6 +37,8 @@ template <int Dim> class ExchangedContacts {
     [[nodiscard]] const std::vector<int>& matching() const { return matching_; }
     /// Place of the new contact in the list (and of its column).
     [[nodiscard]] int slot() const { return slot_; }
+    /// The pattern, and so the matching, is that of the guess given to `exchange`.
+    [[nodiscard]] bool foreseen() const { return foreseen_; }
 
   private:
     template <int> friend class IsostaticStructure;
@@ -45,6 +47,7 @@ template <int Dim> class ExchangedContacts {
     std::shared_ptr<const sparse::Matrix<double>> matrix_;
     std::vector<int> matching_;
     int slot_ = 0;
+    bool foreseen_ = false;
 };
 
 /// Evidence that one matrix is regular: a proved positive lower bound of the smallest singular value of the exact
@@ -82,9 +85,12 @@ template <int Dim> class IsostaticStructure {
     static Result<IsostaticStructure> prove(const Packing<Dim>& packing, std::vector<Contact> contacts);
 
     /// The list of `previous` with the contact at `slot` replaced, at a new configuration of the same grains. Nothing
-    /// when the new pattern is structurally singular. Cost: the matrix, and one augmenting path.
-    static std::optional<ExchangedContacts<Dim>>
-    exchange(const IsostaticStructure& previous, const Packing<Dim>& packing, ContactId slot, const Contact& contact);
+    /// when the new pattern is structurally singular. `guess`: the same exchange at a configuration nearby, if it is at
+    /// hand; the result does not depend on it. Cost: the matrix, and one augmenting path unless the guess has it.
+    static std::optional<ExchangedContacts<Dim>> exchange(const IsostaticStructure& previous,
+                                                          const Packing<Dim>& packing, ContactId slot,
+                                                          const Contact& contact,
+                                                          const ExchangedContacts<Dim>* guess = nullptr);
     /// By a positive lower bound of its smallest singular value (statement T3 with V8, or V1). \pre the proof is of
     /// this matrix.
     static IsostaticStructure exchanged(ExchangedContacts<Dim> contacts, const RegularityProof& proof);

@@ -2,6 +2,8 @@
 
 #include "support/threads.hpp"
 
+#include <isostat/core/work.hpp>
+
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -133,6 +135,42 @@ BOOST_AUTO_TEST_CASE(one_thread_does_an_errand_when_it_is_asked_for_and_not_at_a
         BOOST_TEST(errand.pending());
     }
     BOOST_TEST(done == 1);
+}
+
+BOOST_AUTO_TEST_CASE(an_errand_begun_by_its_caller_is_done_once_and_tells_when_it_is_finished) {
+    for (const int count : {1, 2}) {
+        const Threads threads(count);
+        for (int round = 0; round < 200; ++round) {
+            std::atomic<int> done{0};
+            const long before = work_done()[static_cast<std::size_t>(Work::factorisations)];
+            const auto counted = [before] {
+                return work_done()[static_cast<std::size_t>(Work::factorisations)] - before;
+            };
+            Errand errand([&] {
+                ++done;
+                count_work(Work::factorisations);
+            });
+            errand.begin_here();
+            BOOST_TEST(done <= 1); // another thread may be at it
+            BOOST_TEST(errand.pending());
+            BOOST_TEST(counted() == 0);
+            errand.finish();
+            BOOST_TEST(done == 1);
+            BOOST_TEST(counted() == 1);
+            errand.begin_here(); // nothing left
+            BOOST_TEST(done == 1);
+        }
+        Errand bad([] { throw std::runtime_error("bad"); });
+        bad.begin_here();
+        BOOST_CHECK_THROW(bad.finish(), std::runtime_error);
+    }
+    int dropped = 0;
+    {
+        Errand errand([&] { ++dropped; });
+        errand.begin_here();
+        BOOST_TEST(dropped == 1);
+    }
+    BOOST_TEST(dropped == 1);
 }
 
 BOOST_AUTO_TEST_CASE(nothing_of_an_errand_is_left_running_when_it_is_dropped) {

@@ -1,0 +1,140 @@
+// What is known at the start of an arc, and what an arc hands on to the next.
+#include <isostat/io/state_file.hpp>
+#include <isostat/motion/arc.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace isostat;
+
+namespace {
+
+/// The vertex of a file, and the arcs that open its contacts.
+struct Start {
+    State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    IsostaticStructure<2> structure = IsostaticStructure<2>::prove(state.packing, state.contacts).value();
+    Factorisation factorisation{structure};
+    CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
+
+    [[nodiscard]] ArcDeparture<2> depart(std::size_t slot, std::vector<Contact> open = {}) {
+        return {state.packing, structure,    factorisation,  ContactId(slot), +1, {&state.load, false, false},
+                candidates,    ArcOptions{}, std::move(open)};
+    }
+};
+
+/// By definition.
+std::vector<Contact> candidates_without(const CandidateList<2>& candidates, const std::vector<Contact>& contacts) {
+    std::vector<Contact> open;
+    for (const Contact& c : candidates.contacts) {
+        if (std::find(contacts.begin(), contacts.end(), c) == contacts.end()) {
+            open.push_back(c);
+        }
+    }
+    return open;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(motion)
+
+BOOST_AUTO_TEST_CASE(an_arc_hands_on_the_candidates_that_are_open_at_its_end) {
+    Start start;
+    int followed = 0;
+    for (std::size_t slot = 0; slot < start.state.contacts.size(); slot += 3) {
+        const auto arc = start.depart(slot).follow();
+        if (!arc.ok()) {
+            continue;
+        }
+        std::vector<Contact> contacts = start.state.contacts;
+        contacts[slot] = arc.value().closed;
+        const bool same = arc.value().open == candidates_without(start.candidates, contacts);
+        BOOST_TEST(same, "slot " << slot);
+        ++followed;
+    }
+    BOOST_TEST(followed > 20);
+}
+
+BOOST_AUTO_TEST_CASE(open_candidates_at_hand_do_not_change_an_arc) {
+    Start start;
+    const std::vector<Contact> open = candidates_without(start.candidates, start.state.contacts);
+    int followed = 0;
+    for (std::size_t slot = 0; slot < start.state.contacts.size(); slot += 3) {
+        const auto arc = start.depart(slot).follow();
+        const auto again = start.depart(slot, open).follow();
+        BOOST_TEST_REQUIRE(arc.ok() == again.ok());
+        if (arc.ok()) {
+            BOOST_TEST((arc.value().end.q == again.value().end.q));
+            BOOST_TEST((arc.value().closed == again.value().closed));
+            BOOST_TEST((arc.value().open == again.value().open));
+            ++followed;
+        }
+    }
+    BOOST_TEST(followed > 20);
+}
+
+BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
+    Start start;
+    int right = 0;
+    int wrong = 0;
+    for (std::size_t slot = 0; slot < start.state.contacts.size(); ++slot) {
+        ArcDeparture<2> departure = start.depart(slot);
+        const auto expected = departure.expected();
+        const auto arc = departure.follow();
+        if (!arc.ok() || !expected) {
+            continue;
+        }
+        if (arc.value().closed != expected->closes) {
+            ++wrong;
+            continue;
+        }
+        ++right;
+        double moved = 0;
+        double off = 0;
+        for (std::size_t k = 0; k < arc.value().end.q.size(); ++k) {
+            moved = std::max(moved, std::abs(arc.value().end.q[k] - start.state.packing.q[k]));
+            off = std::max(off, std::abs(arc.value().end.q[k] - expected->end.q[k]));
+        }
+        BOOST_TEST(off < 0.1 * moved);
+    }
+    BOOST_TEST_MESSAGE(right << " expected, " << wrong << " not");
+    BOOST_TEST(right > 10 * wrong);
+    BOOST_TEST(right > 50);
+}
+
+BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
+    Start start;
+    int foreseen = 0;
+    for (std::size_t slot = 0; slot < start.state.contacts.size(); slot += 5) {
+        ArcDeparture<2> departure = start.depart(slot);
+        const auto expected = departure.expected();
+        const auto arc = departure.follow();
+        if (!arc.ok() || !expected) {
+            continue;
+        }
+        const auto exchange = [&](const Packing<2>& at, const Contact& closes,
+                                  const ExchangedContacts<2>* guess = nullptr) {
+            return IsostaticStructure<2>::exchange(start.structure, at, ContactId(slot), closes, guess);
+        };
+        const auto plain = exchange(arc.value().end, arc.value().closed);
+        BOOST_TEST_REQUIRE(plain.has_value());
+        BOOST_TEST(!plain->foreseen());
+        // The same exchange nearby, and another one.
+        const auto near = exchange(expected->end, arc.value().closed);
+        const auto other = exchange(arc.value().end, start.state.contacts[slot]);
+        for (const auto* guess : {&near, &other}) {
+            BOOST_TEST_REQUIRE(guess->has_value());
+            const auto guessed = exchange(arc.value().end, arc.value().closed, &**guess);
+            BOOST_TEST_REQUIRE(guessed.has_value());
+            BOOST_TEST((guessed->contacts() == plain->contacts()));
+            BOOST_TEST((guessed->matrix().value == plain->matrix().value));
+            BOOST_TEST((guessed->matching() == plain->matching()));
+            BOOST_TEST(guessed->foreseen() == (guess == &near));
+            foreseen += guessed->foreseen() ? 1 : 0;
+        }
+    }
+    BOOST_TEST(foreseen > 10);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -24,35 +24,6 @@ std::pair<double, double> work_of(const Load<Dim>& load, const Packing<Dim>& fro
     return {work, 1e-12 * size};
 }
 
-/// Passes for the forces of a foreseen vertex: as many as find out which is most negative, mostly.
-constexpr int foreseeing_passes = 1;
-
-template <int Dim>
-ForeseenVertex<Dim> foresee(const PlainVertex<Dim>& from, const ApproximateInverse& approximate, const Load<Dim>& load,
-                            ContactId opens, const typename ArcDeparture<Dim>::Expected& expected) {
-    ForeseenVertex<Dim> foreseen;
-    foreseen.contacts = IsostaticStructure<Dim>::exchange(from.structure, expected.end, opens, expected.closes);
-    if (!foreseen.contacts) {
-        return foreseen;
-    }
-    foreseen.loaded = from.loaded();
-    const sparse::Matrix<double>& h = foreseen.contacts->matrix();
-    foreseen.backbone = sparse::structural_nonzeros(h.start, h.row, foreseen.contacts->matching(), foreseen.loaded);
-    const auto structure = IsostaticStructure<Dim>::without_proof(*foreseen.contacts);
-    foreseen.approximate = approximate.exchanged(foreseen.contacts->slot(), h);
-    const Factorisation factorisation(structure, *foreseen.approximate);
-    foreseen.force = on_dofs(load.external_force(expected.end), structure.dofs());
-    factorisation.solve_forces_until(foreseen.force, from.force, [&](std::span<const double>, double) {
-        return ++foreseen.passes == foreseeing_passes;
-    });
-    const std::size_t opens_next = most_negative(foreseen.force, structure.contacts(), foreseen.backbone);
-    if (opens_next < foreseen.force.size() && structure.contacts()[opens_next].kind != ContactKind::held) {
-        foreseen.opens = ContactId(opens_next);
-        (void)foreseen.approximate->mechanism(static_cast<int>(opens_next)); // the departure finds it there
-    }
-    return foreseen;
-}
-
 } // namespace
 
 template <int Dim>
@@ -100,7 +71,8 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
         expected = begun->expected();
         if (expected) {
             foreseeing = Promised<ForeseenVertex<Dim>>([this, &expected] {
-                return foresee(*here_, factorisation_->approximate(), load_, opening_.contact, *expected);
+                return foresee(*structure_, here_->loaded(), here_->force, factorisation_->approximate(), load_,
+                               opening_.contact, *expected);
             });
         }
         return begun->follow();

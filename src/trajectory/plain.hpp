@@ -50,7 +50,7 @@ template <int Dim> struct PlainCalls {
 /// what opens are those of refined double precision: *no rank, no sign and no order along the way is proved or even
 /// bounded*, and a run that took a wrong turn does not know. The caller proves the end.
 /// Failures: those of `follow_arc`; `undecided` when the new contact of an arc carries no compression, or W grew.
-/// Cost: 9 triangular solves or so per arc, and new factors every 20 arcs at n = 1936, every 40 at 4900.
+/// Cost: 12 triangular solves or so per arc, and new factors every 20 arcs at n = 1936, every 40 at 4900.
 template <int Dim> class PlainSteering {
   public:
     /// All that is referred to must outlive the steering; the vertex only its first arc.

@@ -1,6 +1,8 @@
 #pragma once
 // A vertex on the way at level `plain`: private to the room.
 
+#include "trajectory/foreseen_vertex.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/threads.hpp>
 #include <isostat/linear/factorisation.hpp>
@@ -16,37 +18,6 @@
 #include <vector>
 
 namespace isostat {
-
-/// The vertex at the end of an arc as the start of the arc foretells it, worked out while the arc is followed.
-template <int Dim> struct ForeseenVertex {
-    std::optional<ExchangedContacts<Dim>> contacts;
-    std::vector<int> loaded;             ///< degrees of freedom
-    std::vector<unsigned char> backbone; ///< with these
-    std::vector<double> force;           ///< after a few passes
-    std::optional<ApproximateInverse> approximate;
-    ContactId opens; ///< what opens next, with these forces; or none
-    int passes = 0;
-};
-
-/// A force as the choice of what opens compares it.
-inline double signed_size(const Contact& contact, double force) {
-    return contact.kind == ContactKind::held ? -std::abs(force) : force;
-}
-
-/// The most negative of the forces that are not structural zeros; their number when none is negative.
-inline std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
-                                 const std::vector<unsigned char>& backbone) {
-    std::size_t best = f.size();
-    double smallest = 0;
-    for (std::size_t l = 0; l < f.size(); ++l) {
-        const double size = signed_size(contacts[l], f[l]);
-        if (size < smallest && backbone[l] != 0) {
-            smallest = size;
-            best = l;
-        }
-    }
-    return best;
-}
 
 /// A vertex on the way. Nothing is proved of it.
 template <int Dim> class PlainVertex {
@@ -116,10 +87,10 @@ template <int Dim> class PlainVertex {
             };
             error_ = safety * factorisation.solve_forces_until(force, from, enough);
         };
-        if (departure_) {
+        if (departure_) { // the arc by the thread that will follow it, the forces beside it
             Errand solving(solve);
             begin_arc();
-            if (solving.underway()) {
+            if (solving.underway()) { // else the forces come first: they may say that another contact opens
                 departure_->arc.begin_here();
             }
             solving.finish();

@@ -1,0 +1,49 @@
+#pragma once
+// What is known of a vertex before the arc that leads there is followed: private to the room.
+
+#include <isostat/linear/approximate_inverse.hpp>
+#include <isostat/motion/arc.hpp>
+#include <isostat/packing/load.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace isostat {
+
+/// A force as the choice of what opens compares it.
+inline double signed_size(const Contact& contact, double force) {
+    return contact.kind == ContactKind::held ? -std::abs(force) : force;
+}
+
+/// The most negative of the forces that are not structural zeros; their number when none is negative.
+std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
+                          const std::vector<unsigned char>& backbone);
+
+/// The vertex at the end of an arc as the start of the arc foretells it. A guess: what is made of it is checked
+/// against the vertex, or refined there.
+template <int Dim> struct ForeseenVertex {
+    std::optional<ExchangedContacts<Dim>> contacts;
+    std::vector<int> loaded;                       ///< degrees of freedom, as at the start
+    std::vector<unsigned char> backbone;           ///< with these
+    std::vector<double> force;                     ///< rough
+    std::optional<ApproximateInverse> approximate; ///< for the matrix of `contacts`; has the mechanism of `opens`
+    ContactId opens;                               ///< what opens next, with these forces; or none
+    int passes = 0;                                ///< of the factors, for the forces
+};
+
+/// `from`: the start, with the degrees of freedom loaded there, its forces, and an operator close to the inverse of its
+/// matrix. Cost: one exchange, and two applications of that.
+template <int Dim>
+ForeseenVertex<Dim> foresee(const IsostaticStructure<Dim>& from, const std::vector<int>& loaded,
+                            const std::vector<double>& force, const ApproximateInverse& approximate,
+                            const Load<Dim>& load, ContactId opens, const typename ArcDeparture<Dim>::Expected& end);
+
+extern template ForeseenVertex<2> foresee<2>(const IsostaticStructure<2>&, const std::vector<int>&,
+                                             const std::vector<double>&, const ApproximateInverse&, const Load<2>&,
+                                             ContactId, const ArcDeparture<2>::Expected&);
+
+} // namespace isostat

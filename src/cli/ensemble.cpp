@@ -263,6 +263,7 @@ int deal_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& hea
 } // namespace
 
 int ensemble(const EnsembleArguments& arguments) {
+    catch_interrupts();
     const auto dealer = make_dealer(static_cast<std::size_t>(arguments.samples));
     EnsembleHeader header;
     header.program = program_name();

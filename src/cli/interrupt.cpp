@@ -21,7 +21,10 @@ extern "C" void on_signal(int signal) {
 void catch_interrupts() {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
-    std::signal(SIGXFSZ, SIG_IGN); // a limit of the file size is a failed write, with its message
+}
+
+void ignore_file_size_signals() {
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 const std::atomic<bool>& stop_flag() {

@@ -7,8 +7,12 @@
 namespace isostat::cli {
 
 /// From now on SIGINT and SIGTERM set a flag: the work stops at its next safe point and leaves valid files. A second
-/// one ends the program at once (files are still valid up to the last record).
+/// one ends the program at once (files are still valid up to the last record). Only for commands that look at the flag:
+/// the others end at the first one.
 void catch_interrupts();
+
+/// A limit of the file size is a failed write, with its message.
+void ignore_file_size_signals();
 
 /// The flag, for the options that take one.
 const std::atomic<bool>& stop_flag();

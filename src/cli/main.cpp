@@ -380,7 +380,7 @@ int main(int argc, char** argv) {
             const int status = program.app.exit(error);
             return status == 0 ? 0 : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
         }
-        catch_interrupts();
+        ignore_file_size_signals();
         return program.todo();
     } catch (const isostat::Error& error) {
         std::cerr << "isostat: " << error.what() << '\n';

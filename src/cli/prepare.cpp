@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/interrupt.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
@@ -23,6 +24,7 @@ void check_writable(const std::filesystem::path& output) {
 } // namespace
 
 int prepare(const PrepareArguments& arguments) {
+    catch_interrupts();
     const Scene scene = read_scene(arguments.scene);
     if (!scene.start.empty()) {
         throw Error(ErrorKind::bad_input,

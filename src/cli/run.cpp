@@ -186,6 +186,7 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
 } // namespace
 
 int run(const RunArguments& arguments) {
+    catch_interrupts();
     const Scene scene = read_scene(arguments.scene);
     if (scene.programme.empty()) {
         throw Error(ErrorKind::bad_input,

@@ -4,7 +4,15 @@
 
 #include <isostat/io/run_directory.hpp>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <array>
+#include <chrono>
+#include <csignal>
+#include <thread>
 
 using namespace program;
 namespace fs = std::filesystem;
@@ -77,6 +85,37 @@ BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
         }
         expect(run({"run", scene, "-o", out.string(), "-q", "--resume"}), 0);
         same_files(out, folder / "whole");
+    }
+}
+
+BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_keeps_no_records) {
+    const scratch::Folder folder;
+    const std::string pipe = (folder / "certificate.json").string(); // nothing ever comes out of it
+    BOOST_TEST_REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const Background background({"verify", pipe});
+        int status = 0;
+        int writer = -1;
+        bool ended = false;
+        bool sent = false;
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        while (!ended && std::chrono::steady_clock::now() < deadline) {
+            if (!sent && (writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) { // it reads
+                sent = ::kill(background.pid(), signal) == 0;
+            }
+            ended = ::waitpid(background.pid(), &status, WNOHANG) == background.pid();
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        if (!ended) {
+            ::kill(background.pid(), SIGKILL);
+            ::waitpid(background.pid(), &status, 0);
+        }
+        if (writer >= 0) {
+            ::close(writer);
+        }
+        BOOST_TEST(sent);
+        BOOST_TEST(ended);
+        BOOST_TEST((WIFSIGNALED(status) && WTERMSIG(status) == signal));
     }
 }
 

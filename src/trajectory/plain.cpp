@@ -108,7 +108,7 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contacts are structurally singular at the end of {}", names())};
     }
-    if (!next->foreseen()) {
+    if (!next->foreseen()) { // a normal turned into or out of an axis: the backbone may be another one
         foreseen.reset();
     }
     std::optional<ApproximateInverse> approximate;

@@ -128,11 +128,11 @@ void write_certificate(const State<2>& state) {
                 "Proof. by vm_compute. Qed.\n\n"
                 "Theorem packing_is_isostatic (F : rcfType) :\n"
                 "  let G := contact_matrix %d coordinates contacts F in\n"
-                "  [/\\ G \\in unitmx, \\rank (kermx G) = 0, \\rank (kermx G^T) = 0\n"
+                "  [/\\ all (well_formed %d) contacts, G \\in unitmx, \\rank (kermx G) = 0, \\rank (kermx G^T) = 0\n"
                 "    & forall load f, (f *m G == load)%%R = (f == forces G load)].\n"
                 "Proof. exact: certified_packing_is_isostatic certificate_is_accepted centres_are_distinct. Qed.\n\n"
                 "Print Assumptions packing_is_isostatic.\n",
-                packing.disk_count(), packing.disk_count());
+                packing.disk_count(), packing.disk_count(), packing.disk_count());
 }
 
 } // namespace

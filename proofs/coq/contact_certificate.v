@@ -34,6 +34,14 @@ Definition sparse_row (c : contact) : seq (nat * Z) :=
   | Upper i a => [:: (i.*2 + a, Zpos xH); (n.*2 + a, Zneg xH)]
   end%N.
 
+(** Names two disks, or a disk and an axis, of a packing of n disks. Without this condition [Disks i n] would take the
+  walls for a disk, and [Lower 0 5] would be [Lower 2 1]. *)
+Definition well_formed (c : contact) : bool :=
+  match c with
+  | Disks i j => [&& i < n, j < n & i != j]
+  | Lower i a | Upper i a => (i < n) && (a < 2)
+  end%N.
+
 Fixpoint add_multiple (a : Z) (x sum : seq Z) : seq Z :=
   match x, sum with
   | b :: x', s :: sum' => Z.add (Z.mul a b) s :: add_multiple a x' sum'
@@ -46,9 +54,9 @@ Definition unit_row (p : Z) (l : nat) (x : seq Z) : bool :=
   all (fun zk => Z.eqb (Z.modulo (Z.sub zk.1 (if l == zk.2 then Zpos xH else Z0)) p) Z0) (zip x (iota 0 N)).
 
 Definition certified (p : Z) (B : table) : bool :=
-  [&& Z.ltb (Zpos xH) p, size contacts == N, size B == N, all (fun x => size x == N) B
-    & all (fun lc => let r := sparse_row lc.2 in all (fun e => e.1 < N) r && unit_row p lc.1 (combination B r))%N
-          (zip (iota 0 N) contacts)].
+  [&& Z.ltb (Zpos xH) p, (size q == N) && (size contacts == N), (size B == N) && all (fun x => size x == N) B,
+    all well_formed contacts
+    & all (fun lc => unit_row p lc.1 (combination B (sparse_row lc.2))) (zip (iota 0 N) contacts)].
 
 Local Open Scope ring_scope.
 Let contact0 := Lower 0 0.
@@ -76,13 +84,17 @@ have [s0 e0] := add_multiple_entry e.2 se sr.
 by split=> // j; rewrite e0 entry big_cons.
 Qed.
 
+Lemma well_formed_rows_are_in_range c : well_formed c -> all (fun e => e.1 < N)%N (sparse_row c).
+Proof. by case: c => [i j|i a|i a] /=; lia. Qed.
+
 Lemma certified_inverse p (B : table) (l j : 'I_N) : certified p B ->
   Z.modulo (Z.sub ((integer_matrix *m \matrix_(k, m) nth 0 (nth [::] B k) m) l j) (if l == j then Zpos xH else Z0)) p
     = Z0.
 Proof.
-case/and5P=> _ /eqP sC /eqP sB aB /(all_nthP (0%N, contact0)) rows.
+case/and5P=> _ /andP[_ /eqP sC] /andP[/eqP sB aB] /(all_nthP contact0) formed /(all_nthP (0%N, contact0)) rows.
 have := rows l; rewrite size_zip size_iota sC minnn => /(_ (ltn_ord l)).
-rewrite nth_zip ?size_iota // nth_iota // add0n; set r := sparse_row _; case/andP => rN /(all_nthP (0, 0%N)) unit.
+rewrite nth_zip ?size_iota // nth_iota // add0n; set r := sparse_row _ => /(all_nthP (0, 0%N)) unit.
+have rN : all (fun e => e.1 < N)%N r by apply/well_formed_rows_are_in_range/formed; rewrite sC.
 have [sr entry] := combination_entry sB aB rN.
 have := unit j; rewrite size_zip size_iota sr minnn => /(_ (ltn_ord j)).
 rewrite nth_zip ?size_iota // nth_iota // add0n.
@@ -144,15 +156,15 @@ have : (int_of_Z x)%:~R ^+ 2 + (int_of_Z y)%:~R ^+ 2 == 0 :> F by rewrite eq_le 
 by rewrite paddr_eq0 ?sqr_ge0 // => /andP[/eqP/zero ? /eqP/zero ?].
 Qed.
 
-(** What a certificate file concludes: in the box, the structure made of these contacts at these coordinates is
-  isostatic. *)
+(** What a certificate file concludes: every contact names two disks, or a disk and a wall, of the packing; and in the
+  box the structure made of these contacts at these coordinates is isostatic. *)
 Corollary certified_packing_is_isostatic p B :
   certified p B -> distinct_centres ->
-  [/\ contact_matrix \in unitmx, \rank (kermx contact_matrix) = 0%N, \rank (kermx contact_matrix^T) = 0%N
+  [/\ all well_formed contacts, contact_matrix \in unitmx, \rank (kermx contact_matrix) = 0%N, \rank (kermx contact_matrix^T) = 0%N
     & forall load f : 'rV[F]_N, (f *m contact_matrix == load) = (f == forces contact_matrix load)].
 Proof.
-move=> ok away; have /and5P[_ /eqP sC _ _ _] := ok.
-exact: certificate_proves_isostatic ok (distinct_centres_have_lengths sC away).
+move=> ok away; have /and5P[_ /andP[_ /eqP sC] _ formed _] := ok.
+by have [] := certificate_proves_isostatic ok (distinct_centres_have_lengths sC away).
 Qed.
 End Check.
 

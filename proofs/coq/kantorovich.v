@@ -2,8 +2,9 @@
 
     The gaps as quadratics: F x - F y = J ((x + y) / 2) (x - y) with the derivative J,
       and J is Lipschitz. The code accepts when
-    h = beta K eta <= 1/4 and then uses the radius 2 eta; for this the chord iteration x ->
-      x - R (F x), R the inverse of J c, contracts. *)
+    h = beta K eta <= 1/4 and then uses the radii 2 eta, 1.18 eta or (1 + h) eta; the chord iteration x ->
+      x - R (F x), R the inverse of J c, contracts. Other roots are excluded within 1.7 / (beta K), or in the open ball
+      of radius 1 / (beta K), because J is regular in the middle between two roots. *)
 From mathcomp Require Import all_ssreflect all_algebra ring.
 Set Implicit Arguments.
 Unset Strict Implicit.
@@ -108,13 +109,99 @@ Qed.
 
 Let root_is_fixed x : gaps x = 0 -> chord x = x. Proof. by rewrite /chord => ->; rewrite raddf0 subr0. Qed.
 
+Let double_half a : 2%:R * (half * a) = a. Proof. by rewrite mulrA /half mulfV ?mul1r // pnatr_eq0. Qed.
+
+(** Two roots whose mean lies where J is regular are one: no fixed point is needed. *)
+Theorem roots_coincide x y : gaps x = 0 -> gaps y = 0 -> lip * (N (x - c) + N (y - c)) < 2%:R -> x = y.
+Proof.
+move=> rx ry close; apply/eqP; rewrite -subr_eq0; apply/eqP/norm_eq0/eqP.
+rewrite eq_le norm_ge0 andbT leNgt; apply/negP => pos.
+have := chord_difference x y; rewrite !root_is_fixed // -{1}(mul1r (N _)) ler_pmul2r // leNgt => /negP; apply.
+by rewrite -(ltr_pmul2l (ltr0n K 2)) mulr1 mulrCA double_half.
+Qed.
+
+(** At most one root in the open ball of radius 1 / (beta K): arcs. *)
+Theorem root_is_unique_in_the_open_ball x y : lip * N (x - c) < 1 -> lip * N (y - c) < 1 ->
+  gaps x = 0 -> gaps y = 0 -> x = y.
+Proof.
+move=> nx ny rx ry; apply: roots_coincide => //.
+by rewrite mulrDr (_ : 2%:R = 1 + 1) ?ltr_add // -mulr2n.
+Qed.
+
+Let step_to_a_root x : gaps x = 0 -> N (x - c) <= half * (lip * N (x - c) ^+ 2) + eta.
+Proof.
+move=> rx; apply: le_trans (norm_sub _ (chord c) _) _; apply: ler_add; last by rewrite /chord addrC addKr norm_opp.
+have := chord_difference x c; rewrite root_is_fixed // subrr.
+have := norm_scale 0 0; rewrite scale0r normr0 mul0r => ->; rewrite addr0 => step; apply: le_trans step _.
+by rewrite expr2 mulrCA !mulrA.
+Qed.
+
+(** A root near c is as near as the quadratic says: a may be any number with a >= lip a^2 / 2 + eta. *)
+Theorem root_is_nearer a x : near x -> gaps x = 0 -> half * (lip * a ^+ 2) + eta <= a -> N (x - c) <= a.
+Proof.
+move=> nx rx ha; rewrite leNgt; apply/negP => far; set t := N (x - c) in far *.
+have ht : t <= half * (lip * t ^+ 2) + eta := step_to_a_root rx.
+have a0 : 0 <= a by apply: le_trans ha; apply: addr_ge0 => //; apply: mulr_ge0 => //; apply: mulr_ge0 => //; apply: sqr_ge0.
+have low : t - a <= half * (lip * (t + a)) * (t - a).
+  have -> : half * (lip * (t + a)) * (t - a) = (half * (lip * t ^+ 2) + eta) - (half * (lip * a ^+ 2) + eta) by ring.
+  by apply: ler_sub.
+have : 1 <= half * (lip * (t + a)) by move: low; rewrite -{1}(mul1r (t - a)) ler_pmul2r // subr_gt0.
+rewrite leNgt => /negP; apply; apply: le_lt_trans (_ : half < 1); last by rewrite invf_lt1 ?ltr0n // ltr1n.
+rewrite -[X in _ <= X]mulr1; apply: ler_wpmul2l => //; apply: le_trans (_ : lip * (radius + radius) <= _).
+  by apply: ler_wpmul2l => //; apply: ler_add => //; apply: le_trans nx; apply: ltW.
+by have -> : lip * (radius + radius) = 4%:R * (lip * eta) by rewrite /radius; ring.
+Qed.
+
+Let h_le_quarter : lip * eta <= 4%:R^-1.
+Proof. by rewrite -(ler_pmul2l (ltr0n K 4)) mulfV ?pnatr_eq0. Qed.
+
+Corollary root_is_within_eta_times_1_plus_h x : near x -> gaps x = 0 -> N (x - c) <= eta * (1 + lip * eta).
+Proof.
+move=> nx rx; apply: root_is_nearer => //; set h := lip * eta.
+have h0 : 0 <= h by apply: mulr_ge0.
+have h1 : h <= 1 by apply: le_trans small; rewrite ler_pemull // ler1n.
+rewrite -subr_ge0 (_ : _ - _ = half * (eta * h) * (2%:R - (1 + h) ^+ 2) + (1 - 2%:R * half) * (eta * h)); last first.
+  by rewrite /h; ring.
+rewrite /half mulfV ?pnatr_eq0 // subrr mul0r addr0 mulr_ge0 ?mulr_ge0 // subr_ge0.
+apply: le_trans (_ : (1 + 4%:R^-1) ^+ 2 <= _).
+  by rewrite ler_pexpn2r ?nnegrE ?addr_ge0 ?ler01 ?invr_ge0 ?ler0n // ler_add2l.
+have -> : (1 + 4%:R^-1) ^+ 2 = 25%:R / 16%:R :> K by field; rewrite ?pnatr_eq0.
+by rewrite ler_pdivr_mulr ?ltr0n // -natrM ler_nat.
+Qed.
+
+Corollary root_is_within_118_eta x : near x -> gaps x = 0 -> N (x - c) <= 59%:R / 50%:R * eta.
+Proof.
+move=> nx rx; apply: root_is_nearer => //; rewrite -subr_ge0.
+have -> : 59%:R / 50%:R * eta - (half * (lip * (59%:R / 50%:R * eta) ^+ 2) + eta)
+    = eta * (9%:R / 50%:R - 3481%:R / 5000%:R * (lip * eta)).
+  by rewrite /half; field; rewrite ?pnatr_eq0.
+apply: mulr_ge0 => //; rewrite subr_ge0.
+apply: le_trans (_ : 3481%:R / 5000%:R * 4%:R^-1 <= _).
+  by apply: ler_wpmul2l h_le_quarter; rewrite divr_ge0 ?ler0n.
+have -> : 3481%:R / 5000%:R * 4%:R^-1 = 3481%:R / 20000%:R :> K by field; rewrite ?pnatr_eq0.
+rewrite ler_pdivr_mulr ?ltr0n // mulrAC ler_pdivl_mulr ?ltr0n //.
+by rewrite -!natrM ler_nat; vm_compute.
+Qed.
+
+(** The root near c is the only one within 1.7 / (beta K) of c, the border included: certificates. *)
+Theorem no_other_root_within_17_tenths x y : near x -> gaps x = 0 -> gaps y = 0 ->
+  lip * N (y - c) <= 17%:R / 10%:R -> x = y.
+Proof.
+move=> nx rx ry far; apply: roots_coincide => //; rewrite mulrDr.
+apply: le_lt_trans (_ : 59%:R / 50%:R * 4%:R^-1 + 17%:R / 10%:R < _).
+  apply: ler_add => //; apply: le_trans (_ : lip * (59%:R / 50%:R * eta) <= _).
+    by apply: ler_wpmul2l => //; apply: root_is_within_118_eta.
+  by rewrite mulrCA; apply: ler_wpmul2l h_le_quarter; rewrite divr_ge0 ?ler0n.
+have -> : 59%:R / 50%:R * 4%:R^-1 + 17%:R / 10%:R = 399%:R / 200%:R :> K by field; rewrite ?pnatr_eq0.
+by rewrite ltr_pdivr_mulr ?ltr0n // -natrM ltr_nat; vm_compute.
+Qed.
+
 (** At most one root within 2 eta. *)
 Theorem root_is_unique x y : near x -> near y -> gaps x = 0 -> gaps y = 0 -> x = y.
 Proof.
-move=> nx ny rx ry; have := chord_contracts nx ny; rewrite !root_is_fixed // => shrink.
-apply/eqP; rewrite -subr_eq0; apply/eqP/norm_eq0/eqP; rewrite eq_le norm_ge0 andbT leNgt; apply/negP => pos.
-move: shrink; rewrite -{1}(mul1r (N _)) ler_pmul2r // leNgt => /negP; apply.
-by rewrite /half invf_lt1 ?ltr0n // ltr1n.
+move=> nx ny rx ry; apply: root_is_unique_in_the_open_ball => //.
+  by apply: le_lt_trans (ler_wpmul2l lip_ge0 nx) (le_lt_trans lip_radius _); rewrite invf_lt1 ?ltr0n // ltr1n.
+by apply: le_lt_trans (ler_wpmul2l lip_ge0 ny) (le_lt_trans lip_radius _); rewrite invf_lt1 ?ltr0n // ltr1n.
 Qed.
 
 (** A root within 2 eta, where sequences with halving steps have a limit (real vectors do). *)
@@ -155,6 +242,12 @@ Print Assumptions chord_contracts.
 Print Assumptions chord_stays_near.
 Print Assumptions iterates_stay_near.
 Print Assumptions steps_are_halved.
+Print Assumptions roots_coincide.
+Print Assumptions root_is_unique_in_the_open_ball.
+Print Assumptions root_is_nearer.
+Print Assumptions root_is_within_eta_times_1_plus_h.
+Print Assumptions root_is_within_118_eta.
+Print Assumptions no_other_root_within_17_tenths.
 Print Assumptions root_is_unique.
 Print Assumptions root_exists.
 Print Assumptions quadratic_of_a_contact_at_the_middle.

@@ -192,7 +192,7 @@ Followed follow(const State<2>& from, const Motion& motion) {
         return {};
     }
     const double unit = from.packing.min_radius();
-    const double step = std::min(motion.displacement / 4, 0.02 * unit);
+    const double step = std::min(motion.displacement / 4, motion.step * unit);
     const auto steps = static_cast<long>(std::min(8 * motion.displacement / step + 16, 1e5));
     const double tolerance = 1e-9 * unit; // of gaps that are looked at, not proved
     const double reach = 0.2 * unit;

@@ -19,6 +19,7 @@ struct Motion {
     Contact closed;         ///< the contact that closes, or the coordinate that is held at a power turn
     double held_at = 0;     ///< its value there
     double displacement = 0;
+    double step = 0.02; ///< in units of the smallest radius
     /// Per coordinate, at given coordinates (true stresses change with the lengths): the load whose power must stay
     /// positive.
     std::function<std::vector<double>(const std::vector<double>&)> power_load;
@@ -27,11 +28,11 @@ struct Motion {
 
 struct Followed {
     std::optional<std::vector<double>> end; ///< coordinates; none: the motion was not found to end as it is told
-    std::string wrong;                      ///< what happened before that end, if something did
+    std::string wrong;                      ///< what seems to happen before that end, if something does
 };
 
-/// Steps of 0.02 of the smallest radius; at each of them every pair of grains that may touch is looked at, and the
-/// power of the load. A pair that closes and opens again within a step is not seen.
+/// At each step every pair of grains that may touch is looked at, and the power of the load. A pair that closes and
+/// opens again within a step is not seen, and a long step may land on another branch: `wrong` refutes nothing.
 Followed follow(const State<2>& from, const Motion& motion);
 
 } // namespace isostat::checker

@@ -88,5 +88,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line);
 
 /// A stored state against the vertex that was reached.
 Objections check_stored(const Place& place, const State<2>& stored);
+/// The forces in its file; none may be there.
+Objections check_stored_forces(const Place& place, const std::vector<double>& forces);
 
 } // namespace isostat::checker

@@ -12,6 +12,8 @@ namespace {
 
 /// Strains are differences of lengths that are known to a few units in the last place: compared to 1e-12.
 constexpr double strain_size = 1e-3;
+/// A run extrapolates the tangent at the end of an arc: the recorded power says no more than this share of its terms.
+constexpr double power_accuracy = 0.1;
 
 /// A recorded number against what was found, to `record_tolerance` of `size`.
 Objections compare(const char* name, double recorded, const Range& found, double size) {
@@ -52,6 +54,30 @@ double largest_force(const Evidence& e) {
         largest = std::max({largest, std::abs(force.lower.get_d()), std::abs(force.upper.get_d())});
     }
     return largest;
+}
+
+/// F . q' at the end of an arc, with q' the motion on which only the gap of the contact that closes changes, scaled to
+/// fastest coordinate 1. `size`: sum of the magnitudes of its terms.
+Range power_at_end(const Place& to, std::size_t slot, const Forces& load, double& size) {
+    const Evidence& e = *to.evidence;
+    const Velocities velocities(e.problem, e.inverse, e.vertex);
+    const Velocities::Solution motion = velocities.opening(slot, -1);
+    Rational fastest = 0;
+    for (const Rational& v : motion.middle) {
+        fastest = std::max<Rational>(fastest, abs(v));
+    }
+    Range sum(Rational(0));
+    size = 0;
+    for (std::size_t j = 0; j < load.size(); ++j) {
+        const auto k = static_cast<std::size_t>(e.problem.coordinate_of[j]);
+        sum = sum + load[j] * Range::around(motion.middle[k], motion.radius);
+        size += std::abs(load[j].lower.get_d() * motion.middle[k].get_d());
+    }
+    if (fastest <= motion.radius) {
+        return sum;
+    }
+    size /= fastest.get_d();
+    return sum / Range::around(fastest, motion.radius);
 }
 
 int rattlers(const Place& place) {
@@ -179,8 +205,23 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
         if (!(std::abs(event.power) <= room)) {
             return Objection{true, fmt::format("the power is {} at a power turn: expected 0", event.power)};
         }
-    } else if (!stays && !(event.power > 0)) {
-        return Objection{true, fmt::format("the power is {}: expected > 0 at the end of every arc", event.power)};
+    } else if (!stays) {
+        const Evidence& e = *to.evidence;
+        const auto& contacts = to.state->contacts;
+        const auto slot = std::find_if(contacts.begin(), contacts.end(),
+                                       [&](const Contact& c) { return to_string<2>(c) == event.closed; });
+        double size = 0;
+        const Range power = power_at_end(to, static_cast<std::size_t>(slot - contacts.begin()),
+                                         rattles ? infinitesimal_load(e.problem, *to.state) : e.finite_load, size);
+        if (!power.positive()) {
+            return Objection{power.negative(),
+                             fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
+        }
+        const double off = std::abs(event.power - power.lower.get_d());
+        if (!(event.power > 0) || !(off <= power_accuracy * size)) {
+            return Objection{!(event.power > 0 && off <= size),
+                             fmt::format("power is {}, found {}", event.power, shown(power))};
+        }
     }
     if (load.kind != LoadKind::nominal) {
         return {};
@@ -340,6 +381,20 @@ Objections check_stored(const Place& place, const State<2>& stored) {
     for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {
         if (Objections wrong =
                 compare("a coordinate of the stored state", stored.packing.q[k], place.coordinate(k), size)) {
+            return wrong;
+        }
+    }
+    return {};
+}
+
+Objections check_stored_forces(const Place& place, const std::vector<double>& forces) {
+    const Evidence& e = *place.evidence;
+    if (!forces.empty() && forces.size() != e.forces.size()) {
+        return Objection{true, fmt::format("{} forces for {} contacts", forces.size(), e.forces.size())};
+    }
+    const double size = 100 * largest_force(e);
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        if (Objections wrong = compare(("the stored force of " + e.name(l)).c_str(), forces[l], e.forces[l], size)) {
             return wrong;
         }
     }

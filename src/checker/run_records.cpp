@@ -4,7 +4,6 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
-#include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
 
@@ -51,6 +50,7 @@ const std::vector<const char*> needed_columns{"number",
                                               "min_gap_i",
                                               "min_gap_j",
                                               "proved",
+                                              "certified",
                                               "solid_fraction"};
 
 std::vector<std::string> split(std::string_view line, char separator) {
@@ -162,12 +162,12 @@ std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path) {
 
 } // namespace
 
-std::optional<State<2>> RunRecords::stored(int equilibrium) const {
+std::optional<StateFile<2>> RunRecords::stored(int equilibrium) const {
     const std::filesystem::path path = states / fmt::format("eq_{:06}.json", equilibrium);
     if (!std::filesystem::exists(path)) {
         return {};
     }
-    return read_state<2>(path).state;
+    return read_state<2>(path);
 }
 
 RunRecords read_records(const std::filesystem::path& directory) {
@@ -178,7 +178,14 @@ RunRecords read_records(const std::filesystem::path& directory) {
     if (run.at("format").string() != "isostat-run") {
         run.at("format").fail("\"isostat-run\"");
     }
-    records.rule = run.at("settings").at("run").at("rule").string();
+    records.directory = directory;
+    const std::string& status = run.at("status").string();
+    records.status = status.substr(0, status.find(':'));
+    const Field settings = run.at("settings").at("run");
+    records.rule = settings.at("rule").string();
+    const std::string level = settings.has("certify") ? settings.at("certify").string() : "decisions";
+    records.certified_arcs = level == "arcs";
+    records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";

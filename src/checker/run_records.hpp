@@ -2,7 +2,7 @@
 /// \file
 /// The records of a run as they are in its files.
 
-#include <isostat/contact/state.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <filesystem>
 #include <map>
@@ -43,12 +43,15 @@ struct EquilibriumLine {
 };
 
 struct RunRecords {
-    std::string rule; ///< of run.json
+    std::filesystem::path directory;
+    std::string rule;                                      ///< of run.json
+    std::string status;                                    ///< the word without the reason
+    bool certified_states = false, certified_arcs = false; ///< files that its level must have left
     std::vector<EventRecord> events;
     std::vector<EquilibriumLine> equilibria;
     std::filesystem::path states;
-    /// The stored state of an equilibrium, if there is one.
-    [[nodiscard]] std::optional<State<2>> stored(int equilibrium) const;
+    /// The stored state of an equilibrium, with its forces, if there is one.
+    [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
 };
 
 /// Throws `Error(bad_input)`.

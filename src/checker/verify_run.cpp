@@ -1,5 +1,6 @@
 #include "checker/follow.hpp"
 #include "checker/replay.hpp"
+#include "checker/run_folder.hpp"
 
 #include <isostat/checker/verify_run.hpp>
 
@@ -88,13 +89,14 @@ class Replay {
         if (!events_of(line).empty()) {
             leave(line.where, "the arcs from the start to equilibrium 0 are not checked");
         }
-        std::optional<State<2>> stored = records_.stored(0);
-        if (expect(stored.has_value(), line.where, "states/eq_000000.json, the start of the replay, is missing") &&
+        std::optional<StateFile<2>> file = records_.stored(0);
+        if (expect(file.has_value(), line.where, "states/eq_000000.json, the start of the replay, is missing") &&
             !stopped()) {
-            if (stored->perturbation && stored->perturbation->load_zero.i >= 0) {
+            State<2>& stored = file->state;
+            if (stored.perturbation && stored.perturbation->load_zero.i >= 0) {
                 leave(line.where, "the exact load of equilibrium 0 is not replayed");
             }
-            go_to(std::move(*stored), line.where, {});
+            go_to(std::move(stored), line.where, {});
             close(line);
         }
     }
@@ -191,9 +193,13 @@ class Replay {
             for (const Gap& gap : here_.touching) {
                 motion.touching.push_back(gap.pair);
             }
-            const Followed followed = follow(*here_.state, motion);
-            if (!expect(followed.wrong.empty(), event.where, followed.wrong)) {
-                return false;
+            Followed followed = follow(*here_.state, motion);
+            if (!followed.end) {
+                motion.step /= 16;
+                followed = follow(*here_.state, motion);
+            }
+            if (!followed.wrong.empty()) {
+                return judged(Objection{false, followed.wrong + ", as far as steps in double tell"}, event.where);
             }
             if (!followed.end) {
                 return judged(
@@ -231,11 +237,11 @@ class Replay {
 
     /// Where the replay was lost, a stored state takes it up again.
     void resume(const EquilibriumLine& line) {
-        std::optional<State<2>> stored = records_.stored(line.integer("number"));
-        if (stored && stored->perturbation && stored->perturbation->load_zero.i >= 0) {
+        std::optional<StateFile<2>> file = records_.stored(line.integer("number"));
+        if (file && file->state.perturbation && file->state.perturbation->load_zero.i >= 0) {
             leave(line.where, "not reached by the replay, and its exact load is not that of the stored state");
-        } else if (stored) {
-            go_to(std::move(*stored), line.where, {});
+        } else if (file) {
+            go_to(std::move(file->state), line.where, {});
         } else {
             leave(line.where, "not reached by the replay, and no state is stored");
         }
@@ -256,12 +262,24 @@ class Replay {
             }
         }
         const bool row = judged(check_equilibrium(here_, line), line.where);
-        const std::optional<State<2>> stored = records_.stored(number);
-        const bool same = !stored || judged(check_stored(here_, *stored), fmt::format("states/eq_{:06}.json", number));
-        result_.equilibria_proved += row && same ? 1 : 0;
+        const bool row_and_files =
+            row && same_file(fmt::format("states/eq_{:06}.json", number)) &&
+            (number + 1 < result_.equilibria || same_file("states/last.json")) &&
+            (!records_.certified_states || judged(check_certificate(records_.directory, here_, line), line.where));
+        result_.equilibria_proved += row_and_files ? 1 : 0;
         reached_.back() = *here_.state;
         reached_load_.back() = here_.load;
         here_number_ = number;
+    }
+
+    /// A state file, where there is one, holds the equilibrium that was reached, and its forces.
+    bool same_file(const std::string& name) {
+        const std::filesystem::path path = records_.directory / name;
+        if (!std::filesystem::exists(path)) {
+            return true;
+        }
+        const StateFile<2> file = read_state<2>(path);
+        return judged(check_stored(here_, file.state), name) && judged(check_stored_forces(here_, file.forces), name);
     }
 
     const RunRecords& records_;
@@ -276,15 +294,38 @@ class Replay {
 } // namespace
 
 RunVerification verify_run(const std::filesystem::path& directory, const std::function<void(int)>& progress) {
-    const RunRecords records = read_records(directory);
     RunVerification result;
-    Replay(records, result).run(progress);
+    if (is_running(directory)) {
+        result.finished = false;
+        return result;
+    }
+    const RunRecords records = read_records(directory);
+    if (const Objections damage = check_folder(directory, records)) {
+        result.wrong = damage->text;
+    } else {
+        Replay(records, result).run(progress);
+    }
+    if (is_running(directory)) { // taken up again while it was read
+        result = {};
+        result.finished = false;
+        return result;
+    }
     if (!result.wrong.empty()) {
         result.verdict = Verdict::refuted;
     } else if (result.undecided.empty() && result.equilibria > 0) {
         result.verdict = Verdict::proved;
     }
     return result;
+}
+
+std::string words(const RunVerification& run) {
+    if (!run.finished) {
+        return "not finished";
+    }
+    if (run.verdict == Verdict::proved && run.ways_proved < run.arcs) {
+        return "ends proved, way looked at";
+    }
+    return std::string(to_string(run.verdict));
 }
 
 } // namespace isostat

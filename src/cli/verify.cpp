@@ -6,6 +6,7 @@
 #include <isostat/checker/verify_run.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
 
@@ -22,16 +23,19 @@ int status_of_verdict(Verdict verdict) {
     return undecided;
 }
 
-/// Whether the bytes of a file are those that the certificate names.
+/// Whether a file has the bytes that the certificate names, and the state that it speaks of.
 ClaimCheck check_input(const Certificate& certificate, const std::string& input) {
     ClaimCheck check;
     check.claim = "input";
     check.claimed = true;
     const std::string hash = sha256(read_text(input));
+    const std::string difference = state_difference(read_state<2>(input).state, certificate.state);
     const bool same = hash == certificate.input_hash;
-    check.verdict = same ? Verdict::proved : Verdict::refuted;
-    check.detail = same ? fmt::format("{} has the SHA-256 that is named", input)
-                        : fmt::format("{} has the SHA-256 {}, not {}", input, hash, certificate.input_hash);
+    check.verdict = same && difference.empty() ? Verdict::proved : Verdict::refuted;
+    check.detail = !difference.empty()
+                       ? fmt::format("{} of the state in the certificate is not that of {}", difference, input)
+                   : same ? fmt::format("{} has the state of the certificate and the SHA-256 that is named", input)
+                          : fmt::format("{} has the SHA-256 {}, not {}", input, hash, certificate.input_hash);
     return check;
 }
 
@@ -59,18 +63,25 @@ int verify_folder(const VerifyArguments& arguments) {
         Json object;
         object["folder"] = arguments.certificate;
         object["arcs"] = run.arcs;
-        object["arcs_proved"] = run.arcs_proved;
+        object["ends_proved"] = run.arcs_proved;
+        object["ways_proved"] = run.ways_proved;
         object["power_turns_checked"] = run.turns_checked;
         object["ties_checked"] = run.ties_checked;
         object["equilibria"] = run.equilibria;
         object["equilibria_proved"] = run.equilibria_proved;
         object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
         object["undecided"] = run.undecided;
-        object["verdict"] = to_string(run.verdict);
+        object["finished"] = run.finished;
+        object["verdict"] = words(run);
         fmt::print("{}\n", object.dump());
         return status_of_verdict(run.verdict);
     }
-    fmt::print("arcs           {} of {} proved\n", run.arcs_proved, run.arcs);
+    if (!run.finished) {
+        fmt::print(
+            "run            not finished: run.json says that it goes on, or was killed (`isostat run --resume`)\n");
+        return undecided;
+    }
+    fmt::print("arcs           ends of {} of {} proved, ways of {}\n", run.arcs_proved, run.arcs, run.ways_proved);
     if (run.turns_checked > 0 || run.ties_checked > 0) {
         fmt::print("power turns    {} checked\nties           {} first-order decisions checked\n", run.turns_checked,
                    run.ties_checked);
@@ -82,7 +93,7 @@ int verify_folder(const VerifyArguments& arguments) {
     if (!run.wrong.empty()) {
         fmt::print("first wrong    {}\n", run.wrong);
     }
-    fmt::print("run            {}\n", to_string(run.verdict));
+    fmt::print("run            {}\n", words(run));
     return status_of_verdict(run.verdict);
 }
 

@@ -1,5 +1,6 @@
 #include "io/descriptor.hpp"
 #include "io/json.hpp"
+#include "io/record_digests.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
@@ -28,32 +29,6 @@ constexpr std::array<const char*, 7> run_files{"run.json",     "events.jsonl", "
 
 fs::path state_path(const fs::path& directory, int equilibrium) {
     return directory / "states" / fmt::format("eq_{:06}.json", equilibrium);
-}
-
-/// Digest of a list of records: each line together with the digest of those before it.
-std::string chained(const std::string& before, const std::string& line) {
-    return sha256(before + line);
-}
-std::string chained_lines(const std::string& lines) {
-    std::string digest;
-    for (std::size_t begin = 0; begin < lines.size();) {
-        const std::size_t end = std::min(lines.find('\n', begin), lines.size() - 1) + 1;
-        digest = chained(digest, lines.substr(begin, end - begin));
-        begin = end;
-    }
-    return digest;
-}
-
-/// What stands between a checkpoint and its own digest.
-constexpr const char* before_digest = ",\n\"digest\": ";
-
-void check_digest(const fs::path& path, const std::string& found, const std::string& expected) {
-    if (found != expected) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: damaged: its digest is {}, expected {} as at the checkpoint: nothing was changed; "
-                                "restore the file, or start again with --force",
-                                path.string(), found, expected));
-    }
 }
 
 std::string header_text(const RunHeader& header, const std::string& status) {
@@ -150,49 +125,28 @@ void RunDirectory::open_for_resume() {
                                 run.string(), old.at("program").string(), header_.program));
     }
     header_.command = old.at("command").string(); // states tell how the run was started
-    const fs::path path = directory_ / "checkpoint.json";
-    if (!fs::exists(path)) {
+    const std::optional<CheckedRecords> checked = check_records(directory_);
+    if (!checked) {
         return;
     }
-    const std::string whole = read_text(path);
-    const Json text = Field::parse(whole, path.string());
-    const Field file(text, path.string());
-    const std::size_t body = whole.rfind(before_digest);
-    check_digest(path, sha256(whole.substr(0, body)), file.at("digest").string());
-    if (file.at("format").string() != "isostat-checkpoint") {
-        file.at("format").fail("\"isostat-checkpoint\"");
-    }
+    const std::string path = (directory_ / "checkpoint.json").string();
+    const Field file(checked->checkpoint, path);
     Checkpoint& point = checkpoint_.emplace();
     point.segment = static_cast<int>(file.at("segment").integer());
     point.made = static_cast<int>(file.at("made").integer());
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
-    StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path.string());
+    StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path);
     point.state = state.state;
     segment_ = point.segment;
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);
-    for (const auto& [name, digest] : file.at("files").value().items()) {
-        check_digest(directory_ / name, sha256(read_text(directory_ / name)), digest.get<std::string>());
-        digests_[name] = digest.get<std::string>();
-    }
+    digests_ = checked->files;
     // Everything is checked before anything is cut.
     std::vector<std::pair<Descriptor, long>> cut;
-    for (const char* name : {"events.jsonl", "equilibria.csv"}) {
-        const fs::path records = directory_ / name;
-        const long bytes = file.at("bytes").at(name).integer();
-        cut.emplace_back(Descriptor::open(records, O_WRONLY), bytes);
-        if (cut.back().first.size() < bytes) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint: nothing was "
-                                    "changed; restore the file, or start again with --force",
-                                    records.string(), cut.back().first.size(), bytes));
-        }
-        const std::string lines =
-            bytes > 0 ? read_text(records).substr(0, static_cast<std::size_t>(bytes)) : std::string();
-        std::string& digest = std::string_view(name) == "events.jsonl" ? events_digest_ : equilibria_digest_;
-        digest = chained_lines(lines);
-        check_digest(records, digest, file.at("digests").at(name).string());
+    for (const auto& [name, lines] : checked->lines) {
+        cut.emplace_back(Descriptor::open(directory_ / name, O_WRONLY), lines.bytes);
+        (name == "events.jsonl" ? events_digest_ : equilibria_digest_) = lines.digest;
     }
     for (auto& [records, bytes] : cut) {
         records.truncate(bytes);
@@ -295,7 +249,7 @@ void RunDirectory::write_checkpoint() {
     object["files"] = digests_;
     std::string text = object.dump();
     text.pop_back();
-    text += ",\n\"state\": " + state_text<2>(last_, last_forces_);
+    text += before_state + state_text<2>(last_, last_forces_);
     write_atomically(directory_ / "checkpoint.json", text + before_digest + '"' + sha256(text) + "\"}\n");
     pending_.reset();
 }

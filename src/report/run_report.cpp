@@ -1,4 +1,5 @@
 #include "io/json.hpp"
+#include "io/record_digests.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
 #include "report/tables.hpp"
@@ -142,6 +143,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     }
     const json::Json parsed = json::Field::parse(read_text(run), run.string());
     const json::Field header(parsed, run.string());
+    (void)check_records(directory); // damaged records are not drawn
     std::vector<std::string> names;
     const json::Field programme = header.at("programme");
     for (std::size_t s = 0; s < programme.size(); ++s) {

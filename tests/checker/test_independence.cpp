@@ -11,6 +11,7 @@ namespace {
 
 const std::vector<std::string> allowed{"\"checker/",
                                        "\"io/json.hpp\"",
+                                       "\"io/record_digests.hpp\"",
                                        "<isostat/checker/",
                                        "<isostat/core/",
                                        "<isostat/packing/packing.hpp>",

@@ -1,6 +1,7 @@
 // Runs re-checked from their records; altered records must be found, the first of them named.
 #include "checker/strut.hpp"
 #include "support/crafted.hpp"
+#include "support/forger.hpp"
 #include "support/same_sequence.hpp"
 #include "support/scratch.hpp"
 #include "support/strut.hpp"
@@ -80,6 +81,7 @@ void finds(const std::filesystem::path& folder, const Alteration& alteration) {
         const std::string changed = scratch::replaced(line, alteration.from, alteration.to);
         BOOST_REQUIRE(changed != line);
         scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
+        forger::seal(folder);
         const RunVerification run = verify_run(folder);
         BOOST_TEST((run.verdict == Verdict::refuted));
         BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
@@ -88,6 +90,7 @@ void finds(const std::filesystem::path& folder, const Alteration& alteration) {
             BOOST_TEST((run.wrong.find(where) != std::string::npos), run.wrong);
         }
         scratch::write(folder / alteration.file, original);
+        forger::seal(folder);
     }
 }
 
@@ -244,8 +247,10 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     // A record left out.
     const std::string without = scratch::replaced(events, line_of(events, tension) + "\n", "");
     scratch::write(folder / "run/events.jsonl", without);
+    forger::seal(folder / "run");
     BOOST_TEST((verify_run(folder / "run").verdict == Verdict::refuted));
     scratch::write(folder / "run/events.jsonl", events);
+    forger::seal(folder / "run");
     // Another stored state, by a coordinate and by a contact.
     const std::filesystem::path stored = folder / "run/states/eq_000001.json";
     const State<2> state = read_state<2>(stored).state;
@@ -257,11 +262,13 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
             altered.contacts[5] = {ContactKind::disk_disk, 0, 99};
         }
         write_state(stored, altered);
+        forger::seal(folder / "run");
         const RunVerification found = verify_run(folder / "run");
         BOOST_TEST((found.verdict == Verdict::refuted));
         BOOST_TEST((found.wrong.find("eq_000001") != std::string::npos), found.wrong);
     }
     write_state(stored, state);
+    forger::seal(folder / "run");
     for (const char* column : {"number",
                                "previous",
                                "sigma2",
@@ -298,7 +305,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
 BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
     const scratch::Folder folder;
     BOOST_CHECK_THROW((void)verify_run(folder.path()), Error);
-    scratch::write(folder / "run.json", R"({"format":"isostat-run","settings":{"run":{"rule":"most_negative"}}})");
+    scratch::write(folder / "run.json", R"({"format":"isostat-run","status":"completed","settings":{"run":{"rule":"most_negative"}}})");
     scratch::write(folder / "events.jsonl", "");
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
     try {

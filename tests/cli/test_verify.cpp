@@ -1,6 +1,9 @@
 #include "cli/program.hpp"
+#include "support/crafted.hpp"
+#include "support/forger.hpp"
 
 #include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -63,6 +66,23 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
     expect(run({"verify"}), 64);
 }
 
+// A certificate whose state is not that of the file, with the hash of the file.
+BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itself) {
+    const scratch::Folder folder;
+    const std::string input = (folder / "two.json").string();
+    const std::string file = (folder / "two.cert.json").string();
+    scratch::write(input, isostat::state_text(crafted::two_disks(1, 2, 1, 1)));
+    expect(run({"certify", input, "-o", file}), 0);
+    expect(run({"verify", file, "--input", input}), 0);
+    scratch::write(input, isostat::state_text(crafted::two_disks(1, 3, 1, 1)));
+    isostat::Certificate certificate = isostat::read_certificate(file);
+    certificate.input_hash = isostat::sha256(scratch::read(input));
+    isostat::write_certificate(file, certificate);
+    const Outcome other = run({"verify", file, "--input", input});
+    expect(other, 1);
+    BOOST_TEST(contains(other.out, "the list of radii of the state in the certificate is not that of"));
+}
+
 BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     const scratch::Folder folder;
     scratch::write(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
@@ -71,16 +91,27 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     const Outcome good = run({"verify", out, "--json"});
     expect(good, 0);
     const json answer = json::parse(good.out);
-    BOOST_TEST(answer["verdict"] == "proved");
-    BOOST_TEST(answer["arcs_proved"] == answer["arcs"]);
+    BOOST_TEST(answer["verdict"] == "ends proved, way looked at");
+    BOOST_TEST(answer["ends_proved"] == answer["arcs"]);
+    BOOST_TEST(answer["ways_proved"] == 0);
     BOOST_TEST(answer["equilibria_proved"] == 7);
 
     const std::string events = scratch::read(folder / "out/events.jsonl");
     scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"opened\":\"", "\"opened\":\"1"));
     const Outcome wrong = run({"verify", out});
     expect(wrong, 1);
-    BOOST_TEST(contains(wrong.out, "events.jsonl:1"));
+    BOOST_TEST(contains(wrong.out, "events.jsonl: damaged"));
     BOOST_TEST(contains(wrong.out, "refuted"));
+    expect(run({"report", out}), 65, {"events.jsonl: damaged"});
+    forger::seal(out);
+    BOOST_TEST(contains(run({"verify", out}).out, "events.jsonl:1"));
+
+    const std::string header = scratch::read(folder / "out/run.json");
+    scratch::write(folder / "out/run.json", scratch::replaced(header, "\"completed\"", "\"running\""));
+    const Outcome going = run({"verify", out});
+    expect(going, 2);
+    BOOST_TEST(contains(going.out, "not finished"));
+    scratch::write(folder / "out/run.json", header);
 
     scratch::write(folder / "out/events.jsonl", events.substr(0, events.size() / 2));
     expect(run({"verify", out}), 65, {"events.jsonl:", "truncated"});

@@ -52,4 +52,8 @@ inline constexpr int largest_exact_matrix = 100;
 /// products as one of them takes; where that does not suffice N solves and 4 N^2 integer products. Memory: the factors.
 Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic = CheckerArithmetic::automatic);
 
+/// The first thing in which two states differ, bit for bit, in words; empty: they are the same problem. Numbers of
+/// equilibria, provenance and recorded results (first-order terms) do not count.
+std::string state_difference(const State<2>& a, const State<2>& b);
+
 } // namespace isostat

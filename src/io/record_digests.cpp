@@ -1,0 +1,83 @@
+#include "io/record_digests.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isostat {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string chained_lines(const std::string& lines) {
+    std::string digest;
+    for (std::size_t begin = 0; begin < lines.size();) {
+        const std::size_t end = std::min(lines.find('\n', begin), lines.size() - 1) + 1;
+        digest = chained(digest, lines.substr(begin, end - begin));
+        begin = end;
+    }
+    return digest;
+}
+
+void check_digest(const fs::path& path, const std::string& found, const std::string& expected) {
+    if (found != expected) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: damaged: its digest is {}, expected {} as at the checkpoint: nothing was changed; "
+                                "restore the file, or start again with --force",
+                                path.string(), found, expected));
+    }
+}
+
+} // namespace
+
+std::string chained(const std::string& before, const std::string& line) {
+    return sha256(before + line);
+}
+
+std::optional<CheckedRecords> check_records(const fs::path& directory) {
+    const fs::path path = directory / "checkpoint.json";
+    if (!fs::exists(path)) {
+        return std::nullopt;
+    }
+    const std::string whole = read_text(path);
+    CheckedRecords found;
+    found.checkpoint = json::Field::parse(whole, path.string());
+    const json::Field file(found.checkpoint, path.string());
+    const std::size_t body = whole.rfind(before_digest);
+    check_digest(path, sha256(whole.substr(0, body)), file.at("digest").string());
+    if (file.at("format").string() != "isostat-checkpoint") {
+        file.at("format").fail("\"isostat-checkpoint\"");
+    }
+    if (const std::size_t state = whole.find(before_state); state < body) {
+        const std::size_t begin = state + std::string_view(before_state).size();
+        found.state = whole.substr(begin, body - begin);
+    }
+    for (const auto& [name, digest] : file.at("files").value().items()) {
+        found.files[name] = digest.get<std::string>();
+        check_digest(directory / name, sha256(read_text(directory / name)), found.files[name]);
+    }
+    for (const auto& [name, unused] : file.at("bytes").value().items()) {
+        const fs::path records = directory / name;
+        const long bytes = file.at("bytes").at(name.c_str()).integer();
+        const long size = fs::exists(records) ? static_cast<long>(fs::file_size(records)) : -1;
+        if (bytes < 0 || size < bytes) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint: nothing was "
+                                    "changed; restore the file, or start again with --force",
+                                    records.string(), size, bytes));
+        }
+        const std::string lines =
+            bytes > 0 ? read_text(records).substr(0, static_cast<std::size_t>(bytes)) : std::string();
+        const std::string digest = chained_lines(lines);
+        check_digest(records, digest, file.at("digests").at(name.c_str()).string());
+        found.lines[name] = {bytes, digest};
+    }
+    return found;
+}
+
+} // namespace isostat

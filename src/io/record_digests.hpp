@@ -1,0 +1,38 @@
+#pragma once
+/// \file
+/// The records of a run against its checkpoint: private to the library.
+
+#include "io/json.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace isostat {
+
+/// Digest of a list of records: each line together with the digest of those before it.
+std::string chained(const std::string& before, const std::string& line);
+
+/// What stands in checkpoint.json between the checkpoint and its own digest.
+inline constexpr const char* before_digest = ",\n\"digest\": ";
+/// What stands before the state in it; the state has the bytes of its own file.
+inline constexpr const char* before_state = ",\n\"state\": ";
+
+/// checkpoint.json, every digest in it found again.
+struct CheckedRecords {
+    struct Lines {
+        long bytes = 0; ///< of the records before the checkpoint
+        std::string digest;
+    };
+    json::Json checkpoint;
+    std::string state; ///< the bytes of its state file
+    std::map<std::string, Lines> lines;
+    std::map<std::string, std::string> files; ///< SHA-256 of the others
+};
+
+/// Nothing: there is no checkpoint yet. Throws `Error(bad_input)` naming the first file that is not as it was at the
+/// checkpoint: a byte changed, a record missing. Records after the checkpoint are not looked at.
+std::optional<CheckedRecords> check_records(const std::filesystem::path& directory);
+
+} // namespace isostat

@@ -38,15 +38,15 @@ Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool h
         rank = eliminated_rank(problem);
         return;
     }
-    const Solver solver(problem);
-    inverse = bound_inverse(problem, solver, arithmetic);
+    solver = std::make_unique<Solver>(problem);
+    inverse = bound_inverse(problem, *solver, arithmetic);
     if (inverse.found) {
-        vertex = find_vertex(problem, solver, inverse);
+        vertex = find_vertex(problem, *solver, inverse);
     }
     if (inverse.singular_value > 0 && !vertex.found && arithmetic == CheckerArithmetic::automatic) {
-        if (InverseBound by_rows = bound_inverse(problem, solver, CheckerArithmetic::rows); by_rows.found) {
+        if (InverseBound by_rows = bound_inverse(problem, *solver, CheckerArithmetic::rows); by_rows.found) {
             inverse = std::move(by_rows);
-            vertex = find_vertex(problem, solver, inverse);
+            vertex = find_vertex(problem, *solver, inverse);
         }
     }
     if (!inverse.found) {
@@ -57,10 +57,23 @@ Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool h
     if (vertex.found) {
         finite_load = checker::finite_load(problem, state, vertex);
         unit_load = checker::unit_load(problem, state, vertex);
-        forces = contact_forces(problem, solver, inverse, vertex, finite_load);
-        slopes = contact_forces(problem, solver, inverse, vertex, unit_load);
-        infinitesimal = contact_forces(problem, solver, inverse, vertex, infinitesimal_load(problem, state));
+        forces = contact_forces(problem, *solver, inverse, vertex, finite_load);
     }
+}
+
+const std::vector<Range>& Evidence::kept(std::optional<std::vector<Range>>& place, const Forces& load) const {
+    if (!place) {
+        place = vertex.found ? contact_forces(problem, *solver, inverse, vertex, load) : std::vector<Range>();
+    }
+    return *place;
+}
+
+const std::vector<Range>& Evidence::slopes() const {
+    return kept(slopes_, unit_load);
+}
+
+const std::vector<Range>& Evidence::infinitesimal() const {
+    return kept(infinitesimal_, infinitesimal_load(problem, state));
 }
 
 std::string Evidence::why_no_inverse() const {

@@ -6,6 +6,7 @@
 
 #include <isostat/checker/verify.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,13 +25,20 @@ struct Evidence {
     // At the true vertex, when it was found:
     Forces finite_load;
     Forces unit_load;
-    std::vector<Range> forces;        ///< under the load of the state
-    std::vector<Range> slopes;        ///< per unit of the loaded stress
-    std::vector<Range> infinitesimal; ///< per unit of eps
+    std::vector<Range> forces; ///< under the load of the state
+    /// Forces per unit of the loaded stress, and per unit of eps: computed when first asked for, by one thread.
+    [[nodiscard]] const std::vector<Range>& slopes() const;
+    [[nodiscard]] const std::vector<Range>& infinitesimal() const;
+    std::unique_ptr<const Solver> solver; ///< when square
 
     [[nodiscard]] std::string name(std::size_t contact) const { return to_string<2>(state.contacts[contact]); }
     [[nodiscard]] std::string why_no_inverse() const;
     [[nodiscard]] std::string why_no_vertex() const;
+
+  private:
+    const std::vector<Range>& kept(std::optional<std::vector<Range>>& place, const Forces& load) const;
+    mutable std::optional<std::vector<Range>> slopes_;
+    mutable std::optional<std::vector<Range>> infinitesimal_;
 };
 
 /// Positions of the ranges that contain 0.

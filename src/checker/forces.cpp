@@ -1,5 +1,7 @@
 #include "checker/forces.hpp"
 
+#include <optional>
+
 namespace isostat::checker {
 
 namespace {
@@ -55,89 +57,146 @@ Forces infinitesimal_load(const Problem& problem, const State<2>& state) {
     return disk_loads(problem, state.load.infinitesimal);
 }
 
-std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
-                                  const TrueVertex& vertex, const Forces& load) {
-    // A^T g = -load, g in multiples of 2^-shift (per unit of length). The factor of the first guess sets the scale.
-    const auto n = static_cast<std::size_t>(problem.dofs());
-    double largest = 0;
-    for (const Range& force : load) {
-        largest = std::max({largest, std::abs(rounded_up(force.upper)), std::abs(rounded_down(force.lower))});
-    }
-    std::vector<Rational> g(n);
-    if (largest > 0 && solver.usable()) {
-        const long load_exponent = std::ilogb(largest);
-        // Entries of A are below 2^(scale + fine): forces per length above largest / that. 120 bits below are kept.
-        const long shift = 120 + solver.scale() + problem.fine - load_exponent;
-        std::vector<Integer> sought(n);
-        const long residual_exponent = problem.fine - shift;
-        std::vector<Integer> target;
+namespace {
+
+std::size_t at(int k) {
+    return static_cast<std::size_t>(k);
+}
+
+/// The balance A^T g = -load in integers: g in multiples of 2^-shift per unit of length, forces of 2^(fine - shift).
+class Balance {
+  public:
+    Balance(const Problem& problem, const TrueVertex& vertex, const Forces& load, long shift)
+        : problem_(problem), sought_(problem.rows.size()), blur_(ceiling_of(2 * vertex.radius, -problem.fine)) {
         for (const Range& force : load) {
-            const Rational middle = (force.lower + force.upper) / 2 * power_of_two(-residual_exponent);
-            target.emplace_back(-middle.get_num() / middle.get_den());
+            target_.push_back(floor_of(-force.upper, shift - problem.fine));
+            unknown_.push_back(ceiling_of(-force.lower, shift - problem.fine) - target_.back());
         }
-        long size = -1;
-        for (int step = 0; step < 20; ++step) {
-            std::vector<Integer> residual = target;
-            for (int l = 0; l < problem.contacts(); ++l) {
-                const Row& row = problem.rows[static_cast<std::size_t>(l)];
-                for (int k = 0; k < row.count; ++k) {
-                    const int dof =
-                        problem.dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-                    if (dof >= 0) {
-                        residual[static_cast<std::size_t>(dof)] -=
-                            problem.entry(l, k, vertex.middle) * sought[static_cast<std::size_t>(l)];
-                    }
-                }
+        for (const Row& row : problem.rows) {
+            for (int a = 0; row.quadratic && a < 2; ++a) {
+                difference_.push_back(vertex.middle[at(row.coordinate[at(a)])] -
+                                      vertex.middle[at(row.coordinate[at(a + 2)])]);
             }
-            long now = 0;
-            for (const Integer& r : residual) {
-                now = std::max(now, bits(r));
-            }
-            if (now == 0 || (size >= 0 && now >= size)) {
-                break;
-            }
-            size = now;
-            Eigen::MatrixXd b(problem.dofs(), 1);
-            for (std::size_t j = 0; j < n; ++j) {
-                b(static_cast<Eigen::Index>(j), 0) = approximate(residual[j], -now);
+        }
+        residual_ = residual();
+    }
+    [[nodiscard]] const std::vector<Integer>& sought() const { return sought_; }
+
+    /// Until the residual does not become smaller.
+    void refine(const Solver& solver) {
+        long size = bits(largest_of(residual_));
+        for (int step = 0; step < 20 && size > 0; ++step) {
+            Eigen::MatrixXd b(problem_.dofs(), 1);
+            for (int j = 0; j < problem_.dofs(); ++j) {
+                b(j, 0) = approximate(residual_[at(j)], -size);
             }
             const Eigen::MatrixXd x = solver.solve_transposed(b);
-            for (std::size_t l = 0; l < n; ++l) {
-                sought[l] += scaled_integer(x(static_cast<Eigen::Index>(l), 0), now - solver.scale());
+            for (std::size_t l = 0; l < sought_.size(); ++l) {
+                sought_[l] += scaled_integer(x(static_cast<Eigen::Index>(l), 0), size - solver.scale());
             }
-        }
-        for (std::size_t l = 0; l < n; ++l) {
-            g[l] = Rational(sought[l]) * power_of_two(-shift);
+            residual_ = residual();
+            const long now = bits(largest_of(residual_));
+            if (now >= size) {
+                return;
+            }
+            size = now;
         }
     }
 
-    // The residual at the true vertex, for every degree of freedom (K6).
-    std::vector<Range> residual;
-    for (const Range& force : load) {
-        residual.push_back(Range(Rational(0)) - force);
+    /// At least the residual at the true vertex (K6): entries of contacts of two disks differ by twice the radius.
+    [[nodiscard]] Integer residual_at_vertex() const {
+        Integer worst = 0;
+        for (std::size_t j = 0; j < residual_.size(); ++j) {
+            Integer sum = 0;
+            for (const int l : problem_.contacts_of[j]) {
+                if (problem_.rows[at(l)].quadratic) {
+                    sum += abs(sought_[at(l)]);
+                }
+            }
+            sum = abs(residual_[j]) + unknown_[j] + blur_ * sum;
+            worst = std::max(worst, sum);
+        }
+        return worst;
     }
-    for (int l = 0; l < problem.contacts(); ++l) {
-        const Row& row = problem.rows[static_cast<std::size_t>(l)];
-        const Rational& factor = g[static_cast<std::size_t>(l)];
-        const Rational blur = row.quadratic ? Rational(2 * vertex.radius * abs(factor)) : Rational(0);
-        for (int k = 0; k < row.count && factor != 0; ++k) {
-            const int dof = problem.dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-            if (dof >= 0) {
-                const Rational product = problem.length(problem.entry(l, k, vertex.middle)) * factor;
-                Range& r = residual[static_cast<std::size_t>(dof)];
-                r = r - Range::around(product, blur);
+
+  private:
+    /// -load - A^T g at the middle of the vertex and the lower end of -load.
+    [[nodiscard]] std::vector<Integer> residual() const {
+        std::vector<Integer> result = target_;
+        Integer product;
+        auto difference = difference_.begin();
+        for (std::size_t l = 0; l < sought_.size(); ++l) {
+            const Row& row = problem_.rows[l];
+            const auto subtract = [&](int k, bool negative) {
+                if (const int dof = problem_.dof_of[at(row.coordinate[at(k)])]; dof >= 0) {
+                    Integer& r = result[at(dof)];
+                    negative ? r += product : r -= product;
+                }
+            };
+            if (row.quadratic) {
+                for (int a = 0; a < 2; ++a) {
+                    product = *difference++ * sought_[l];
+                    subtract(a, false);
+                    subtract(a + 2, true);
+                }
+                continue;
+            }
+            product = shifted_left(sought_[l], problem_.weight_bits);
+            for (int k = 0; k < row.count; ++k) {
+                subtract(k, row.sign[at(k)] < 0);
             }
         }
+        return result;
     }
-    Rational worst = 0;
-    for (const Range& r : residual) {
-        worst = std::max<Rational>(worst, std::max<Rational>(abs(r.lower), abs(r.upper)));
+
+    const Problem& problem_;
+    std::vector<Integer> sought_, target_, residual_;
+    std::vector<Integer> unknown_;    ///< width of the load
+    std::vector<Integer> difference_; ///< entries of the contacts of two disks, x and y
+    Integer blur_;
+};
+
+/// The number of bits before the binary point of the largest magnitude in a load; nothing: it is 0.
+std::optional<long> size_of(const Forces& load) {
+    Rational largest = 0;
+    for (const Range& force : load) {
+        largest = std::max<Rational>(largest, std::max<Rational>(abs(force.upper), abs(force.lower)));
     }
-    worst = short_above(worst / (1 - vertex.column_residual));
-    std::vector<Range> forces;
-    for (std::size_t l = 0; l < n; ++l) {
-        const Range per_length = Range::around(g[l], worst * inverse.column_sum[l]);
-        forces.push_back(per_length * Range(problem.force_factor(static_cast<int>(l))));
+    if (largest == 0) {
+        return {};
+    }
+    return bits(largest.get_num()) - bits(largest.get_den());
+}
+
+} // namespace
+
+std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
+                                  const TrueVertex& vertex, const Forces& load) {
+    std::vector<Range> forces(problem.rows.size());
+    const std::optional<long> size = size_of(load);
+    if (!size) {
+        return forces;
+    }
+    // Entries of A are below 2^(scale + fine): forces per length above the largest load / that. 120 bits below are
+    // kept.
+    const long shift = 120 + solver.scale() + problem.fine - *size;
+    Balance balance(problem, vertex, load, shift);
+    if (solver.usable()) {
+        balance.refine(solver);
+    }
+    const Rational error =
+        Rational(balance.residual_at_vertex()) / (1 - vertex.column_residual) * power_of_two(problem.fine);
+    const Rational* column = nullptr;
+    Integer around;
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        if (column == nullptr || *column != inverse.column_sum[l]) { // with a singular value all are one number
+            column = &inverse.column_sum[l];
+            around = ceiling_of(error * *column);
+        }
+        const Integer factor = problem.force_units(static_cast<int>(l));
+        const Integer& g = balance.sought()[l];
+        forces[l] = {dyadic((g - around) * factor, problem.fine - shift),
+                     dyadic((g + around) * factor, problem.fine - shift)};
     }
     return forces;
 }

@@ -73,7 +73,7 @@ ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim) {
     Smallest infinitesimal;
     for (std::size_t k = 0; k < zeros.size(); ++k) {
         const auto l = static_cast<std::size_t>(zeros[k]);
-        const Range& force = evidence.infinitesimal[l];
+        const Range& force = evidence.infinitesimal()[l];
         const std::string is = fmt::format("the infinitesimal force of {} is in {}", evidence.name(l), shown(force));
         worsen(check, lies_in(force, claim.infinitesimal[k]), is + ", claimed in " + shown(claim.infinitesimal[k]));
         worsen(check, is_positive(force), is + ", claimed positive");

@@ -22,7 +22,7 @@ struct End {
     }
 
     Verdict judge_unbounded() {
-        const std::vector<Range>& slopes = evidence.slopes;
+        const std::vector<Range>& slopes = evidence.slopes();
         std::vector<int> unclear;
         for (std::size_t l = 0; l < slopes.size(); ++l) {
             if (closing(slopes[l])) {
@@ -44,11 +44,11 @@ struct End {
     Verdict judge_bounded() {
         const auto found = std::find(evidence.state.contacts.begin(), evidence.state.contacts.end(), claim.opens);
         const auto opens = static_cast<std::size_t>(found - evidence.state.contacts.begin());
-        if (opens >= evidence.slopes.size()) {
+        if (opens >= evidence.slopes().size()) {
             text = to_string<2>(claim.opens) + ", which is no contact";
             return Verdict::refuted;
         }
-        const Range& slope = evidence.slopes[opens];
+        const Range& slope = evidence.slopes()[opens];
         if (!closing(slope)) {
             text = fmt::format("{}, whose force changes by {} per unit of stress", evidence.name(opens), shown(slope));
             return never_closing(slope) ? Verdict::refuted : Verdict::undecided;
@@ -68,7 +68,7 @@ struct End {
     Verdict judge_others(std::size_t opens, const Range& step) {
         std::vector<int> unclear;
         for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
-            const Range force = evidence.forces[l] + step * evidence.slopes[l];
+            const Range force = evidence.forces[l] + step * evidence.slopes()[l];
             if (l != opens && force.negative()) {
                 text += fmt::format(", but {} opens before", evidence.name(l));
                 return Verdict::refuted;

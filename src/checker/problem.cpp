@@ -131,9 +131,10 @@ Problem::Problem(const State<2>& state, bool held_allowed) {
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::held) {
             sum.push_back(stored[i]);
-            continue;
+        } else {
+            sum.push_back(row.quadratic ? Integer(radius[i] + radius[static_cast<std::size_t>(contact.j)]) : radius[i]);
         }
-        sum.push_back(row.quadratic ? Integer(radius[i] + radius[static_cast<std::size_t>(contact.j)]) : radius[i]);
+        sum_square.push_back(row.quadratic ? Integer(sum.back() * sum.back()) : Integer(0));
     }
 }
 
@@ -160,24 +161,36 @@ Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const 
     return q[own] - q[other];
 }
 
-Integer Problem::twice_residual(int contact, const std::vector<Integer>& q) const {
-    const auto l = static_cast<std::size_t>(contact);
-    const Row& row = rows[l];
-    if (row.quadratic) {
-        const Integer dx = entry(contact, 0, q);
-        const Integer dy = entry(contact, 1, q);
-        return dx * dx + dy * dy - sum[l] * sum[l];
+std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q) const {
+    std::vector<Integer> residuals;
+    residuals.reserve(rows.size());
+    Integer difference;
+    for (std::size_t l = 0; l < rows.size(); ++l) {
+        const Row& row = rows[l];
+        const auto at = [&](int k) -> const Integer& {
+            return q[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
+        };
+        Integer& value = residuals.emplace_back();
+        if (row.quadratic) {
+            value = -sum_square[l];
+            for (const int k : {0, 1}) {
+                difference = at(k) - at(k + 2);
+                value += difference * difference;
+            }
+            continue;
+        }
+        value = -sum[l];
+        for (int k = 0; k < row.count; ++k) {
+            value += row.sign[static_cast<std::size_t>(k)] * at(k);
+        }
+        value = shifted_left(value, weight_bits + 1);
     }
-    Integer gap = -sum[l];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-        gap += row.sign[k] * q[static_cast<std::size_t>(row.coordinate[k])];
-    }
-    return shifted_left(gap, weight_bits + 1);
+    return residuals;
 }
 
-Rational Problem::force_factor(int contact) const {
+Integer Problem::force_units(int contact) const {
     const auto l = static_cast<std::size_t>(contact);
-    return length(rows[l].quadratic ? sum[l] : weight());
+    return rows[l].quadratic ? sum[l] : weight();
 }
 
 } // namespace isostat::checker

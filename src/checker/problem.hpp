@@ -35,11 +35,12 @@ class Problem {
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
     int disks = 0;
-    std::vector<int> dof_of;        ///< per coordinate: its degree of freedom, or -1
-    std::vector<int> coordinate_of; ///< per degree of freedom
-    std::vector<Row> rows;          ///< per contact
-    std::vector<Integer> sum;       ///< per contact: R_i + R_j, or R of the disk at a wall
-    std::vector<Integer> stored;    ///< coordinates
+    std::vector<int> dof_of;         ///< per coordinate: its degree of freedom, or -1
+    std::vector<int> coordinate_of;  ///< per degree of freedom
+    std::vector<Row> rows;           ///< per contact
+    std::vector<Integer> sum;        ///< per contact: R_i + R_j, or R of the disk at a wall
+    std::vector<Integer> sum_square; ///< of two disks
+    std::vector<Integer> stored;     ///< coordinates
     std::vector<Integer> radius;
     std::vector<std::vector<int>> contacts_of; ///< per degree of freedom: the contacts that touch it
     long fine = 0;
@@ -53,10 +54,11 @@ class Problem {
     [[nodiscard]] Integer weight() const { return shifted_left(1, weight_bits); }
     /// Entry k of row l of A at a configuration, k < row.count.
     [[nodiscard]] Integer entry(int contact, int k, const std::vector<Integer>& q) const;
-    /// 2 F_l in squares of the unit: |x_i - x_j|^2 - (R_i + R_j)^2, or 2 weight gap.
-    [[nodiscard]] Integer twice_residual(int contact, const std::vector<Integer>& q) const;
+    /// 2 F_l in squares of the unit: |x_i - x_j|^2 - (R_i + R_j)^2, or 2 weight gap; of all contacts.
+    [[nodiscard]] std::vector<Integer> twice_residuals(const std::vector<Integer>& q) const;
     /// A force per length g_l as a force: times R_i + R_j at the true vertex, times the weight at a wall.
-    [[nodiscard]] Rational force_factor(int contact) const;
+    [[nodiscard]] Rational force_factor(int contact) const { return length(force_units(contact)); }
+    [[nodiscard]] Integer force_units(int contact) const;
     /// A length in units as a rational.
     [[nodiscard]] Rational length(const Integer& units) const { return Rational(units) * power_of_two(fine); }
 };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace isostat::checker {
 
@@ -25,6 +26,29 @@ inline Rational power_of_two(long exponent) {
     return value;
 }
 
+/// value * 2^exponent.
+inline Rational dyadic(const Integer& value, long exponent) {
+    Rational result(value);
+    if (exponent >= 0) {
+        mpq_mul_2exp(result.get_mpq_t(), result.get_mpq_t(), static_cast<mp_bitcnt_t>(exponent));
+    } else {
+        mpq_div_2exp(result.get_mpq_t(), result.get_mpq_t(), static_cast<mp_bitcnt_t>(-exponent));
+    }
+    return result;
+}
+
+/// The largest integer that is not above value * 2^exponent.
+inline Integer floor_of(const Rational& value, long exponent = 0) {
+    const Rational scaled = value * power_of_two(exponent);
+    Integer result;
+    mpz_fdiv_q(result.get_mpz_t(), scaled.get_num_mpz_t(), scaled.get_den_mpz_t());
+    return result;
+}
+/// The smallest integer that is not below it.
+inline Integer ceiling_of(const Rational& value, long exponent = 0) {
+    return -floor_of(-value, exponent);
+}
+
 inline Integer shifted_left(const Integer& value, long bits) {
     Integer result;
     mpz_mul_2exp(result.get_mpz_t(), value.get_mpz_t(), static_cast<mp_bitcnt_t>(bits));
@@ -34,6 +58,14 @@ inline Integer shifted_left(const Integer& value, long bits) {
 /// The number of bits of |value|.
 inline long bits(const Integer& value) {
     return value == 0 ? 0 : static_cast<long>(mpz_sizeinbase(value.get_mpz_t(), 2));
+}
+
+/// The largest magnitude.
+inline Integer largest_of(const std::vector<Integer>& values) {
+    const auto largest = std::max_element(values.begin(), values.end(), [](const Integer& a, const Integer& b) {
+        return mpz_cmpabs(a.get_mpz_t(), b.get_mpz_t()) < 0;
+    });
+    return largest == values.end() ? Integer(0) : Integer(abs(*largest));
 }
 
 /// An integer times 2^exponent, as an approximation (for solvers that are not trusted).

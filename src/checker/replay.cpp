@@ -28,7 +28,7 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
         }
         const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
                              : finite                          ? e.forces[l]
-                                                               : e.infinitesimal[l];
+                                                               : e.infinitesimal()[l];
         if (place.is_held(l) && (force.negative() || force.positive())) {
             negative.push_back(static_cast<int>(l)); // it competes with minus its magnitude
         } else if (force.negative()) {
@@ -70,7 +70,7 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
     }
     if (load.shift.lower != 0 || load.shift.upper != 0) {
         for (std::size_t l = 0; l < e.forces.size(); ++l) {
-            e.forces[l] = e.forces[l] + load.shift * e.slopes[l];
+            e.forces[l] = e.forces[l] + load.shift * e.slopes()[l];
         }
     }
     place.zeros = having_zero(e.forces);
@@ -83,7 +83,7 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
             std::make_unique<FirstOrder>(*place.state, e.problem, e.inverse, e.vertex, place.state->perturbation->rho);
         place.first_force = place.first->forces(e.forces);
         for (std::size_t l = 0; l < e.forces.size(); ++l) {
-            place.first_force[l] = place.first_force[l] + load.rate * e.slopes[l];
+            place.first_force[l] = place.first_force[l] + load.rate * e.slopes()[l];
         }
         // What changes with the radii is no structural zero.
         for (const int l : place.zeros) {
@@ -130,7 +130,7 @@ Range limit_rate(const Range& first, const Range& slope) {
 
 Objections check_limit_at(const Place& place, double stress, std::size_t opened, ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
-    const Range& slope = e.slopes[opened];
+    const Range& slope = e.slopes()[opened];
     if (slope.has_zero()) {
         return Objection{false, fmt::format("the slope of the force of {} is not told from 0", e.name(opened))};
     }
@@ -147,7 +147,7 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
     }
     std::vector<Range> there;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
-        there.push_back(e.forces[l] + step * e.slopes[l]);
+        there.push_back(e.forces[l] + step * e.slopes()[l]);
     }
     const std::vector<Range> first = place.first->forces(there);
     at_limit.shift = found - Range(Rational(stress));
@@ -161,7 +161,7 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
             return Objection{true,
                              fmt::format("the force of {} vanishes before that of {}", e.name(l), e.name(opened))};
         }
-        if (e.slopes[l].has_zero()) {
+        if (e.slopes()[l].has_zero()) {
             if (!first[l].positive()) {
                 return Objection{false, fmt::format("the force of {} may vanish all along, and its first-order term at "
                                                     "the limit is in {}",
@@ -169,10 +169,10 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
             }
             continue;
         }
-        if ((direction > 0) == e.slopes[l].positive()) {
+        if ((direction > 0) == e.slopes()[l].positive()) {
             continue; // it grows from a force that is not negative
         }
-        const Range later = (limit_rate(first[l], e.slopes[l]) - at_limit.rate) * Range(Rational(direction));
+        const Range later = (limit_rate(first[l], e.slopes()[l]) - at_limit.rate) * Range(Rational(direction));
         if (later.negative()) {
             return Objection{true,
                              fmt::format("the forces of {} and {} vanish at one load, and that of {} first: by {} "
@@ -192,8 +192,8 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
         loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
     }
     const auto order = [&e](std::size_t l) {
-        const Range size = e.slopes[l].negative() ? Range(Rational(0)) - e.slopes[l] : e.slopes[l];
-        return e.infinitesimal[l] / size;
+        const Range size = e.slopes()[l].negative() ? Range(Rational(0)) - e.slopes()[l] : e.slopes()[l];
+        return e.infinitesimal()[l] / size;
     };
     for (const int l : together) {
         const auto other = static_cast<std::size_t>(l);
@@ -286,19 +286,19 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
             return place.first_force[*l];
         }
         const Evidence& e = *place.evidence;
-        if (e.slopes[opened].has_zero()) {
+        if (e.slopes()[opened].has_zero()) {
             return {};
         }
-        const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes[opened];
+        const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes()[opened];
         std::vector<Range> there;
         for (std::size_t k = 0; k < e.forces.size(); ++k) {
-            there.push_back(e.forces[k] + step * e.slopes[k]);
+            there.push_back(e.forces[k] + step * e.slopes()[k]);
         }
         const Range first = place.first->forces(there)[*l];
         if (what == "zero all along") {
             return first;
         }
-        return e.slopes[*l].has_zero() ? std::nullopt : std::optional<Range>(limit_rate(first, e.slopes[*l]));
+        return e.slopes()[*l].has_zero() ? std::nullopt : std::optional<Range>(limit_rate(first, e.slopes()[*l]));
     };
     for (const TieRecord& tie : event.ties) {
         const auto check = [&](const std::string& name, double value, double bound) -> Objections {
@@ -336,7 +336,7 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
 Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
     const Evidence& e = *place.evidence;
     const auto held = static_cast<std::size_t>(place.fresh);
-    const std::vector<Range>& forces = rattles ? e.infinitesimal : e.forces;
+    const std::vector<Range>& forces = rattles ? e.infinitesimal() : e.forces;
     Rational largest = 0;
     for (const Range& force : forces) {
         largest = std::max<Rational>(largest, std::max<Rational>(abs(force.lower), abs(force.upper)));
@@ -382,17 +382,17 @@ Objections check_limit(const Place& place, const EventRecord& event, std::size_t
         return Objection{true, fmt::format("the force at a limit is {}, not 0", event.force)};
     }
     // Forces that vanish together: the infinitesimal loads decide which one comes first.
-    const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes[opened];
+    const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes()[opened];
     const auto order = [&e](std::size_t l) {
-        const Range slope = e.slopes[l].negative() ? Range(Rational(0)) - e.slopes[l] : e.slopes[l];
-        return e.infinitesimal[l] / slope;
+        const Range slope = e.slopes()[l].negative() ? Range(Rational(0)) - e.slopes()[l] : e.slopes()[l];
+        return e.infinitesimal()[l] / slope;
     };
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         const bool other = l != opened && !contains(place.zeros, l);
-        if (!other || (e.forces[l] + step * e.slopes[l]).positive()) {
+        if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
             continue;
         }
-        if (e.slopes[l].has_zero()) {
+        if (e.slopes()[l].has_zero()) {
             return Objection{false, fmt::format("the force of {} may vanish at the limit too", e.name(l))};
         }
         if (order(l).upper < order(opened).lower) {
@@ -412,7 +412,7 @@ namespace {
 int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b) {
     const Evidence& e = *place.evidence;
     const auto key = [&](std::size_t l, bool first) {
-        const Range& force = finite ? e.forces[l] : e.infinitesimal[l];
+        const Range& force = finite ? e.forces[l] : e.infinitesimal()[l];
         const bool flipped = place.is_held(l) && force.positive(); // it competes with minus its magnitude
         const Range& value = first ? place.first_force[l] : force;
         return flipped ? Range(Rational(0)) - value : value;
@@ -444,7 +444,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
                                            decision.kind == "rattler" ? "infinitesimal " : "",
                                            e.name(static_cast<std::size_t>(decision.candidates[0])))};
     }
-    const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal : e.forces;
+    const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
     const Range& chosen = forces[opened];
     if (!contains(decision.candidates, opened)) {
         return Objection{true, fmt::format("{} opens, but its force is in {}", e.name(opened), shown(chosen))};

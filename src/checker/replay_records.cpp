@@ -255,7 +255,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
         const auto l = static_cast<std::size_t>(decision.candidates[0]);
         return Objection{true, fmt::format("no equilibrium: the {}force of {} is in {}",
                                            decision.kind == "rattler" ? "infinitesimal " : "", e.name(l),
-                                           shown(decision.kind == "rattler" ? e.infinitesimal[l] : e.forces[l]))};
+                                           shown(decision.kind == "rattler" ? e.infinitesimal()[l] : e.forces[l]))};
     }
     const int contacts = e.problem.contacts();
     const auto zeros = static_cast<int>(place.zeros.size());

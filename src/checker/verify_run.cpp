@@ -167,7 +167,7 @@ class Replay {
         const Evidence& evidence = *here_.evidence;
         const bool held = opened->kind == ContactKind::held;
         const bool rattles = event.kind == "rattler" || (held && evidence.forces[position].has_zero());
-        const Range& multiplier = (rattles ? evidence.infinitesimal : evidence.forces)[position];
+        const Range& multiplier = (rattles ? evidence.infinitesimal() : evidence.forces)[position];
         const int direction = held && multiplier.positive() ? -1 : +1;
         if (here_.first && !judged(check_step(here_, event, position, direction), event.where)) {
             return false;

@@ -10,12 +10,8 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
     long size = -1;
     for (int step = 0; step < 40; ++step) {
         Eigen::MatrixXd b(problem.contacts(), 1);
-        std::vector<Integer> residual;
-        long now = 0;
-        for (int l = 0; l < problem.contacts(); ++l) {
-            residual.push_back(problem.twice_residual(l, q));
-            now = std::max(now, bits(residual.back()));
-        }
+        const std::vector<Integer> residual = problem.twice_residuals(q);
+        const long now = bits(largest_of(residual));
         if (now == 0 || (size >= 0 && now >= size)) {
             break;
         }
@@ -51,10 +47,7 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         starts.insert(starts.begin(), improved(problem, solver));
     }
     for (const std::vector<Integer>& start : starts) {
-        Integer largest = 0;
-        for (int l = 0; l < problem.contacts(); ++l) {
-            largest = std::max<Integer>(largest, abs(problem.twice_residual(l, start)));
-        }
+        const Integer largest = largest_of(problem.twice_residuals(start));
         const Rational moved = problem.length(largest_move(problem, start));
         const Rational error = inverse.residual_row + slope * moved;
         const Rational step = inverse.row_sum * Rational(largest) * power_of_two(2 * problem.fine - 1);

@@ -14,94 +14,117 @@ Range place(const Problem& problem, const TrueVertex& vertex, std::size_t k) {
 
 } // namespace
 
-Velocities::Velocities(const Problem& problem, const InverseBound& inverse, const TrueVertex& vertex)
-    : problem_(problem), inverse_(inverse), vertex_(vertex), solver_(problem) {}
+namespace {
+
+/// A v = b at the middle of the vertex in integers: v in multiples of 2^-shift, b of 2^(fine - shift).
+struct Motion {
+    const Problem& problem;
+    const std::vector<Integer>& at;
+    std::vector<Integer> target;
+    std::vector<Integer> v; ///< per coordinate; 0 where it does not move
+
+    [[nodiscard]] std::vector<Integer> residual() const {
+        std::vector<Integer> result = target;
+        Integer difference;
+        Integer change;
+        for (std::size_t l = 0; l < result.size(); ++l) {
+            const Row& row = problem.rows[l];
+            const auto coordinate = [&row](std::size_t k) { return static_cast<std::size_t>(row.coordinate[k]); };
+            for (std::size_t k = 0; row.quadratic && k < 2; ++k) {
+                difference = at[coordinate(k)] - at[coordinate(k + 2)];
+                change = v[coordinate(k)] - v[coordinate(k + 2)];
+                result[l] -= difference * change;
+            }
+            for (std::size_t k = 0; !row.quadratic && k < static_cast<std::size_t>(row.count); ++k) {
+                change = shifted_left(v[coordinate(k)], problem.weight_bits);
+                row.sign[k] > 0 ? result[l] -= change : result[l] += change;
+            }
+        }
+        return result;
+    }
+};
+
+} // namespace
 
 Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
-    Solution v;
-    v.middle.assign(problem_.dof_of.size(), Rational(0));
-    const Rational unit = power_of_two(problem_.fine);
-    std::vector<Rational> residual = b;
-    Rational worst = -1;
-    for (int step = 0; step < 6; ++step) {
-        Rational size = 0;
-        for (const Rational& r : residual) {
-            size = std::max<Rational>(size, abs(r));
+    const Problem& problem = e_.problem;
+    Solution result;
+    result.middle.assign(problem.dof_of.size(), Rational(0));
+    Rational largest = 0;
+    for (const Rational& rate : b) {
+        largest = std::max<Rational>(largest, abs(rate));
+    }
+    if (largest == 0) {
+        return result;
+    }
+    // The fastest coordinate is above b / the largest entry of A: 120 bits below that are kept.
+    const long scale = e_.solver->scale();
+    const long shift = 120 + scale + problem.fine - bits(largest.get_num()) + bits(largest.get_den());
+    Motion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
+    for (const Rational& rate : b) {
+        motion.target.push_back(floor_of(rate, shift - problem.fine)); // by less than one
+    }
+    std::vector<Integer> residual = motion.target;
+    long size = bits(largest_of(residual));
+    for (int step = 0; step < 20 && size > 0 && e_.solver->usable(); ++step) {
+        Eigen::MatrixXd right(problem.contacts(), 1);
+        for (int l = 0; l < problem.contacts(); ++l) {
+            right(l, 0) = approximate(residual[static_cast<std::size_t>(l)], -size);
         }
-        if (size == 0 || !solver_.usable() || (worst >= 0 && 2 * size >= worst)) {
+        const Eigen::MatrixXd x = e_.solver->solve(right);
+        for (int d = 0; d < problem.dofs(); ++d) {
+            motion.v[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(d)])] +=
+                scaled_integer(x(d, 0), size - scale);
+        }
+        residual = motion.residual();
+        const long now = bits(largest_of(residual));
+        if (now >= size) {
             break;
         }
-        worst = size;
-        Eigen::MatrixXd right(problem_.contacts(), 1);
-        for (int l = 0; l < problem_.contacts(); ++l) {
-            right(l, 0) = Rational(residual[static_cast<std::size_t>(l)] / size).get_d();
-        }
-        const Eigen::MatrixXd x = solver_.solve(right);
-        const Rational factor = size * power_of_two(-solver_.scale() - problem_.fine);
-        for (int d = 0; d < problem_.dofs(); ++d) {
-            if (std::isfinite(x(d, 0))) {
-                v.middle[static_cast<std::size_t>(problem_.coordinate_of[static_cast<std::size_t>(d)])] +=
-                    Rational(x(d, 0)) * factor;
-            }
-        }
-        for (int l = 0; l < problem_.contacts(); ++l) {
-            const Row& row = problem_.rows[static_cast<std::size_t>(l)];
-            Rational sum = 0;
-            for (int k = 0; k < row.count; ++k) {
-                const auto c = static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)]);
-                if (problem_.dof_of[c] >= 0) {
-                    sum += Rational(problem_.entry(l, k, vertex_.middle)) * v.middle[c];
-                }
-            }
-            residual[static_cast<std::size_t>(l)] = b[static_cast<std::size_t>(l)] - unit * sum;
-        }
+        size = now;
     }
-    Rational open = 0;
-    Rational fastest = 0;
-    for (const Rational& r : residual) {
-        open = std::max<Rational>(open, abs(r));
+    const Rational open = dyadic(largest_of(residual) + 1, problem.fine - shift);
+    const Rational fastest = dyadic(largest_of(motion.v), -shift);
+    for (std::size_t k = 0; k < motion.v.size(); ++k) {
+        result.middle[k] = dyadic(motion.v[k], -shift);
     }
-    for (const Rational& c : v.middle) {
-        fastest = std::max<Rational>(fastest, abs(c));
-    }
-    v.radius =
-        short_above(inverse_.row_sum / (1 - vertex_.row_residual) * (open + row_curvature * vertex_.radius * fastest));
-    return v;
+    result.radius = short_above(e_.inverse.row_sum / (1 - e_.vertex.row_residual) *
+                                (open + row_curvature * e_.vertex.radius * fastest));
+    return result;
 }
 
 Velocities::Solution Velocities::opening(std::size_t contact, int direction) const {
-    std::vector<Rational> b(static_cast<std::size_t>(problem_.contacts()));
+    std::vector<Rational> b(static_cast<std::size_t>(e_.problem.contacts()));
     // F is the gap times its distance of centres, or times the weight.
-    b[contact] = problem_.force_factor(static_cast<int>(contact)) * direction;
+    b[contact] = e_.problem.force_factor(static_cast<int>(contact)) * direction;
     return solve(b);
 }
 
-Range Velocities::gap_rate(const State<2>& state, const Contact& pair, const Solution& v) const {
+Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
     if (pair.kind == ContactKind::disk_disk) {
         Range sum(Rational(0));
         for (std::size_t a = 0; a < 2; ++a) {
-            const Range x = place(problem_, vertex_, 2 * i + a) - place(problem_, vertex_, 2 * j + a);
-            sum = sum + x * (component(problem_, v, 2 * i + a) - component(problem_, v, 2 * j + a));
+            const Range x = place(e_.problem, e_.vertex, 2 * i + a) - place(e_.problem, e_.vertex, 2 * j + a);
+            sum = sum + x * (component(e_.problem, v, 2 * i + a) - component(e_.problem, v, 2 * j + a));
         }
-        const Rational distance = Rational(state.packing.radius[i]) + Rational(state.packing.radius[j]);
+        const Rational distance = Rational(e_.state.packing.radius[i]) + Rational(e_.state.packing.radius[j]);
         return sum / Range(distance);
     }
-    const Range x = component(problem_, v, 2 * i + j);
+    const Range x = component(e_.problem, v, 2 * i + j);
     return pair.kind == ContactKind::lower_wall
                ? x
-               : component(problem_, v, 2 * static_cast<std::size_t>(problem_.disks) + j) - x;
+               : component(e_.problem, v, 2 * static_cast<std::size_t>(e_.problem.disks) + j) - x;
 }
 
-FirstOrder::FirstOrder(const State<2>& state, const Problem& problem, const InverseBound& inverse,
-                       const TrueVertex& vertex, const std::vector<double>& rho)
-    : state_(state), problem_(problem), inverse_(inverse), vertex_(vertex), rho_(rho),
-      velocities_(problem, inverse, vertex) {
+FirstOrder::FirstOrder(const Evidence& evidence, const std::vector<double>& rho)
+    : e_(evidence), rho_(rho), velocities_(evidence) {
     std::vector<Rational> b;
-    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        const Contact& c = state.contacts[l];
-        b.push_back(c.kind == ContactKind::held ? Rational(0) : problem.force_factor(static_cast<int>(l)) * grown(c));
+    for (std::size_t l = 0; l < e_.state.contacts.size(); ++l) {
+        const Contact& c = e_.state.contacts[l];
+        b.push_back(c.kind == ContactKind::held ? Rational(0)
+                                                : e_.problem.force_factor(static_cast<int>(l)) * grown(c));
     }
     change_ = velocities_.solve(b);
 }
@@ -115,42 +138,42 @@ Rational FirstOrder::grown(const Contact& pair) const {
 }
 
 Range FirstOrder::gap(const Contact& pair) const {
-    return velocities_.gap_rate(state_, pair, change_) - Range(grown(pair));
+    return velocities_.gap_rate(pair, change_) - Range(grown(pair));
 }
 
 std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
-    Forces load(static_cast<std::size_t>(problem_.dofs()), Range(Rational(0)));
+    Forces load(static_cast<std::size_t>(e_.problem.dofs()), Range(Rational(0)));
     const auto add = [&](std::size_t coordinate, const Range& value) {
-        const int dof = problem_.dof_of[coordinate];
+        const int dof = e_.problem.dof_of[coordinate];
         if (dof >= 0) {
             load[static_cast<std::size_t>(dof)] = load[static_cast<std::size_t>(dof)] + value;
         }
     };
-    for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
-        const Contact& c = state_.contacts[l];
+    for (std::size_t l = 0; l < e_.state.contacts.size(); ++l) {
+        const Contact& c = e_.state.contacts[l];
         if (c.kind != ContactKind::disk_disk) {
             continue;
         }
-        const Range g = f0[l] / Range(problem_.force_factor(static_cast<int>(l)));
+        const Range g = f0[l] / Range(e_.problem.force_factor(static_cast<int>(l)));
         for (std::size_t a = 0; a < 2; ++a) {
             const std::size_t i = 2 * static_cast<std::size_t>(c.i) + a;
             const std::size_t j = 2 * static_cast<std::size_t>(c.j) + a;
-            const Range turn = g * (component(problem_, change_, i) - component(problem_, change_, j));
+            const Range turn = g * (component(e_.problem, change_, i) - component(e_.problem, change_, j));
             add(i, turn);
             add(j, Range(Rational(0)) - turn);
         }
     }
-    if (state_.load.kind == LoadKind::true_stress) { // the force of a wall follows the other length
+    if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other length
         for (std::size_t a = 0; a < 2; ++a) {
-            const std::size_t wall = 2 * static_cast<std::size_t>(problem_.disks);
-            add(wall + a, Range(-Rational(state_.load.stress[a])) * component(problem_, change_, wall + 1 - a));
+            const std::size_t wall = 2 * static_cast<std::size_t>(e_.problem.disks);
+            add(wall + a, Range(-Rational(e_.state.load.stress[a])) * component(e_.problem, change_, wall + 1 - a));
         }
     }
-    std::vector<Range> f1 = contact_forces(problem_, velocities_.solver(), inverse_, vertex_, load);
+    std::vector<Range> f1 = contact_forces(e_.problem, *e_.solver, e_.inverse, e_.vertex, load);
     for (std::size_t l = 0; l < f1.size(); ++l) {
-        const Contact& c = state_.contacts[l];
+        const Contact& c = e_.state.contacts[l];
         if (c.kind == ContactKind::disk_disk) { // f = g (R_i + R_j), and the radii grow
-            f1[l] = f1[l] + f0[l] / Range(problem_.force_factor(static_cast<int>(l))) * Range(grown(c));
+            f1[l] = f1[l] + f0[l] / Range(e_.problem.force_factor(static_cast<int>(l))) * Range(grown(c));
         }
     }
     return f1;

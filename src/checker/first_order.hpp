@@ -2,19 +2,14 @@
 /// \file
 /// First-order change of a true vertex when the radii become R_i + eps rho_i (proofs/checker.md, K12 to K14).
 
-#include "checker/forces.hpp"
-#include "checker/vertex.hpp"
-
-#include <isostat/contact/state.hpp>
-
-#include <memory>
+#include "checker/evidence.hpp"
 
 namespace isostat::checker {
 
-/// Solutions of A(q*) v = b, enclosed. Lengths are real; the arguments of the constructor must outlive it.
+/// Solutions of A(q*) v = b, enclosed. Lengths are real; the evidence, of a vertex that was found, must outlive it.
 class Velocities {
   public:
-    Velocities(const Problem& problem, const InverseBound& inverse, const TrueVertex& vertex);
+    explicit Velocities(const Evidence& evidence) : e_(evidence) {}
 
     struct Solution {
         std::vector<Rational> middle; ///< per coordinate; 0 where it does not move
@@ -25,21 +20,16 @@ class Velocities {
     /// The motion on which the gap of a contact changes at rate `direction` and all others do not.
     [[nodiscard]] Solution opening(std::size_t contact, int direction) const;
     /// The rate of the gap of a pair that touches at the true vertex.
-    [[nodiscard]] Range gap_rate(const State<2>& state, const Contact& pair, const Solution& v) const;
-    [[nodiscard]] const Solver& solver() const { return solver_; }
+    [[nodiscard]] Range gap_rate(const Contact& pair, const Solution& v) const;
 
   private:
-    const Problem& problem_;
-    const InverseBound& inverse_;
-    const TrueVertex& vertex_;
-    Solver solver_;
+    const Evidence& e_;
 };
 
 /// Derivatives with respect to eps at eps = 0; the contacts stay closed.
 class FirstOrder {
   public:
-    FirstOrder(const State<2>& state, const Problem& problem, const InverseBound& inverse, const TrueVertex& vertex,
-               const std::vector<double>& rho);
+    FirstOrder(const Evidence& evidence, const std::vector<double>& rho);
 
     /// First-order gap of a pair that touches at the true vertex.
     [[nodiscard]] Range gap(const Contact& pair) const;
@@ -49,10 +39,7 @@ class FirstOrder {
 
   private:
     [[nodiscard]] Rational grown(const Contact& pair) const;
-    const State<2>& state_;
-    const Problem& problem_;
-    const InverseBound& inverse_;
-    const TrueVertex& vertex_;
+    const Evidence& e_;
     const std::vector<double>& rho_;
     Velocities velocities_;
     Velocities::Solution change_;

@@ -79,8 +79,7 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
         place.silent = without_force(place);
     }
     if (place.state->perturbation) {
-        place.first =
-            std::make_unique<FirstOrder>(*place.state, e.problem, e.inverse, e.vertex, place.state->perturbation->rho);
+        place.first = std::make_unique<FirstOrder>(e, place.state->perturbation->rho);
         place.first_force = place.first->forces(e.forces);
         for (std::size_t l = 0; l < e.forces.size(); ++l) {
             place.first_force[l] = place.first_force[l] + load.rate * e.slopes()[l];
@@ -221,7 +220,7 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
     std::optional<Range> shortest;
     std::optional<Contact> first;
     for (const Gap& gap : place.touching) {
-        const Range rate = velocities.gap_rate(*place.state, gap.pair, motion);
+        const Range rate = velocities.gap_rate(gap.pair, motion);
         if (!rate.negative()) {
             continue; // it opens, or stays as far as is seen
         }
@@ -268,8 +267,7 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
             for (const Gap& gap : from.touching) {
                 if (to_string<2>(gap.pair) == name) {
                     const Velocities& velocities = from.first->velocities();
-                    const Range rate =
-                        velocities.gap_rate(*from.state, gap.pair, velocities.opening(opened, direction));
+                    const Range rate = velocities.gap_rate(gap.pair, velocities.opening(opened, direction));
                     return rate.negative() ? std::optional<Range>(gap.value / (Range(Rational(0)) - rate))
                                            : std::nullopt;
                 }
@@ -348,7 +346,7 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
                                      "{}",
                                      event.closed, shown(forces[held]))};
     }
-    const Velocities velocities(e.problem, e.inverse, e.vertex);
+    const Velocities velocities(e);
     const Velocities::Solution motion = velocities.opening(held, 1);
     const auto k = static_cast<std::size_t>(place.state->contacts[held].i);
     Rational fastest = 0;

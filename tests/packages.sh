@@ -16,8 +16,10 @@ isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra
 isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
 # For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
 isostat_count_packages=(valgrind)
+# For the style of the sources: optional, installed by continuous integration.
+isostat_lint_packages=(clang-format-16 clang-tidy-16)
 if [ "${CI:-}" = true ]; then
-  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_count_packages[@]}")
+  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_count_packages[@]}" "${isostat_lint_packages[@]}")
 fi
 
 # Installs what is missing; a message with the list when it cannot.

@@ -18,7 +18,7 @@ using namespace isostat;
 
 BOOST_AUTO_TEST_SUITE(core)
 
-BOOST_AUTO_TEST_CASE(every_piece_is_done_exactly_once) {
+BOOST_AUTO_TEST_CASE(every_piece_is_done_exactly_once, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2, 5}) {
         const Threads threads(count);
         for (int round = 0; round < 300; ++round) {
@@ -29,7 +29,7 @@ BOOST_AUTO_TEST_CASE(every_piece_is_done_exactly_once) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(pieces_within_pieces_are_done_by_the_thread_that_asks) {
+BOOST_AUTO_TEST_CASE(pieces_within_pieces_are_done_by_the_thread_that_asks, *boost::unit_test::label("threads")) {
     const Threads threads(3);
     std::vector<std::atomic<int>> done(8);
     parallel_pieces(8, [&](std::size_t outer) { parallel_pieces(5, [&](std::size_t) { ++done[outer]; }); });
@@ -38,7 +38,8 @@ BOOST_AUTO_TEST_CASE(pieces_within_pieces_are_done_by_the_thread_that_asks) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_exception_of_the_lowest_piece_comes_back_and_the_next_call_works) {
+BOOST_AUTO_TEST_CASE(the_exception_of_the_lowest_piece_comes_back_and_the_next_call_works,
+                     *boost::unit_test::label("threads")) {
     for (const int count : {1, 4}) {
         const Threads threads(count);
         for (int round = 0; round < 50; ++round) {
@@ -63,7 +64,7 @@ BOOST_AUTO_TEST_CASE(the_exception_of_the_lowest_piece_comes_back_and_the_next_c
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_is_done_once_whoever_does_it) {
+BOOST_AUTO_TEST_CASE(an_errand_is_done_once_whoever_does_it, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2, 4}) {
         const Threads threads(count);
         for (int round = 0; round < 500; ++round) {
@@ -85,7 +86,7 @@ BOOST_AUTO_TEST_CASE(an_errand_is_done_once_whoever_does_it) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_runs_beside_its_caller) {
+BOOST_AUTO_TEST_CASE(an_errand_runs_beside_its_caller, *boost::unit_test::label("threads")) {
     const Threads threads(2);
     std::atomic<bool> begun{false};
     Errand errand([&] { begun = true; });
@@ -97,7 +98,7 @@ BOOST_AUTO_TEST_CASE(an_errand_runs_beside_its_caller) {
     errand.finish();
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_is_under_way_only_while_another_thread_has_it) {
+BOOST_AUTO_TEST_CASE(an_errand_is_under_way_only_while_another_thread_has_it, *boost::unit_test::label("threads")) {
     Errand alone([] {});
     BOOST_TEST(!alone.underway()); // nobody else will do it
     const Threads threads(2);
@@ -137,7 +138,8 @@ BOOST_AUTO_TEST_CASE(one_thread_does_an_errand_when_it_is_asked_for_and_not_at_a
     BOOST_TEST(done == 1);
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_begun_by_its_caller_is_done_once_and_tells_when_it_is_finished) {
+BOOST_AUTO_TEST_CASE(an_errand_begun_by_its_caller_is_done_once_and_tells_when_it_is_finished,
+                     *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
         for (int round = 0; round < 200; ++round) {
@@ -173,7 +175,7 @@ BOOST_AUTO_TEST_CASE(an_errand_begun_by_its_caller_is_done_once_and_tells_when_i
     BOOST_TEST(dropped == 1);
 }
 
-BOOST_AUTO_TEST_CASE(nothing_of_an_errand_is_left_running_when_it_is_dropped) {
+BOOST_AUTO_TEST_CASE(nothing_of_an_errand_is_left_running_when_it_is_dropped, *boost::unit_test::label("threads")) {
     const Threads threads(3);
     for (int round = 0; round < 200; ++round) {
         std::vector<int> written(1000, 0);
@@ -185,7 +187,7 @@ BOOST_AUTO_TEST_CASE(nothing_of_an_errand_is_left_running_when_it_is_dropped) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_an_errand_threw_comes_out_of_finish) {
+BOOST_AUTO_TEST_CASE(what_an_errand_threw_comes_out_of_finish, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
         Promised<int> good([] { return 7; });
@@ -196,7 +198,7 @@ BOOST_AUTO_TEST_CASE(what_an_errand_threw_comes_out_of_finish) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(errands_within_errands_and_pieces_end) {
+BOOST_AUTO_TEST_CASE(errands_within_errands_and_pieces_end, *boost::unit_test::label("threads")) {
     const Threads threads(2);
     for (int round = 0; round < 100; ++round) {
         std::atomic<int> sum{0};

@@ -100,7 +100,7 @@ BOOST_AUTO_TEST_CASE(exchanged_operators_solve_with_the_exchanged_matrix) {
     BOOST_TEST(inverse.exchanges() == 4);
 }
 
-BOOST_AUTO_TEST_CASE(copies_of_fresh_factors_solve_side_by_side_like_one_alone) {
+BOOST_AUTO_TEST_CASE(copies_of_fresh_factors_solve_side_by_side_like_one_alone, *boost::unit_test::label("threads")) {
     const auto proved = IsostaticStructure<2>::prove(vertex400().packing, vertex400().contacts);
     BOOST_TEST_REQUIRE(proved.ok());
     const ApproximateInverse inverse(proved.value().matrix());

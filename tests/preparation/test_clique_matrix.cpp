@@ -99,7 +99,8 @@ std::vector<double> some_numbers(std::size_t count, double step) {
 
 BOOST_AUTO_TEST_SUITE(preparation)
 
-BOOST_AUTO_TEST_CASE(sums_of_blocks_of_two_grids_are_solved_with_the_same_bits_for_any_number_of_threads) {
+BOOST_AUTO_TEST_CASE(sums_of_blocks_of_two_grids_are_solved_with_the_same_bits_for_any_number_of_threads,
+                     *boost::unit_test::label("threads")) {
     const Grids grids;
     const std::vector<double> ground(Grids::columns(), 1e-3);
     const std::vector<double> x = some_numbers(Grids::columns(), 0.7);
@@ -144,7 +145,8 @@ BOOST_AUTO_TEST_CASE(one_negative_pivot_anywhere_is_found_and_the_next_matrix_is
     }
 }
 
-BOOST_AUTO_TEST_CASE(dense_products_have_the_bits_of_the_plain_loop_for_every_shape) {
+BOOST_AUTO_TEST_CASE(dense_products_have_the_bits_of_the_plain_loop_for_every_shape,
+                     *boost::unit_test::label("threads")) {
     using isostat::preparation::ProductSum;
     isostat::set_threads(2);
     for (const std::size_t rows : {1U, 3U, 4U, 7U, 8U, 21U, 300U}) {

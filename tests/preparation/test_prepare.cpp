@@ -162,7 +162,7 @@ BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_bits_and_another_seed_another_
 }
 
 // Sums are taken in blocks of 8192 disks: three of them here, a few steps of the dynamics, disks renumbered.
-BOOST_AUTO_TEST_CASE(the_number_of_threads_does_not_change_the_bits) {
+BOOST_AUTO_TEST_CASE(the_number_of_threads_does_not_change_the_bits, *boost::unit_test::label("threads")) {
     PreparationOptions options;
     options.disks = 17000;
     options.max_steps = 60;

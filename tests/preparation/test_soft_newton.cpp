@@ -59,7 +59,8 @@ BOOST_AUTO_TEST_CASE(newton_steps_end_where_the_dynamics_find_every_force_balanc
     }
 }
 
-BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_and_stop_when_asked) {
+BOOST_AUTO_TEST_CASE(newton_steps_have_the_same_bits_for_any_number_of_threads_and_stop_when_asked,
+                     *boost::unit_test::label("threads")) {
     const auto relaxed = [](int threads) {
         const Threads scope(threads);
         Packing<2> packing = pressed(30, 0.9);

@@ -159,7 +159,7 @@ BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices)
     BOOST_TEST(!IsostaticStructure<2>::prove(special.packing, special.contacts).ok());
 }
 
-BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded) {
+BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
         const State<2> state = two_disks(1, 2, 1, 1);

@@ -10,7 +10,8 @@ using namespace isostat;
 
 BOOST_AUTO_TEST_SUITE(trajectory)
 
-BOOST_AUTO_TEST_CASE(jobs_behind_are_done_in_order_up_to_the_first_without_a_result) {
+BOOST_AUTO_TEST_CASE(jobs_behind_are_done_in_order_up_to_the_first_without_a_result,
+                     *boost::unit_test::label("threads")) {
     for (const int count : {1, 2, 3}) {
         const Threads threads(count);
         for (const int fails_at : {0, 1, 57, 200, 1000}) {
@@ -48,7 +49,8 @@ BOOST_AUTO_TEST_CASE(jobs_behind_are_done_in_order_up_to_the_first_without_a_res
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_exception_of_a_job_behind_reaches_who_waits_and_ends_the_rest) {
+BOOST_AUTO_TEST_CASE(an_exception_of_a_job_behind_reaches_who_waits_and_ends_the_rest,
+                     *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
         int done = 0;
@@ -73,7 +75,7 @@ BOOST_AUTO_TEST_CASE(an_exception_of_a_job_behind_reaches_who_waits_and_ends_the
     }
 }
 
-BOOST_AUTO_TEST_CASE(jobs_behind_that_are_dropped_are_not_begun_afterwards) {
+BOOST_AUTO_TEST_CASE(jobs_behind_that_are_dropped_are_not_begun_afterwards, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
         int done = 0;

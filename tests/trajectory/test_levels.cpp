@@ -68,7 +68,7 @@ BOOST_AUTO_TEST_CASE(the_level_changes_no_bit_of_the_run) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run) {
+BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run, *boost::unit_test::label("threads")) {
     for (const CertifyLevel level : {CertifyLevel::plain, CertifyLevel::decisions}) {
         RunOptions options;
         options.certify = level;
@@ -102,7 +102,8 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(arcs_begun_before_their_equilibrium_is_proved_are_those_of_one_thread) {
+BOOST_AUTO_TEST_CASE(arcs_begun_before_their_equilibrium_is_proved_are_those_of_one_thread,
+                     *boost::unit_test::label("threads")) {
     RunOptions options;
     options.certify = CertifyLevel::plain;
     const auto compare = [](const Played& one, const Played& two) {
@@ -149,7 +150,7 @@ BOOST_AUTO_TEST_CASE(arcs_begun_before_their_equilibrium_is_proved_are_those_of_
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead) {
+BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_shows_no_arc_that_was_steered_ahead, *boost::unit_test::label("threads")) {
     class Stopper final : public RunObserver<2> {
       public:
         explicit Stopper(long at) : at_(at) {}

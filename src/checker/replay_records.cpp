@@ -60,7 +60,7 @@ double largest_force(const Evidence& e) {
 /// fastest coordinate 1. `size`: sum of the magnitudes of its terms.
 Range power_at_end(const Place& to, std::size_t slot, const Forces& load, double& size) {
     const Evidence& e = *to.evidence;
-    const Velocities velocities(e.problem, e.inverse, e.vertex);
+    const Velocities velocities(e);
     const Velocities::Solution motion = velocities.opening(slot, -1);
     Rational fastest = 0;
     for (const Rational& v : motion.middle) {

@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -82,13 +83,17 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, 
     return true;
 }
 
-template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction) {
+template <int Dim>
+CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
+                                   const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
     assert(fraction > 0 && fraction <= 0.82);
     count_work(Work::candidate_searches);
     CandidateList<Dim> list;
     list.reach = fraction * packing.min_radius();
     list.reference = packing.q;
-    list.contacts = near_pairs(packing, list.reach);
+    NearPairs<Dim> near = near_pairs(packing, list.reach, from);
+    list.contacts = std::move(near.pairs);
+    list.triangulation = std::move(near.triangulation);
     if (!packing.fixed.empty()) {
         std::erase_if(list.contacts, [&](const Contact& contact) { return !can_move(packing, contact); });
     }
@@ -132,7 +137,8 @@ Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, 
             }
         }
     } else {
-        for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius())) {
+        const auto from = known != nullptr ? known->triangulation : nullptr;
+        for (const Contact& contact : near_pairs(packing, 0.5 * packing.min_radius(), from).pairs) {
             look(contact);
         }
     }
@@ -141,7 +147,8 @@ Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, 
 }
 
 template struct CandidateList<2>;
-template CandidateList<2> find_candidates<2>(const Packing<2>&, double);
+template CandidateList<2> find_candidates<2>(const Packing<2>&, double,
+                                             const std::shared_ptr<const RegularTriangulation<2>>&);
 template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);
 
 } // namespace isostat

@@ -1,12 +1,5 @@
 #include "contact/near_pairs.hpp"
 
-#include "contact/pair_distance.hpp"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Regular_triangulation_2.h>
-#include <CGAL/Regular_triangulation_vertex_base_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -27,27 +20,35 @@ constexpr double largest_ratio = 1e5;      // beyond it the rounding of R_max^2 
 constexpr double largest_length = 1e100;   // squares neither overflow
 constexpr double smallest_length = 1e-100; // nor underflow
 
-/// \pre `distances_are_plain`.
-Distance measure(const Packing<2>& packing, std::size_t i, std::size_t j) {
-    const double dx = packing.q[2 * j] - packing.q[2 * i];
-    const double dy = packing.q[2 * j + 1] - packing.q[2 * i + 1];
-    return distance_of(dx * dx + dy * dy, packing.radius[i] + packing.radius[j]);
-}
-
-/// The same for any lengths: hypot neither overflows nor underflows, and its error is below 1 ulp.
-Distance measure_any(const Packing<2>& packing, std::size_t i, std::size_t j) {
-    const double distance =
-        std::hypot(packing.q[2 * j] - packing.q[2 * i], packing.q[2 * j + 1] - packing.q[2 * i + 1]);
-    return distance_between(distance, packing.radius[i] + packing.radius[j]);
-}
-
-} // namespace
-
-bool distances_are_plain(const Packing<2>& packing) {
+/// Whether no square of a length that matters under- or overflows.
+bool lengths_are_plain(const Packing<2>& packing) {
     return packing.min_radius() >= smallest_length && packing.max_radius() <= largest_length &&
            std::all_of(packing.q.begin(), packing.q.end(),
                        [](double x) { return std::abs(x) <= largest_length; }); // also false for a NaN
 }
+
+/// Gaps with a bound of their rounding: 8 u times the lengths that enter, for any coordinates.
+class Gaps {
+  public:
+    struct Gap {
+        double value;
+        double error;
+        [[nodiscard]] bool may_be_below(double reach) const { return value - error < reach; }
+    };
+    explicit Gaps(const Packing<2>& packing) : packing_(packing), plain_(lengths_are_plain(packing)) {}
+
+    [[nodiscard]] Gap of(std::size_t i, std::size_t j) const {
+        const double dx = packing_.q[2 * j] - packing_.q[2 * i];
+        const double dy = packing_.q[2 * j + 1] - packing_.q[2 * i + 1];
+        const double distance = plain_ ? std::sqrt(dx * dx + dy * dy) : std::hypot(dx, dy); // slow; error below 1 ulp
+        const double radii = packing_.radius[i] + packing_.radius[j];
+        return {distance - radii, 0x1p-50 * (distance + radii)};
+    }
+
+  private:
+    const Packing<2>& packing_;
+    bool plain_;
+};
 
 // Buckets by the first disk, each a few pairs long.
 void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
@@ -68,44 +69,28 @@ void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
     pairs = std::move(sorted);
 }
 
-template <>
-std::optional<std::vector<Contact>> near_pairs_by_triangulation<2>(const Packing<2>& packing, double reach) {
-    using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-    using Vertex =
-        CGAL::Triangulation_vertex_base_with_info_2<int, Kernel, CGAL::Regular_triangulation_vertex_base_2<Kernel>>;
-    using Structure = CGAL::Triangulation_data_structure_2<Vertex, CGAL::Regular_triangulation_face_base_2<Kernel>>;
-    using Triangulation = CGAL::Regular_triangulation_2<Kernel, Structure>;
+} // namespace
 
+template <>
+std::optional<std::vector<Contact>> near_edges<2>(const Packing<2>& packing, double reach,
+                                                  const RegularTriangulation<2>& triangulation) {
+    const Gaps gaps(packing);
     const double smallest = packing.min_radius();
-    const double largest = packing.max_radius();
-    if (!distances_are_plain(packing) || largest > largest_ratio * smallest) {
-        return std::nullopt;
-    }
-    std::vector<std::pair<Triangulation::Weighted_point, int>> points;
-    points.reserve(packing.radius.size());
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        points.emplace_back(Triangulation::Weighted_point({packing.q[2 * i], packing.q[2 * i + 1]},
-                                                          packing.radius[i] * packing.radius[i]),
-                            static_cast<int>(i));
-    }
-    const Triangulation triangulation(points.begin(), points.end());
-    if (triangulation.number_of_hidden_vertices() != 0) {
-        return std::nullopt;
-    }
+    const auto share = [&](std::size_t i) { return smallest / packing.radius[i]; };
     std::vector<Contact> pairs;
-    pairs.reserve(3 * points.size());
-    for (const auto& [face, opposite] : triangulation.finite_edges()) {
-        const int a = face->vertex(Triangulation::ccw(opposite))->info();
-        const int b = face->vertex(Triangulation::cw(opposite))->info();
-        const auto i = static_cast<std::size_t>(std::min(a, b));
-        const auto j = static_cast<std::size_t>(std::max(a, b));
-        const Distance d = measure(packing, i, j);
-        if (!(d.gap >= -edge_overlap * smallest * (smallest / packing.radius[i] + smallest / packing.radius[j]))) {
-            return std::nullopt;
+    pairs.reserve(3 * packing.radius.size());
+    bool applies = true;
+    triangulation.for_each_edge([&](int first, int second) {
+        const auto i = static_cast<std::size_t>(first);
+        const auto j = static_cast<std::size_t>(second);
+        const auto gap = gaps.of(i, j);
+        applies = applies && (gap.value >= 0 || gap.value >= -edge_overlap * smallest * (share(i) + share(j)));
+        if (gap.may_be_below(reach)) {
+            pairs.push_back({ContactKind::disk_disk, first, second});
         }
-        if (d.gap - d.error < reach) {
-            pairs.push_back({ContactKind::disk_disk, static_cast<int>(i), static_cast<int>(j)});
-        }
+    });
+    if (!applies) {
+        return std::nullopt;
     }
     sort_pairs(pairs, packing.radius.size());
     return pairs;
@@ -120,7 +105,8 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
         extent = std::max({extent, std::abs(packing.q[2 * i]) + packing.radius[i], std::abs(packing.q[2 * i + 1])});
     }
     std::sort(left.begin(), left.end());
-    const double slack = reach + 16 * u * extent;
+    const double slack = reach + 128 * u * extent;
+    const Gaps gaps(packing);
     std::vector<Contact> pairs;
     for (std::size_t a = 0; a < n; ++a) {
         const std::size_t i = left[a].second;
@@ -130,8 +116,7 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
             if (std::abs(packing.q[2 * j + 1] - packing.q[2 * i + 1]) > packing.radius[i] + packing.radius[j] + slack) {
                 continue; // apart along the other axis already
             }
-            const Distance d = measure_any(packing, i, j);
-            if (d.gap - d.error < reach) {
+            if (gaps.of(i, j).may_be_below(reach)) {
                 pairs.push_back(
                     {ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
             }
@@ -141,17 +126,27 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
     return pairs;
 }
 
-template <int Dim> std::vector<Contact> near_pairs(const Packing<Dim>& packing, double reach) {
+template <int Dim>
+NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
+                          const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
+    using Triangulation = RegularTriangulation<Dim>;
     assert(reach > 0 && reach <= 0.82 * (1 + 2 * u) * packing.min_radius());
-    if (auto pairs = near_pairs_by_cells(packing, reach)) {
-        return std::move(*pairs);
+    if (packing.disk_count() > 0 && lengths_are_plain(packing) &&
+        packing.max_radius() <= largest_ratio * packing.min_radius()) {
+        auto triangulation =
+            from && from->disk_count() == packing.disk_count() ? Triangulation::carry(from, packing) : nullptr;
+        if (!triangulation) {
+            triangulation = Triangulation::build(packing);
+        }
+        if (triangulation) {
+            if (auto pairs = near_edges(packing, reach, *triangulation)) {
+                return {std::move(*pairs), std::move(triangulation)};
+            }
+        }
     }
-    if (auto pairs = near_pairs_by_triangulation(packing, reach)) {
-        return std::move(*pairs);
-    }
-    return near_pairs_by_sweep(packing, reach);
+    return {near_pairs_by_sweep(packing, reach), nullptr};
 }
 
-template std::vector<Contact> near_pairs<2>(const Packing<2>&, double);
+template NearPairs<2> near_pairs<2>(const Packing<2>&, double, const std::shared_ptr<const RegularTriangulation<2>>&);
 
 } // namespace isostat

@@ -875,13 +875,11 @@ template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const P
     if (reach_left(candidates, at) >= 0.25 * candidates.reach) {
         return false;
     }
-    candidates = find_candidates(at, candidate_fraction);
+    candidates = find_candidates(at, candidate_fraction, candidates.triangulation);
     return true;
 }
 
-template <int Dim> struct ArcDeparture<Dim>::Implementation {
-    Follower<Dim> follower;
-};
+template <int Dim> struct ArcDeparture<Dim>::Implementation { Follower<Dim> follower; };
 
 template <int Dim>
 ArcDeparture<Dim>::ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,

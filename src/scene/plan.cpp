@@ -51,7 +51,8 @@ void add_solvers(Plan& plan, const Scene& scene) {
     const bool nominal = scene.load_kind.value_or(LoadKind::nominal) == LoadKind::nominal;
     const bool random = scene.run.rule == OpeningRule::random;
     plan.add("solver", "regular triangulation (CGAL)", true,
-             "complete contact candidates and the proof that nothing overlaps");
+             "complete contact candidates and the proof that nothing overlaps: made once, then carried along with the "
+             "disks; where they overlap all pairs are swept");
     plan.add("solver", "elimination mod 2^61 - 1", true,
              runs && scene.run.certify == CertifyLevel::plain
                  ? "the contact matrix of every equilibrium is proved regular; those in between are not"

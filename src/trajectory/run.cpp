@@ -89,7 +89,7 @@ template <int Dim> class Run {
     /// Caches that belong to the last equilibrium only, so that a resumed run takes the same path.
     void fresh_caches(const Packing<Dim>& packing) {
         if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // else it would be the same list
-            candidates_ = find_candidates(packing, candidate_fraction);
+            candidates_ = find_candidates(packing, candidate_fraction, candidates_.triangulation);
         }
         bound_cache_.forget();
     }
@@ -787,7 +787,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
         auto made = Vertex<Dim>::make(end.value().packing, end.value().contacts, load, cache);
         if (made.ok()) {
             anew = std::move(made.value());
-            listed = find_candidates(anew->packing, candidate_fraction);
+            listed = find_candidates(anew->packing, candidate_fraction, candidates.triangulation);
         }
     }
     proofs.finish();
@@ -1144,8 +1144,9 @@ std::optional<Failure> Run<Dim>::rearrange_plainly(Opening opening, const std::s
             return located(failure, fmt::format("equilibrium at sigma = {:.17g}", stress));
         };
         const bool on = goes_on(end);
-        Promised<CandidateList<Dim>> listed(
-            [packing = end.packing] { return find_candidates(packing, candidate_fraction); });
+        Promised<CandidateList<Dim>> listed([packing = end.packing, from = candidates_.triangulation] {
+            return find_candidates(packing, candidate_fraction, from);
+        });
         auto beginning = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
         candidates_ = listed.take();
         if (!beginning.ok()) {

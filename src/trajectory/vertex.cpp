@@ -174,7 +174,7 @@ template <int Dim>
 Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept,
                                                            bool ties_are_values) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
-        candidates = find_candidates(packing, candidate_fraction);
+        candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
     }
     const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;

@@ -91,7 +91,7 @@ BOOST_AUTO_TEST_CASE(lists_are_complete_in_random_clusters_at_any_size_ratio) {
                 // Tangent disks, and gaps up to the reach of the theorem and beyond.
                 const double widest = repeat % 3 == 0 ? 0 : repeat % 3 == 1 ? 0.9 : 3;
                 Packing<2> packing = grown_cluster(n, ratio, random, [&] { return random.real(0, widest); });
-                BOOST_TEST(near_pairs_by_triangulation(packing, 0.82 * packing.min_radius()).has_value());
+                BOOST_TEST((near_pairs(packing, 0.82 * packing.min_radius()).triangulation != nullptr));
                 check_against_every_pair(packing, 0.82);
                 if (n < 100) {
                     check_against_every_pair(packing, 0.1);
@@ -168,37 +168,10 @@ BOOST_AUTO_TEST_CASE(sweep_and_triangulation_give_the_same_list) {
     for (const double ratio : {1.0, 3.0, 50.0}) {
         const Packing<2> packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
         const double reach = 0.82 * packing.min_radius();
-        const auto by_triangulation = near_pairs_by_triangulation(packing, reach);
-        BOOST_REQUIRE(by_triangulation.has_value());
-        BOOST_TEST((*by_triangulation == near_pairs_by_sweep(packing, reach)));
+        const NearPairs<2> by_triangulation = near_pairs(packing, reach);
+        BOOST_REQUIRE(by_triangulation.triangulation != nullptr);
+        BOOST_TEST((by_triangulation.pairs == near_pairs_by_sweep(packing, reach)));
     }
-}
-
-BOOST_AUTO_TEST_CASE(cells_and_sweep_give_the_same_list) {
-    Random random(98);
-    for (const double ratio : {1.0, 2.0, 4.0}) {
-        Packing<2> packing = grown_cluster(300, ratio, random, [&] { return random.real(0, 0.5); });
-        const double reach = 0.82 * packing.min_radius();
-        for (const double away : {0.0, 1e3, 1e9}) { // a stray disk makes large cells
-            append(packing, packing.q[0] + away, packing.q[1] - 3, packing.min_radius());
-            const auto by_cells = near_pairs_by_cells(packing, reach);
-            BOOST_REQUIRE(by_cells.has_value());
-            BOOST_TEST((*by_cells == near_pairs_by_sweep(packing, reach)));
-        }
-    }
-    // All on a line, all in one place, and neighbours at all distances from a border of their cells.
-    for (const double step : {0.0, 1e-3, 2.4, 2.42, 2.424, 2.5}) {
-        Packing<2> packing = square_lattice(6, step);
-        check_against_every_pair(packing, 0.82);
-        for (std::size_t k = 1; k < packing.q.size(); k += 2) {
-            packing.q[k] = 1;
-        }
-        const auto by_cells = near_pairs_by_cells(packing, 0.82 * packing.min_radius());
-        BOOST_REQUIRE(by_cells.has_value());
-        BOOST_TEST((*by_cells == near_pairs_by_sweep(packing, 0.82 * packing.min_radius())));
-    }
-    const Packing<2> wide = grown_cluster(100, 5, random, [&] { return random.real(0, 0.5); });
-    BOOST_TEST(!near_pairs_by_cells(wide, 0.1 * wide.min_radius()).has_value());
 }
 
 BOOST_AUTO_TEST_CASE(extreme_units_and_size_ratios_fall_back_on_the_sweep) {
@@ -222,7 +195,7 @@ BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found_though_no_edge_overlaps) {
     // The small disk is hidden in the triangulation; the others are apart.
     Packing<2> packing = square_lattice(4, 2.25);
     append(packing, 2.3, 2.2, 0.25);
-    BOOST_TEST(!near_pairs_by_triangulation(packing, 0.2).has_value());
+    BOOST_TEST((near_pairs(packing, 0.2).triangulation == nullptr));
     check_against_every_pair(packing, 0.82);
     check_verdict(packing, 0);
 }
@@ -230,7 +203,7 @@ BOOST_AUTO_TEST_CASE(a_disk_inside_another_is_found_though_no_edge_overlaps) {
 BOOST_AUTO_TEST_CASE(deep_overlaps_without_hidden_disk_are_found) {
     // Equal disks on a step far below their diameter: no vertex is hidden, most overlapping pairs are no edges.
     Packing<2> packing = square_lattice(6, 0.5);
-    BOOST_TEST(!near_pairs_by_triangulation(packing, 0.5).has_value());
+    BOOST_TEST((near_pairs(packing, 0.5).triangulation == nullptr));
     check_against_every_pair(packing, 0.82);
     check_verdict(packing, 0);
     check_verdict(packing, 1.5);

@@ -5,15 +5,20 @@
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/verdict.hpp>
 
+#include <memory>
 #include <vector>
 
 namespace isostat {
+
+template <int Dim> class RegularTriangulation; // private
 
 /// Every pair that can come into contact before the displacements exceed the list's reach.
 template <int Dim> struct CandidateList {
     std::vector<Contact> contacts; ///< sorted; all with gap < reach, and perhaps a few beyond by rounding
     double reach = 0; ///< delta: complete as long as twice the largest displacement since `reference` < delta
     std::vector<double> reference; ///< q at which the list was made
+    /// Whose edges the disk pairs are; null when they were found by a sweep. Shared by copies, never changed.
+    std::shared_ptr<const RegularTriangulation<Dim>> triangulation;
 
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
     /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
@@ -25,14 +30,16 @@ template <int Dim> struct CandidateList {
 /// Candidates with gap < fraction * R_min, \pre 0 < fraction <= 0.82, every coordinate and radius finite. Pairs
 /// that cannot move relative to each other (two fixed disks, a fixed disk and a wall that is not movable) are left
 /// out. The list is complete without further condition:
-/// - when no disk is more than four times as large as another, from a grid of cells; cost O(n), 0.13 ms at n = 2000,
-///   0.6 ms at n = 5000;
-/// - else, when the regular triangulation with weights R^2 shows that no two disks overlap by more than about 5e-4
-///   R_min^2 / R, its edges are complete (statements T5 and T6 with rounded weights, proofs/contact_candidates.md);
-///   cost O(n log n), ten times as much;
+/// - when the regular triangulation with weights R^2 shows that no two disks overlap by more than about 5e-4
+///   R_min^2 / R, its edges are complete (statements T5 and T6 with rounded weights, proofs/contact_candidates.md).
+///   It is made by CGAL, O(n log n), or carried along from an earlier list: `from`, a triangulation of the same disks
+///   at other places, is flipped until exact predicates prove every edge regular, O(n);
 /// - otherwise (deeper overlaps, size ratios above 1e5, lengths beyond 1e+-100) all pairs are swept along the first
-///   axis; O(n^1.5) for packings. Walls by a scan.
-template <int Dim> CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction);
+///   axis; O(n^1.5) for packings.
+/// Walls by a scan. `contacts` depends on the packing and the fraction alone, not on `from` nor on what found them.
+template <int Dim>
+CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
+                                   const std::shared_ptr<const RegularTriangulation<Dim>>& from = nullptr);
 
 /// Result of `certify_admissible`.
 struct Admissibility {
@@ -48,13 +55,14 @@ struct Admissibility {
 /// admissible. \pre every coordinate and radius finite. It speaks of the stored packing, not of a true one near it.
 /// Cost: as `find_candidates`.
 /// `known`: a list to use when it was made at this very configuration (and no disk is fixed: it leaves out pairs that
-/// cannot move); the search is then saved.
+/// cannot move), so that the search is saved; else its triangulation is carried here.
 template <int Dim>
 Admissibility certify_admissible(const Packing<Dim>& packing, double allowance,
                                  const CandidateList<Dim>* known = nullptr);
 
 extern template struct CandidateList<2>;
-extern template CandidateList<2> find_candidates<2>(const Packing<2>&, double);
+extern template CandidateList<2> find_candidates<2>(const Packing<2>&, double,
+                                                    const std::shared_ptr<const RegularTriangulation<2>>&);
 extern template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);
 
 } // namespace isostat

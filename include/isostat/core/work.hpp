@@ -12,7 +12,7 @@ namespace isostat {
 enum class Work : std::uint8_t {
     dynamics_steps,     ///< steps of the damped dynamics
     linear_programmes,  ///< solved by Clp
-    candidate_searches, ///< by cells, triangulation or sweep: complete candidates
+    candidate_searches, ///< by triangulation or sweep: complete candidates
     overlap_proofs,     ///< certificates of non-overlap
     rank_proofs,        ///< contact matrices sent to the prime field
     factorisations,     ///< KLU

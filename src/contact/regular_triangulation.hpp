@@ -1,0 +1,59 @@
+#pragma once
+// The regular triangulation of the disks of a packing, made by CGAL and carried along with disks that move.
+
+#include <isostat/contact/contact.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+template <int Dim> class RegularTriangulation;
+
+/// Faces of a regular triangulation of n disks with weights fl(R^2) and of four more disks, as small as the smallest,
+/// at the corners of a rectangle far around them: its hull is that rectangle, whatever the packing
+/// (proofs/contact_candidates.md, section "Four disks far outside"). No disk is hidden. Never changed once it is made,
+/// so that threads and lists can share it.
+template <> class RegularTriangulation<2> {
+  public:
+    using Shared = std::shared_ptr<const RegularTriangulation>;
+
+    /// By CGAL, from disks in spatial order: O(n log n). Null when a disk is hidden or equal to another. \pre squares
+    /// of lengths neither over- nor underflow, n > 0.
+    static Shared build(const Packing<2>& packing);
+
+    /// A regular triangulation of the disks of `packing`, wherever they are: `from` with a few edges flipped (none: it
+    /// is `from` itself), proved regular edge by edge with exact predicates. Null when flips do not lead there: a face
+    /// has turned over, or an edge that is not regular cannot be flipped. O(n). \pre as `build`.
+    static Shared carry(const Shared& from, const Packing<2>& packing);
+
+    /// Calls visit(i, j), i < j, for every edge between two disks of the packing.
+    template <class Visit> void for_each_edge(Visit visit) const {
+        for (std::size_t f = 0; f < faces_.size(); ++f) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const int i = faces_[f].vertex[(k + 1) % 3];
+                const int j = faces_[f].vertex[(k + 2) % 3];
+                if (faces_[f].neighbour[k] > static_cast<int>(f) && i < disks_ && j < disks_) {
+                    visit(i < j ? i : j, i < j ? j : i);
+                }
+            }
+        }
+    }
+
+    [[nodiscard]] int disk_count() const { return disks_; }
+
+  private:
+    /// Counter-clockwise; neighbour[k] is the face on the other side of the edge opposite to vertex[k], -1 at the hull.
+    struct Face {
+        std::array<int, 3> vertex;
+        std::array<int, 3> neighbour;
+    };
+    class Mover;
+
+    int disks_ = 0; ///< vertices from here on are the four outer ones
+    std::vector<Face> faces_;
+};
+
+} // namespace isostat

@@ -28,7 +28,8 @@ std::optional<int> eliminated_rank(const Problem& problem) {
 
 } // namespace
 
-Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed)
+Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed,
+                   std::shared_ptr<const Solver> near)
     : state(checked), problem(checked, held_allowed) {
     if (!problem.unsupported.empty()) {
         return;
@@ -38,16 +39,23 @@ Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool h
         rank = eliminated_rank(problem);
         return;
     }
-    solver = std::make_unique<Solver>(problem);
-    inverse = bound_inverse(problem, *solver, arithmetic);
-    if (inverse.found) {
-        vertex = find_vertex(problem, *solver, inverse);
+    const auto bound = [this](CheckerArithmetic kind) {
+        InverseBound found = bound_inverse(problem, *solver, kind);
+        if (found.found || !inverse.found) {
+            inverse = std::move(found);
+            vertex = inverse.found ? find_vertex(problem, *solver, inverse) : TrueVertex();
+        }
+    };
+    if (near) {
+        solver = std::move(near);
+        bound(CheckerArithmetic::singular_value);
+    }
+    if (!vertex.found) {
+        solver = std::make_shared<Solver>(problem);
+        bound(arithmetic);
     }
     if (inverse.singular_value > 0 && !vertex.found && arithmetic == CheckerArithmetic::automatic) {
-        if (InverseBound by_rows = bound_inverse(problem, *solver, CheckerArithmetic::rows); by_rows.found) {
-            inverse = std::move(by_rows);
-            vertex = find_vertex(problem, *solver, inverse);
-        }
+        bound(CheckerArithmetic::rows);
     }
     if (!inverse.found) {
         rank = eliminated_rank(problem);

@@ -14,7 +14,9 @@
 namespace isostat::checker {
 
 struct Evidence {
-    Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed = false);
+    /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only.
+    Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
+             std::shared_ptr<const Solver> near = {});
 
     const State<2>& state;
     Problem problem;
@@ -29,7 +31,7 @@ struct Evidence {
     /// Forces per unit of the loaded stress, and per unit of eps: computed when first asked for, by one thread.
     [[nodiscard]] const std::vector<Range>& slopes() const;
     [[nodiscard]] const std::vector<Range>& infinitesimal() const;
-    std::unique_ptr<const Solver> solver; ///< when square
+    std::shared_ptr<const Solver> solver; ///< when square
 
     [[nodiscard]] std::string name(std::size_t contact) const { return to_string<2>(state.contacts[contact]); }
     [[nodiscard]] std::string why_no_inverse() const;

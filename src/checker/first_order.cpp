@@ -58,7 +58,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
         return result;
     }
     // The fastest coordinate is above b / the largest entry of A: 120 bits below that are kept.
-    const long scale = e_.solver->scale();
+    const long scale = e_.solver->scale(problem);
     const long shift = 120 + scale + problem.fine - bits(largest.get_num()) + bits(largest.get_den());
     Motion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
     for (const Rational& rate : b) {

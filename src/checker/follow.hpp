@@ -3,9 +3,12 @@
 /// The motion between two vertices, followed in double: nothing that comes out of here is trusted, it only says where
 /// to look.
 
+#include "checker/solver.hpp"
+
 #include <isostat/contact/state.hpp>
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,12 +26,14 @@ struct Motion {
     /// Per coordinate, at given coordinates (true stresses change with the lengths): the load whose power must stay
     /// positive.
     std::function<std::vector<double>(const std::vector<double>&)> power_load;
-    std::vector<Contact> touching; ///< pairs that touch at the start without being contacts
+    std::shared_ptr<const Solver> solver; ///< factors at the start, or nothing
+    std::vector<Contact> touching;        ///< pairs that touch at the start without being contacts
 };
 
 struct Followed {
     std::optional<std::vector<double>> end; ///< coordinates; none: the motion was not found to end as it is told
     std::string wrong;                      ///< what seems to happen before that end, if something does
+    std::shared_ptr<const Solver> solver{}; ///< factors of the contact list at the end, near that
 };
 
 /// At each step every pair of grains that may touch is looked at, and the power of the load. A pair that closes and

@@ -92,7 +92,7 @@ class Balance {
             }
             const Eigen::MatrixXd x = solver.solve_transposed(b);
             for (std::size_t l = 0; l < sought_.size(); ++l) {
-                sought_[l] += scaled_integer(x(static_cast<Eigen::Index>(l), 0), size - solver.scale());
+                sought_[l] += scaled_integer(x(static_cast<Eigen::Index>(l), 0), size - solver.scale(problem_));
             }
             residual_ = residual();
             const long now = bits(largest_of(residual_));
@@ -179,7 +179,7 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
     }
     // Entries of A are below 2^(scale + fine): forces per length above the largest load / that. 120 bits below are
     // kept.
-    const long shift = 120 + solver.scale() + problem.fine - *size;
+    const long shift = 120 + solver.scale(problem) + problem.fine - *size;
     Balance balance(problem, vertex, load, shift);
     if (solver.usable()) {
         balance.refine(solver);

@@ -109,7 +109,7 @@ InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const C
         return {};
     }
     // x of the solver is (A / 2^scale)^-1 in units of `fine`; in the units here the entries of A are 2^-spare as large.
-    const long rescale = problem.spare - solver.scale();
+    const long rescale = problem.spare - solver.scale(problem);
 
     Sums sums(n);
     constexpr int block = 16;
@@ -224,7 +224,7 @@ class GmpRows {
 InverseBound bound_gmp(const Problem& problem, const Solver& solver, const Columns<Integer>& columns) {
     const int n = problem.dofs();
     GmpRows rows(problem, columns);
-    const long to_row = rows.shift() + problem.spare - solver.scale();
+    const long to_row = rows.shift() + problem.spare - solver.scale(problem);
     const long good = rows.shift() - bits_of_count(n) - 20;
     for (int k = 0; k < n; ++k) {
         std::vector<Integer> r(static_cast<std::size_t>(n));

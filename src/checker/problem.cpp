@@ -61,7 +61,28 @@ Row row_of(const Contact& contact, int disks) {
 
 } // namespace
 
-Problem::Problem(const State<2>& state, bool held_allowed) {
+Structure::Structure(const Packing<2>& packing, const std::vector<Contact>& contacts) {
+    dof_of.assign(packing.q.size(), -1);
+    for (std::size_t k = 0; k < packing.q.size(); ++k) {
+        const std::size_t disk = k / 2;
+        const bool moves = disk < packing.radius.size() ? packing.fixed.empty() || packing.fixed[disk] == 0
+                                                        : packing.walls.upper[k % 2] == WallKind::movable;
+        if (moves) {
+            dof_of[k] = static_cast<int>(coordinate_of.size());
+            coordinate_of.push_back(static_cast<int>(k));
+        }
+    }
+    for (const Contact& contact : contacts) {
+        rows.push_back(row_of(contact, packing.disk_count()));
+    }
+    double mean = 0;
+    for (const double r : packing.radius) {
+        mean += 2 * r / static_cast<double>(packing.disk_count());
+    }
+    std::frexp(mean, &wall_exponent);
+}
+
+Problem::Problem(const State<2>& state, bool held_allowed) : Structure(state.packing, state.contacts) {
     const Packing<2>& packing = state.packing;
     disks = packing.disk_count();
     for (const Contact& contact : state.contacts) {
@@ -81,25 +102,6 @@ Problem::Problem(const State<2>& state, bool held_allowed) {
         }
     }
 
-    // Which coordinates move: those of disks that are not fixed, and of movable upper walls.
-    dof_of.assign(packing.q.size(), -1);
-    for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        const std::size_t disk = k / 2;
-        const bool moves = disk < packing.radius.size() ? packing.fixed.empty() || packing.fixed[disk] == 0
-                                                        : packing.walls.upper[k % 2] == WallKind::movable;
-        if (moves) {
-            dof_of[k] = dofs();
-            coordinate_of.push_back(static_cast<int>(k));
-        }
-    }
-
-    int exponent = 0;
-    double mean = 0;
-    for (const double r : packing.radius) {
-        mean += 2 * r / static_cast<double>(disks);
-    }
-    std::frexp(mean, &exponent);
-    const long wall_exponent = exponent;
     long coordinate_unit = wall_exponent;
     for (const double x : packing.q) {
         coordinate_unit = std::min(coordinate_unit, granularity(x, coordinate_unit));
@@ -119,15 +121,15 @@ Problem::Problem(const State<2>& state, bool held_allowed) {
     }
 
     contacts_of.resize(coordinate_of.size());
-    for (const Contact& contact : state.contacts) {
-        const Row row = row_of(contact, disks);
+    for (std::size_t l = 0; l < rows.size(); ++l) {
+        const Row& row = rows[l];
         for (int k = 0; k < row.count; ++k) {
             const int dof = dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
             if (dof >= 0) {
-                contacts_of[static_cast<std::size_t>(dof)].push_back(contacts());
+                contacts_of[static_cast<std::size_t>(dof)].push_back(static_cast<int>(l));
             }
         }
-        rows.push_back(row);
+        const Contact& contact = state.contacts[l];
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::held) {
             sum.push_back(stored[i]);

@@ -24,9 +24,18 @@ struct Row {
 /// K1 (b): a row times a vector changes by at most this, times the distance, times the largest component.
 inline constexpr int row_curvature = 8;
 
+/// Which coordinates move, and what each contact depends on.
+struct Structure {
+    Structure(const Packing<2>& packing, const std::vector<Contact>& contacts);
+    std::vector<int> dof_of;        ///< per coordinate: its degree of freedom, or -1
+    std::vector<int> coordinate_of; ///< per degree of freedom
+    std::vector<Row> rows;          ///< per contact
+    int wall_exponent = 0;          ///< the weight of walls is 2^wall_exponent as a length
+};
+
 /// Lengths are integers in units of 2^fine: stored numbers are multiples of 2^(fine + spare), so that `spare` bits are
 /// left for corrections.
-class Problem {
+class Problem : public Structure {
   public:
     /// `held_allowed`: a held coordinate is a row like that of a wall, its residual the weight times the way from its
     /// stored value.
@@ -35,9 +44,6 @@ class Problem {
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
     int disks = 0;
-    std::vector<int> dof_of;         ///< per coordinate: its degree of freedom, or -1
-    std::vector<int> coordinate_of;  ///< per degree of freedom
-    std::vector<Row> rows;           ///< per contact
     std::vector<Integer> sum;        ///< per contact: R_i + R_j, or R of the disk at a wall
     std::vector<Integer> sum_square; ///< of two disks
     std::vector<Integer> stored;     ///< coordinates

@@ -56,9 +56,10 @@ Range Place::length(int axis) const {
     return coordinate(2 * static_cast<std::size_t>(evidence->problem.disks) + static_cast<std::size_t>(axis));
 }
 
-Objections make_place(State<2> state, Place& place, const ExactLoad& load, int fresh) {
+Objections make_place(State<2> state, Place& place, const ExactLoad& load, int fresh,
+                      std::shared_ptr<const Solver> near) {
     place.state = std::make_unique<State<2>>(std::move(state));
-    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true);
+    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near));
     place.load = load;
     place.fresh = fresh;
     Evidence& e = *place.evidence;

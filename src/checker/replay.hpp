@@ -55,8 +55,9 @@ struct Place {
 };
 
 /// The vertex near a configuration; an objection when none is proved there, or a force is neither told from 0 nor a
-/// structural zero.
-Objections make_place(State<2> state, Place& place, const ExactLoad& load = {}, int fresh = -1);
+/// structural zero. `near`: factors of the matrix close by, or nothing.
+Objections make_place(State<2> state, Place& place, const ExactLoad& load = {}, int fresh = -1,
+                      std::shared_ptr<const Solver> near = {});
 
 /// Which contact the rule opens at a vertex.
 struct Decision {

@@ -17,27 +17,44 @@ Integer scaled_integer(double value, long shift) {
     return result;
 }
 
-Solver::Solver(const Problem& problem) {
-    const int n = problem.dofs();
+namespace {
+
+std::vector<double> as_doubles(const Problem& problem) {
+    std::vector<double> q;
+    for (const Integer& x : problem.stored) {
+        q.push_back(approximate(x, problem.fine));
+    }
+    return q;
+}
+
+} // namespace
+
+Solver::Solver(const Problem& problem) : Solver(problem, as_doubles(problem)) {}
+
+Solver::Solver(const Structure& structure, const std::vector<double>& q) {
     std::vector<Eigen::Triplet<double>> entries;
-    std::vector<std::pair<int, Integer>> exact;
-    std::vector<int> row_of_entry;
-    for (int l = 0; l < problem.contacts(); ++l) {
-        const Row& row = problem.rows[static_cast<std::size_t>(l)];
-        for (int k = 0; k < row.count; ++k) {
-            const int dof = problem.dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-            if (dof >= 0) {
-                exact.emplace_back(dof, problem.entry(l, k, problem.stored));
-                row_of_entry.push_back(l);
-                scale_ = std::max(scale_, bits(exact.back().second));
+    double largest = 0;
+    for (std::size_t l = 0; l < structure.rows.size(); ++l) {
+        const Row& row = structure.rows[l];
+        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+            const auto own = static_cast<std::size_t>(row.coordinate[k]);
+            if (structure.dof_of[own] < 0) {
+                continue;
             }
+            const double entry = row.quadratic ? q[own] - q[static_cast<std::size_t>(row.coordinate[(k + 2) % 4])]
+                                               : std::ldexp(row.sign[k], structure.wall_exponent);
+            largest = std::max(largest, std::abs(entry));
+            entries.emplace_back(static_cast<int>(l), structure.dof_of[own], entry);
         }
     }
-    for (std::size_t k = 0; k < exact.size(); ++k) {
-        entries.emplace_back(row_of_entry[k], exact[k].first, approximate(exact[k].second, -scale_));
+    const auto n = static_cast<int>(structure.coordinate_of.size());
+    if (!(largest > 0) || !std::isfinite(largest) || structure.rows.size() != structure.coordinate_of.size()) {
+        return;
     }
+    std::frexp(largest, &exponent_);
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(entries.begin(), entries.end());
+    matrix *= std::ldexp(1.0, -exponent_);
     lu_.compute(matrix);
     usable_ = lu_.info() == Eigen::Success;
 }

@@ -10,22 +10,26 @@
 
 namespace isostat::checker {
 
-/// A sparse LU factorisation in double of the scaled matrix A / 2^scale at the stored coordinates.
+/// A sparse LU factorisation in double of the scaled matrix A / 2^exponent at a configuration.
 class Solver {
   public:
+    Solver(const Structure& structure, const std::vector<double>& q);
+    /// At the stored coordinates.
     explicit Solver(const Problem& problem);
     /// False: the factorisation gave up (which says nothing about the matrix).
     [[nodiscard]] bool usable() const { return usable_; }
-    /// In units of the problem's `fine`: about the size of the largest entry.
-    [[nodiscard]] long scale() const { return scale_; }
-    /// (A / 2^scale)^-1 b: b per contact, result per degree of freedom.
+    /// About the size of the largest entry, as a length.
+    [[nodiscard]] int exponent() const { return exponent_; }
+    /// The same in units of the problem's `fine`.
+    [[nodiscard]] long scale(const Problem& problem) const { return exponent_ - problem.fine; }
+    /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom.
     [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return lu_.solve(b); }
-    /// (A / 2^scale)^-T b: b per degree of freedom, result per contact.
+    /// (A / 2^exponent)^-T b: b per degree of freedom, result per contact.
     [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const { return lu_.transpose().solve(b); }
 
   private:
     using Lu = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>;
-    long scale_ = 0;
+    int exponent_ = 0;
     bool usable_ = false;
     mutable Lu lu_; ///< its transposed view is not const
 };

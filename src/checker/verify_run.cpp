@@ -173,6 +173,7 @@ class Replay {
             return false;
         }
         State<2> state = *here_.state;
+        std::shared_ptr<const Solver> factors;
         const bool stays =
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
         if (!stays) {
@@ -182,6 +183,7 @@ class Replay {
             motion.closed = *closed;
             motion.held_at = event.held_at.value_or(0);
             motion.displacement = event.displacement;
+            motion.solver = evidence.solver;
             Load<2> under = here_.state->load;
             under.stress[static_cast<std::size_t>(under.loaded_axis)] = event.stress;
             motion.power_load = [&, at = here_.state->packing](const std::vector<double>& q) mutable {
@@ -208,11 +210,13 @@ class Replay {
                     event.where);
             }
             state.packing.q = *followed.end;
+            factors = followed.solver;
         }
         state.contacts[position] = *closed;
         state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
         Place next;
-        if (!judged(make_place(std::move(state), next, load, event.power_turn ? static_cast<int>(position) : -1),
+        if (!judged(make_place(std::move(state), next, load, event.power_turn ? static_cast<int>(position) : -1,
+                               std::move(factors)),
                     event.where) ||
             !judged(check_end(here_, next, event, rattles), event.where) ||
             (event.power_turn && !judged(check_turn(next, event, rattles), event.where)) ||

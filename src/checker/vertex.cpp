@@ -23,7 +23,7 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
         const Eigen::MatrixXd x = solver.solve(b);
         for (int k = 0; k < problem.dofs(); ++k) {
             q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])] -=
-                scaled_integer(x(k, 0), now - 1 - solver.scale());
+                scaled_integer(x(k, 0), now - 1 - solver.scale(problem));
         }
     }
     return q;

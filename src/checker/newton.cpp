@@ -1,0 +1,148 @@
+#include "checker/newton.hpp"
+
+#include <cmath>
+
+namespace isostat::checker {
+
+namespace {
+
+/// Factors that reduce a residual by less than this are made anew.
+constexpr double slow = 0.25;
+
+} // namespace
+
+System::System(const Packing<2>& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near)
+    : packing_(packing), contacts_(std::move(contacts)), structure_(packing, contacts_),
+      weight_(std::ldexp(1.0, structure_.wall_exponent)), solver_(std::move(near)) {}
+
+double System::held_value(const Contact& c) const {
+    return fresh_ && fresh_->first == c ? fresh_->second : packing_.q[static_cast<std::size_t>(c.i)];
+}
+
+double System::value(const std::vector<double>& q, const Contact& c) const {
+    const auto i = static_cast<std::size_t>(c.i);
+    const auto j = static_cast<std::size_t>(c.j);
+    const auto& r = packing_.radius;
+    if (c.kind == ContactKind::held) {
+        return weight_ * (q[i] - held_value(c));
+    }
+    if (c.kind == ContactKind::disk_disk) {
+        const double dx = q[2 * i] - q[2 * j];
+        const double dy = q[2 * i + 1] - q[2 * j + 1];
+        const double sum = r[i] + r[j];
+        return (dx * dx + dy * dy - sum * sum) / 2;
+    }
+    return weight_ * ((c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i]);
+}
+
+void System::renew(const std::vector<double>& q) {
+    solver_ = std::make_shared<Solver>(structure_, q);
+    kernel_.reset();
+}
+
+Eigen::VectorXd System::step(const Eigen::VectorXd& residual) const {
+    return solver_->solve(residual) * std::ldexp(1.0, -solver_->exponent());
+}
+
+Eigen::VectorXd System::product(const std::vector<double>& q, const Eigen::VectorXd& v) const {
+    const auto at = [&](int coordinate) {
+        const int dof = structure_.dof_of[static_cast<std::size_t>(coordinate)];
+        return dof >= 0 ? v(dof) : 0.0;
+    };
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(contacts_.size()));
+    for (std::size_t l = 0; l < contacts_.size(); ++l) {
+        const Row& row = structure_.rows[l];
+        double sum = 0;
+        if (row.quadratic) {
+            for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+                const double difference =
+                    q[static_cast<std::size_t>(row.coordinate[k])] - q[static_cast<std::size_t>(row.coordinate[k + 2])];
+                sum += difference * (at(row.coordinate[k]) - at(row.coordinate[k + 2]));
+            }
+        } else {
+            for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+                sum += weight_ * row.sign[k] * at(row.coordinate[k]);
+            }
+        }
+        result(static_cast<Eigen::Index>(l)) = sum;
+    }
+    return result;
+}
+
+bool System::motion(const std::vector<double>& q, std::size_t opened, Eigen::VectorXd& v) {
+    const auto n = static_cast<Eigen::Index>(size());
+    if (v.size() != n) {
+        v = Eigen::VectorXd::Zero(n);
+    }
+    for (const bool last_factors : {false, true}) {
+        if (last_factors || !solver_) {
+            renew(q);
+        }
+        double size = std::numeric_limits<double>::infinity();
+        for (int k = 0; k < 30 && solver_->usable(); ++k) {
+            Eigen::VectorXd residual = -product(q, v);
+            residual(static_cast<Eigen::Index>(opened)) += 1;
+            const double now = residual.lpNorm<Eigen::Infinity>();
+            const double rounding = std::ldexp(1 + std::ldexp(v.lpNorm<Eigen::Infinity>(), solver_->exponent()), -46);
+            if (now <= rounding || (last_factors && now >= slow * size)) {
+                return v.allFinite();
+            }
+            if (!(now < slow * size)) {
+                break;
+            }
+            size = now;
+            v += step(residual);
+        }
+        v.setZero();
+    }
+    return false;
+}
+
+bool System::newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy) {
+    const double scale = packing_.max_radius();
+    if (!solver_) {
+        renew(q);
+    }
+    double last = std::numeric_limits<double>::infinity();
+    int renewals = 0;
+    for (int k = 0; k < 100 && solver_->usable(); ++k) {
+        Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
+        for (std::size_t l = 0; l < contacts_.size(); ++l) {
+            residual(static_cast<Eigen::Index>(l)) = way && way->left_out == l ? 0.0 : -value(q, contacts_[l]);
+        }
+        Eigen::VectorXd x = step(residual);
+        if (way) {
+            if (!kernel_ || kernel_->first != way->left_out) {
+                kernel_ = {way->left_out,
+                           step(Eigen::VectorXd::Unit(residual.size(), static_cast<Eigen::Index>(way->left_out)))};
+            }
+            x -= x(way->kept) / kernel_->second(way->kept) * kernel_->second;
+        }
+        const double size = x.lpNorm<Eigen::Infinity>();
+        if (!std::isfinite(size)) {
+            return false;
+        }
+        const bool rounded = size <= 0x1p-38 * scale; // no factors are worth while any more
+        const bool smaller = size < (rounded ? 1 : slow) * last;
+        const bool ends = size <= accuracy * scale || (!smaller && rounded);
+        if (smaller || ends) {
+            for (std::size_t d = 0; d < this->size(); ++d) {
+                q[coordinate(d)] += x(static_cast<Eigen::Index>(d));
+            }
+        }
+        if (ends) {
+            return true;
+        }
+        if (smaller) {
+            last = size;
+        } else if (++renewals > 20) {
+            return false;
+        } else {
+            renew(q);
+            last = std::numeric_limits<double>::infinity();
+        }
+    }
+    return false;
+}
+
+} // namespace isostat::checker

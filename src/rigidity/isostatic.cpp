@@ -1,3 +1,4 @@
+#include <isostat/core/error.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
@@ -188,6 +189,12 @@ Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim
 
 template <int Dim>
 Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::vector<Contact> contacts) {
+    if (packing.q.size() > most_coordinates) { // the one place where structures begin: what is exchanged keeps its size
+        throw Error(
+            ErrorKind::bad_input,
+            fmt::format("{} disks have {} coordinates: at most {} were expected, as error bounds allow for no more",
+                        packing.disk_count(), packing.q.size(), most_coordinates));
+    }
     RankProof proof;
     IsostaticStructure<Dim>& structure = proof.structure_;
     structure.dofs_ = std::make_shared<const DofMap<Dim>>(packing);

@@ -148,6 +148,12 @@ template <int Dim> Vector<Dim> push(const Statics<Dim>& statics, std::size_t con
     return on;
 }
 
+/// How far normals at the turn may be from the stored ones, and what rounding of sums over all contacts adds (S4).
+template <int Dim> double doubt_of(const Statics<Dim>& statics) {
+    constexpr double u = 0x1p-53;
+    return 2 * statics.normal_uncertainty() + (static_cast<double>(statics.structure().size()) + 512) * u;
+}
+
 /// What the infinitesimal loads come to when the disks that carry no finite force at the turn are taken away with their
 /// contacts (S4 (c)): free disks that two contacts, not in one line, hold. Each is done once, in an order in which two
 /// contacts are left of it.
@@ -219,14 +225,14 @@ template <int Dim> struct Bare {
         const double cross = n[0] * m[1] - n[1] * m[0];
         // Far more than the place of the turn is off by; the normals of a strut fail by many orders.
         constexpr double well_apart = 0x1p-16;
-        if (!(std::abs(cross) > well_apart + 4 * statics.normal_uncertainty())) {
+        if (!(std::abs(cross) > well_apart + 8 * statics.normal_uncertainty())) {
             return false;
         }
         const Vector<Dim>& g = load[disk];
         const double in_a = (g[0] * m[1] - g[1] * m[0]) / cross;
         const double in_b = (n[0] * g[1] - n[1] * g[0]) / cross;
-        // Singular values of two unit columns: the smaller is at least |cross| / sqrt 2.
-        const double doubt = 2 * statics.normal_uncertainty() + 0x1p-44;
+        // Singular values of two unit columns: the smaller is at least |cross| / sqrt 2, at the turn 3/4 of that.
+        const double doubt = doubt_of(statics);
         const double wrong =
             2 * (error[disk] + doubt * (std::abs(in_a) + std::abs(in_b) + std::abs(g[0]) + std::abs(g[1]))) /
             std::abs(cross);
@@ -319,7 +325,7 @@ Enclosure excess_over(const Statics<Dim>& statics, std::size_t a, std::size_t b,
         bend += std::abs(from_a[k] + from_b[k]);
     }
     // The normal of the straight strut lies between the two stored ones; each is known to `normal_uncertainty`.
-    return {value, size * (bend + 2 * statics.normal_uncertainty() + 0x1p-44) + 2 * error};
+    return {value, size * (bend + doubt_of(statics)) + 2 * error};
 }
 
 constexpr auto none = static_cast<std::size_t>(-1);

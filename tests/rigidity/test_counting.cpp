@@ -2,6 +2,7 @@
 #include "support/crafted.hpp"
 #include "support/threads.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/exact/independent_columns.hpp>
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -157,6 +158,24 @@ BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices)
     State<2> special = one_disk(1, 1);
     special.contacts = {left(0), right(0), left(0), top(0)};
     BOOST_TEST(!IsostaticStructure<2>::prove(special.packing, special.contacts).ok());
+}
+
+BOOST_AUTO_TEST_CASE(no_structure_is_made_of_more_coordinates_than_error_bounds_allow_for) {
+    Packing<2> packing;
+    packing.radius.assign(most_coordinates / 2, 1.0);
+    packing.q.assign(most_coordinates + 2, 1.0);
+    try {
+        (void)IsostaticStructure<2>::prove(packing, {});
+        BOOST_ERROR("accepted");
+    } catch (const Error& error) {
+        BOOST_TEST((error.kind() == ErrorKind::bad_input));
+        const std::string text = error.what();
+        BOOST_TEST(text.find("500000 disks have 1000002 coordinates") != std::string::npos, text);
+        BOOST_TEST(text.find("at most 1000000 were expected") != std::string::npos, text);
+    }
+    packing.radius.pop_back();
+    packing.q.resize(most_coordinates);
+    BOOST_TEST((IsostaticStructure<2>::prove(packing, {}).failure().kind == FailureKind::not_isostatic));
 }
 
 BOOST_AUTO_TEST_CASE(a_proof_under_way_has_no_evidence_until_it_is_concluded, *boost::unit_test::label("threads")) {

@@ -255,6 +255,35 @@ BOOST_AUTO_TEST_CASE(a_row_of_two_is_one_strut_up_to_the_disk_that_another_hold_
     BOOST_TEST(Turn<2>(v.statics, {fresh, {}}).mates(find(state, right(1))).empty());
 }
 
+BOOST_AUTO_TEST_CASE(the_load_on_a_long_strut_is_bounded_with_the_rounding_of_its_sum) {
+    constexpr int disks = 4000;
+    State<2> state = row_under_traction(disks);
+    std::fill(state.load.infinitesimal.begin(), state.load.infinitesimal.end(), 0.0);
+    // 1 + 2^-54 is rounded to 1 again and again: the sum in double is -1.3e-13, the true one 0.9e-13.
+    for (std::size_t i = 0; i < disks; ++i) {
+        state.load.infinitesimal[2 * i] = i == 0 ? 1 : 0x1p-54;
+    }
+    const double last = -(1 + 1.3e-13);
+    state.load.infinitesimal[2 * (disks - 1)] = last;
+    const double sum = (disks - 2) * 0x1p-54 + (1 + last);
+    AtVertex v(state, false);
+    while (v.statics.rung() == Rung::double_bound) { // the bounds of the holds' own forces would cover everything
+        BOOST_TEST_REQUIRE(v.statics.climb());
+    }
+    const ContactId fresh = find(state, held(1));
+    ZeroHolds zero{fresh, {}};
+    for (int i = 1; i < disks; ++i) {
+        zero.others.push_back(find(state, held(2 * i + 1)));
+    }
+    const auto mates = Turn<2>(v.statics, zero).mates(find(state, left(0)));
+    const auto end = std::find_if(mates.begin(), mates.end(),
+                                  [&](const StrutMate& mate) { return v.contact(mate.contact) == right(disks - 1); });
+    BOOST_TEST_REQUIRE((end != mates.end()));
+    BOOST_TEST(std::abs(end->excess.value - sum) > 2e-13); // what was lost
+    BOOST_TEST(std::abs(end->excess.value - sum) <= end->excess.radius);
+    BOOST_TEST(end->excess.radius < 1e-11);
+}
+
 BOOST_AUTO_TEST_CASE(the_contacts_of_a_strut_are_those_of_the_definition) {
     int found = 0;
     int nothing = 0;

@@ -71,6 +71,10 @@ enum class RegularityEvidence : std::uint8_t {
     none            ///< nothing was proved: between the equilibria of a run at level `plain` only
 };
 
+/// Largest number of coordinates of a packing, and so of contacts of a structure: error bounds allow for sums of so
+/// many terms (statement B1).
+inline constexpr std::size_t most_coordinates = 1'000'000;
+
 /// A configuration with N = N_f contacts (held coordinates count as contacts) whose contact matrix, for the *stored*
 /// coordinates (dyadic rationals) without any rounding, is proved regular. So h = k = 0. `prove` and `exchanged` make
 /// one, each from a proof: every double-precision solve asks for it, hence none can be done without the proof. It says
@@ -81,7 +85,8 @@ template <int Dim> class IsostaticStructure {
     /// By elimination mod p (statement T4): the full exact check.
     /// `not_isostatic` when N != N_f, when the pattern is structurally singular, or when the rank mod 2^61 - 1 is
     /// deficient (the message gives N_f, N and the rank found; a deficiency mod p is evidence, chance n/p ~ 4e-15 of
-    /// being false, not proof). Cost: one symbolic analysis + one elimination mod p, about 10 ms at n = 4900.
+    /// being false, not proof). Throws `Error(bad_input)` beyond `most_coordinates`. Cost: one symbolic analysis + one
+    /// elimination mod p, about 10 ms at n = 4900.
     static Result<IsostaticStructure> prove(const Packing<Dim>& packing, std::vector<Contact> contacts);
 
     /// The list of `previous` with the contact at `slot` replaced, at a new configuration of the same grains. Nothing
@@ -125,7 +130,7 @@ template <int Dim> class IsostaticStructure {
 /// `IsostaticStructure::prove` while other work goes on with the same matrix: the elimination is an errand.
 template <int Dim> class RankProof {
   public:
-    /// Failures that need no elimination: N != N_f, or a structurally singular pattern.
+    /// Failures that need no elimination: N != N_f, or a structurally singular pattern. Throws as `prove` does.
     static Result<RankProof> begin(const Packing<Dim>& packing, std::vector<Contact> contacts);
     /// With evidence `none`: whatever is made of it must be thrown away unless `conclude` agrees.
     [[nodiscard]] const IsostaticStructure<Dim>& unproved() const { return structure_; }

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # Everything in proofs/ that a machine can check:
 #   bash proofs/check.sh [BUILD]
-# The links of the pages; with Coq and MathComp installed the theorems, with what Print Assumptions says of each; and, when BUILD (a build
+# The links of the pages; the numbers in the code, each with a statement or a reason (constants.py); with Coq and MathComp installed the theorems, with what Print Assumptions says of each; and, when BUILD (a build
 # folder with the examples) is given, certificates that its program writes for packings that it prepares.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
 bash proofs/check_links.sh
 bash proofs/check_links_test.sh
+python3 proofs/constants.py --where
+bash proofs/constants_test.sh
 if ! command -v coqc >/dev/null || [ ! -d "$(coqc -where)/user-contrib/mathcomp/algebra_tactics" ]; then
   echo "proofs/coq: SKIPPED, no theorem was checked: Coq or MathComp is not installed (Debian: ${isostat_proof_packages[*]})"
   exit 0

@@ -45,7 +45,7 @@ struct InverseBoundCache {
     }
 };
 
-/// First route: Cholesky factorisation (CHOLMOD, simplicial, in round to nearest) of H H^T - s I with s chosen from a
+/// First route: Cholesky factorisation (in doubles, blocks of 2 x 2) of H H^T - s I with s chosen from a
 /// few inverse iterations; when it runs to the end, lambda_min(H H^T) >= s - E with E bounded a priori (statement V1 in
 /// proofs/). Works down to sigma_min ~ 1e-5; 3 to 9 ms at n = 1936 to 4900. Second route, when rounding hides sigma_min
 /// there: the same in double-double (Eigen), down to sigma_min ~ 1e-12; about 0.3 s at n = 4900. Third route:

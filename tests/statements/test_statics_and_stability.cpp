@@ -4,6 +4,7 @@
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/exact/reduction.hpp>
 #include <isostat/linear/factorisation.hpp>
+#include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
@@ -245,6 +246,57 @@ BOOST_AUTO_TEST_CASE(contacts_without_force_may_block_the_mechanism) {
     BOOST_TEST(alone.value().hyperstaticity == 0);
     BOOST_TEST((alone.value().stable == Verdict::refuted));
     BOOST_TEST(least_length(crafted::approximate(packing), {1, 1.1}) < 4);
+}
+
+BOOST_AUTO_TEST_CASE(under_true_stresses_the_power_grows_at_a_turn_and_the_sum_of_stress_times_log_length_is_largest) {
+    // Two disks in the corners of the box, in contact: they roll on each other, and nothing else can move (S2).
+    std::mt19937_64 random(2021);
+    for (int attempt = 0; attempt < 20; ++attempt) {
+        const double a = uniform(random, 0.5, 2);
+        const double b = uniform(random, 0.5, 2);
+        const double d = a + b;
+        Load<2> load;
+        load.kind = LoadKind::true_stress;
+        load.stress = {uniform(random, 0.2, 3), uniform(random, 0.2, 3)};
+        const auto at = [&](double angle) {
+            Packing<2> packing;
+            packing.radius = {a, b};
+            const double x = a + d * std::cos(angle);
+            const double y = a + d * std::sin(angle);
+            packing.q = {a, a, x, y, x + b, y + b};
+            return packing;
+        };
+        const auto power = [&](double angle) {
+            const std::vector<double> force = load.external_force(at(angle));
+            return -force[4] * d * std::sin(angle) + force[5] * d * std::cos(angle);
+        };
+        const auto phi = [&](double angle) {
+            const Packing<2> packing = at(angle);
+            return load.stress[0] * std::log(packing.length(0)) + load.stress[1] * std::log(packing.length(1));
+        };
+        double low = 0;
+        double high = std::acos(0.0);
+        for (int k = 0; k < 100; ++k) {
+            const double middle = 0.5 * (low + high);
+            (power(middle) < 0 ? low : high) = middle;
+        }
+        const double turn = low;
+        const Packing<2> packing = at(turn);
+        const double volume = packing.length(0) * packing.length(1);
+        const double force =
+            load.stress[0] * packing.length(1) / std::cos(turn); // of the contact, from that on the wall
+        const std::array<double, 2> rate{-d * std::sin(turn) / packing.length(0),
+                                         d * std::cos(turn) / packing.length(1)};
+        const double of_lengths = volume * (load.stress[0] * rate[0] * rate[0] + load.stress[1] * rate[1] * rate[1]);
+        const double expected = force * d + of_lengths; // |u_t| = d
+        const double h = 1e-4;
+        BOOST_TEST((power(turn + h) - power(turn - h)) / (2 * h) == expected, boost::test_tools::tolerance(1e-6));
+        BOOST_TEST((2 * phi(turn) - phi(turn + h) - phi(turn - h)) / (h * h) * volume == expected,
+                   boost::test_tools::tolerance(1e-6));
+        const double both = load.stress[0] + load.stress[1];
+        BOOST_TEST(of_lengths == -both * rate[0] * rate[1] * volume, boost::test_tools::tolerance(1e-9));
+        BOOST_TEST(of_lengths > 0.01 * expected); // without it the formula would be another one
+    }
 }
 
 BOOST_AUTO_TEST_CASE(the_condition_of_kantorovich_is_exact_for_one_quadratic) {

@@ -3,6 +3,7 @@
 #include "certificate/true_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/core/floating_point.hpp>
 
 #include <fmt/format.h>
 
@@ -316,6 +317,7 @@ template <int Dim> void Prover<Dim>::prove_stability(bool forces, bool gaps) {
 } // namespace
 
 template <int Dim> Certification certify(const State<Dim>& state, const CertifyOptions& options) {
+    require_floating_point();
     return Prover<Dim>(state, options).run();
 }
 

@@ -1,6 +1,7 @@
 #include "checker/evidence.hpp"
 
 #include <isostat/checker/verify.hpp>
+#include <isostat/core/floating_point.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -71,6 +72,7 @@ bool leaves_vertex_open(const Verification& result) {
 } // namespace
 
 Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic) {
+    require_floating_point();
     const auto judged = [&certificate](const Evidence& evidence) { return judge(certificate.claims, evidence); };
     std::optional<Verification> first;
     {

@@ -3,6 +3,7 @@
 #include "checker/run_folder.hpp"
 
 #include <isostat/checker/verify_run.hpp>
+#include <isostat/core/floating_point.hpp>
 
 #include <fmt/format.h>
 
@@ -298,6 +299,7 @@ class Replay {
 } // namespace
 
 RunVerification verify_run(const std::filesystem::path& directory, const std::function<void(int)>& progress) {
+    require_floating_point();
     RunVerification result;
     if (is_running(directory)) {
         result.finished = false;

@@ -9,7 +9,7 @@
 
 namespace isostat::cli {
 
-/// Exit statuses beyond those of `Error` (64 usage, 65 bad input, 74 cannot write).
+/// Exit statuses beyond those of `Error` (64 usage, 65 bad input, 70 internal failure, 74 cannot write).
 enum Status { done = 0, failed = 1, undecided = 2, interrupted = 130 };
 
 /// Options that several subcommands have.

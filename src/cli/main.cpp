@@ -3,14 +3,19 @@
 #include "cli/interrupt.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/memory.hpp>
 #include <isostat/core/threads.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <iostream>
+#include <new>
 
 namespace {
 
@@ -68,8 +73,8 @@ struct Program {
         app.require_subcommand(1);
         app.set_version_flag("--version", program_name());
         app.footer("Exit status: 0 done or proved; 1 refuted, or failed with a result; 2 undecided; 64 usage; 65 bad "
-                   "input; 74 cannot write;\n"
-                   "130 stopped by Ctrl-C or SIGTERM, with valid files.\n"
+                   "input; 70 internal failure (says\n"
+                   "nothing of the input); 74 cannot write; 130 stopped by Ctrl-C or SIGTERM, with valid files.\n"
                    "Example: isostat run examples/biaxial-400.toml -o out");
         add_prepare(line);
         add_run(line);
@@ -368,28 +373,61 @@ struct Program {
     }
 };
 
+int run_program(int argc, char** argv) {
+    Program program(quoted(argc, argv));
+    try {
+        program.app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return program.app.exit(error) == 0 ? done : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
+    }
+    isostat::require_floating_point();
+    ignore_file_size_signals();
+    return program.todo();
+}
+
+int complain(isostat::ErrorKind kind, const std::string& message) {
+    std::cerr << "isostat: " << message << '\n';
+    return isostat::Error(kind, "").exit_status();
+}
+
+/// `work`, with what went wrong as words and an exit status. Whatever is not foreseen is 70, never a status that
+/// answers a question.
+int answered(const std::function<int()>& work) {
+    using isostat::ErrorKind;
+    try {
+        return work();
+    } catch (const isostat::Error& error) {
+        return complain(error.kind(), error.what());
+    } catch (const std::bad_alloc&) {
+        return complain(ErrorKind::internal, "not enough memory");
+    } catch (const std::filesystem::filesystem_error& error) {
+        return complain(ErrorKind::cannot_write, error.what());
+    } catch (const std::exception& error) {
+        if (std::ferror(stdout) != 0) { // fmt::print says what the system said
+            return complain(ErrorKind::cannot_write, std::string("standard output: ") + error.what());
+        }
+        return complain(ErrorKind::internal, std::string("unexpected failure: ") + error.what());
+    } catch (...) {
+        return complain(ErrorKind::internal, "unexpected failure");
+    }
+}
+
+/// An answer that did not get out is none.
+int delivered(int status) {
+    errno = 0;
+    const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush().good();
+    const int error = errno;
+    const int failure = isostat::Error(isostat::ErrorKind::cannot_write, "").exit_status();
+    if (written || status == failure) {
+        return status;
+    }
+    return complain(isostat::ErrorKind::cannot_write,
+                    std::string("standard output: cannot write: ") + (error != 0 ? std::strerror(error) : "lost"));
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     isostat::keep_freed_memory();
-    try {
-        Program program(quoted(argc, argv));
-        try {
-            program.app.parse(argc, argv);
-        } catch (const CLI::ParseError& error) {
-            const int status = program.app.exit(error);
-            return status == 0 ? 0 : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
-        }
-        ignore_file_size_signals();
-        return program.todo();
-    } catch (const isostat::Error& error) {
-        std::cerr << "isostat: " << error.what() << '\n';
-        return error.exit_status();
-    } catch (const std::filesystem::filesystem_error& error) {
-        std::cerr << "isostat: " << error.what() << '\n';
-        return isostat::Error(isostat::ErrorKind::cannot_write, "").exit_status();
-    } catch (const std::exception& error) {
-        std::cerr << "isostat: unexpected failure: " << error.what() << '\n';
-        return failed;
-    }
+    return delivered(answered([&] { return run_program(argc, argv); }));
 }

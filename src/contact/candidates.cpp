@@ -2,6 +2,7 @@
 #include "contact/near_pairs.hpp"
 
 #include <isostat/contact/candidates.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/work.hpp>
 
 #include <algorithm>
@@ -111,6 +112,7 @@ CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
 
 template <int Dim>
 Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, const CandidateList<Dim>* known) {
+    require_floating_point();
     assert(allowance >= 0);
     count_work(Work::overlap_proofs);
     Admissibility result;

@@ -1,3 +1,4 @@
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/threads.hpp>
 #include <isostat/core/work.hpp>
 
@@ -12,6 +13,8 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -35,6 +38,7 @@ struct Errand::Task {
     void perform() {
         std::array<long, work_kinds>* const before = count_work_in(&counted);
         try {
+            require_floating_point(); // of the thread that does it
             work();
         } catch (...) {
             failure = std::current_exception();
@@ -64,21 +68,17 @@ constexpr long longest_spin = 1000; // a pause is some 40 ns
 /// comes late cannot take a piece of a job that it has not seen.
 class Pool {
   public:
-    explicit Pool(int workers) {
-        for (int k = 0; k < workers; ++k) {
-            workers_.emplace_back([this] { serve(); });
+    /// Fewer workers where the system gives no more. The last ones took what memory was left for their stacks: half of
+    /// them are given back, so that there is some for the work.
+    explicit Pool(std::size_t workers) {
+        if (const std::size_t started = start(workers); started < workers) {
+            end();
+            start(started / 2);
         }
     }
     Pool(const Pool&) = delete;
     Pool& operator=(const Pool&) = delete;
-    ~Pool() {
-        ending_.store(true, std::memory_order_relaxed);
-        ticket_.fetch_add(next_job, std::memory_order_release);
-        ticket_.notify_all();
-        for (std::thread& worker : workers_) {
-            worker.join();
-        }
-    }
+    ~Pool() { end(); }
 
     /// \pre as for `run`: one thread at a time
     void send(std::shared_ptr<Errand::Task> task) {
@@ -122,6 +122,7 @@ class Pool {
             if (ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) {
                 const auto piece = static_cast<std::size_t>(ticket % next_job - 1);
                 try {
+                    require_floating_point();
                     (*work_)(piece);
                 } catch (...) {
                     const std::scoped_lock lock(failure_guard_);
@@ -159,6 +160,29 @@ class Pool {
     }
 
     void serve();
+
+    /// How many there are then.
+    std::size_t start(std::size_t count) {
+        ending_.store(false, std::memory_order_relaxed);
+        try {
+            workers_.reserve(count);
+            while (workers_.size() < count) {
+                workers_.emplace_back([this] { serve(); });
+            }
+        } catch (const std::system_error&) { // no thread
+        } catch (const std::bad_alloc&) {    // no memory for one
+        }
+        return workers_.size();
+    }
+    void end() {
+        ending_.store(true, std::memory_order_relaxed);
+        ticket_.fetch_add(next_job, std::memory_order_release);
+        ticket_.notify_all();
+        for (std::thread& worker : workers_) {
+            worker.join();
+        }
+        workers_.clear();
+    }
 
     const std::function<void(std::size_t)>* work_ = nullptr;
     alignas(64) std::atomic<std::uint64_t> ticket_{0};
@@ -248,7 +272,7 @@ void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>&
         return;
     }
     if (!c.pool) {
-        c.pool = std::make_unique<Pool>(c.wanted - 1);
+        c.pool = std::make_unique<Pool>(static_cast<std::size_t>(c.wanted - 1));
     }
     inside = true;
     const struct Outside {
@@ -264,7 +288,7 @@ Errand::Errand(std::function<void()> work) : task_(std::make_shared<Task>(std::m
         return;
     }
     if (!c.pool) {
-        c.pool = std::make_unique<Pool>(c.wanted - 1);
+        c.pool = std::make_unique<Pool>(static_cast<std::size_t>(c.wanted - 1));
     }
     task_->sent = true;
     c.pool->send(task_);

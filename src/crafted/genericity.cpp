@@ -1,5 +1,6 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/crafted/genericity.hpp>
 #include <isostat/preparation/preparation.hpp>
 
@@ -88,6 +89,7 @@ void fill(GenericitySample& sample, const State<2>& state, const Certification& 
 
 Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& original,
                       const GenericityOptions& options) {
+    require_floating_point();
     check(packing, options);
     Genericity out;
     std::vector<Contact> sorted = original;

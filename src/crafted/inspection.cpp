@@ -2,6 +2,7 @@
 #include "crafted/rigid_motions.hpp"
 #include "crafted/second_order.hpp"
 
+#include <isostat/core/floating_point.hpp>
 #include <isostat/crafted/inspection.hpp>
 
 #include <algorithm>
@@ -249,6 +250,7 @@ std::string Inspection::verdict() const {
 }
 
 Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& limits) {
+    require_floating_point();
     auto contacts = exact_contacts(packing);
     if (!contacts.ok()) {
         return contacts.failure();
@@ -258,6 +260,7 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
 
 Inspection inspect_contacts(const ExactPacking& packing, std::vector<Contact> contacts,
                             const InspectionLimits& limits) {
+    require_floating_point();
     return Inspector(packing, limits, std::move(contacts)).run();
 }
 

@@ -4,6 +4,7 @@
 #include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
@@ -449,6 +450,7 @@ Plateau begin(Sequence& sequence) {
 } // namespace
 
 Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds) {
+    require_floating_point();
     assert(std::is_sorted(thresholds.begin(), thresholds.end()));
     if (thresholds.empty()) {
         return {};
@@ -465,6 +467,7 @@ Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds
 }
 
 Plateau plateau(const Packing<2>& packing, double first, double last, int rows) {
+    require_floating_point();
     assert(first <= last);
     Sequence sequence(packing, last);
     Plateau out = begin(sequence);

@@ -1,4 +1,5 @@
-#include <isostat/core/dot.hpp>
+#include "core/dot.hpp"
+
 #include <isostat/linear/factorisation.hpp>
 
 #include <algorithm>

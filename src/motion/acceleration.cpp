@@ -1,6 +1,6 @@
 #include "motion/acceleration.hpp"
 
-#include <isostat/core/dot.hpp>
+#include "core/dot.hpp"
 
 #include <algorithm>
 

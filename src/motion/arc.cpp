@@ -1,8 +1,8 @@
+#include "core/dot.hpp"
 #include "motion/acceleration.hpp"
 #include "motion/geometry.hpp"
 
 #include <isostat/contact/contact_set.hpp>
-#include <isostat/core/dot.hpp>
 #include <isostat/motion/arc.hpp>
 
 #include <fmt/format.h>

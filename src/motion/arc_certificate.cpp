@@ -2,6 +2,7 @@
 #include "motion/moving_part.hpp"
 #include "motion/power_watch.hpp"
 
+#include <isostat/core/floating_point.hpp>
 #include <isostat/motion/arc_certificate.hpp>
 
 #include <fmt/format.h>
@@ -343,6 +344,7 @@ template <int Dim>
 ArcCertificate certify_arc(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
                            const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates,
                            const ArcCertificateOptions& options) {
+    require_floating_point();
     return Certifier<Dim>(start, opened, direction, end, power, candidates, options).run();
 }
 

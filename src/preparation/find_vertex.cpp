@@ -6,6 +6,7 @@
 #include "preparation/stage.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
@@ -288,6 +289,7 @@ template <int Dim> class VertexSearch {
 template <int Dim>
 Result<State<Dim>> find_vertex(const Packing<Dim>& start, const PreparationOptions& options,
                                PreparationReport<Dim>& report) {
+    require_floating_point();
     preparation::require_sensible(start, options);
     return preparation::VertexSearch<Dim>(start, options, report).run();
 }

@@ -5,6 +5,7 @@
 #include "preparation/stage.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
@@ -103,6 +104,7 @@ std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t 
 }
 
 template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report) {
+    require_floating_point();
     using namespace preparation;
     require_positive("stress", options.stress);
     require_positive("aspect", options.aspect);

@@ -1,3 +1,4 @@
+#include <isostat/core/floating_point.hpp>
 #include <isostat/exact/independent_columns.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/counting.hpp>
@@ -8,6 +9,7 @@
 namespace isostat {
 
 template <int Dim> Counting count_contacts(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    require_floating_point();
     const DofMap<Dim> dofs(packing);
     Counting counting;
     counting.dof_count = dofs.dof_count();

@@ -1,4 +1,5 @@
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
@@ -183,6 +184,7 @@ sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, 
 template <int Dim>
 Result<IsostaticStructure<Dim>> IsostaticStructure<Dim>::prove(const Packing<Dim>& packing,
                                                                std::vector<Contact> contacts) {
+    require_floating_point();
     auto proof = RankProof<Dim>::begin(packing, std::move(contacts));
     return proof.ok() ? proof.value().conclude() : proof.failure();
 }

@@ -1,4 +1,5 @@
 #include <isostat/contact/contact_set.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/shortcuts/small_displacements.hpp>
 #include <isostat/statics/decisions.hpp>
 
@@ -104,6 +105,7 @@ template <int Dim> std::vector<Contact> pairs_near(const Packing<Dim>& packing, 
 template <int Dim>
 LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeometry geometry, int equilibria,
                                             long max_arcs) {
+    require_floating_point();
     LinearTrajectory<Dim> run;
     Approximation<Dim> at{start.packing, start.packing, {}, {}};
     std::vector<Contact> contacts = start.contacts;

@@ -1,4 +1,5 @@
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/shortcuts/soft_grains.hpp>
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ template <int Dim>
 SoftGrains<Dim>::SoftGrains(const Packing<Dim>& packing, const Load<Dim>& load, const SoftGrainOptions& options)
     : packing_(packing), origin_(packing.q), velocity_(packing.q.size(), 0.0), force_(packing.q.size(), 0.0),
       options_(options) {
+    require_floating_point();
     static_assert(Dim == 2, "stress x length is a force");
     require_positive("stiffness ratio", options.stiffness_ratio);
     require_positive("step fraction", options.step_fraction);

@@ -1,6 +1,7 @@
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
+#include <isostat/core/floating_point.hpp>
 #include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -98,6 +99,7 @@ template <int Dim> double force_norm(const Vertex<Dim>& vertex, double sigma) {
 } // namespace
 
 template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state) {
+    require_floating_point();
     Inspection<Dim> inspection;
     inspection.counting = count(state);
     Counting& counting = inspection.counting;

@@ -4,6 +4,7 @@
 #include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
 
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/motion/arc.hpp>
 #include <isostat/preparation/backbone.hpp>
@@ -1415,6 +1416,7 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
 template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer) {
+    require_floating_point();
     return Run<Dim>(state, segment_number, options, counters, observer).run(segment);
 }
 

@@ -3,6 +3,7 @@
 #include "verified/regularity_prover.hpp"
 #include "verified/row_scales.hpp"
 
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/threads.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/verified/inverse_bound.hpp>
@@ -173,6 +174,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
 template <int Dim>
 InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
                            InverseBoundCache& cache, const std::function<bool()>& worth_more, int row_limit) {
+    require_floating_point();
     const sparse::Matrix<double>& h = structure.matrix();
     const CholeskyOutcome first = by_cholesky(h, factorisation.approximate(), cache);
     if (first.bound.verdict == Verdict::proved) {

@@ -5,10 +5,14 @@
 #include <isostat/core/work.hpp>
 
 #include <boost/test/unit_test.hpp>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -221,6 +225,31 @@ BOOST_AUTO_TEST_CASE(pieces_cover_the_items_without_overlap) {
     BOOST_TEST(pieces.last(2) == 10U);
     BOOST_TEST((Pieces{0, 4}.count()) == 0U);
     BOOST_TEST((Pieces{8, 4}.count()) == 2U);
+}
+
+BOOST_AUTO_TEST_CASE(where_the_system_refuses_threads_fewer_do_the_work) {
+    // In a child: its address space is limited to what it has and a little more, too little for 64 stacks of 8 MB.
+    const pid_t child = ::fork();
+    BOOST_REQUIRE(child >= 0);
+    if (child == 0) {
+        std::size_t pages = 0;
+        std::ifstream("/proc/self/statm") >> pages;
+        const auto room = static_cast<rlim_t>(pages) * 4096 + (100U << 20U);
+        const rlimit limit{room, room};
+        if (::setrlimit(RLIMIT_AS, &limit) != 0) {
+            ::_exit(2);
+        }
+        set_threads(64);
+        std::atomic<long> sum{0};
+        for (int round = 0; round < 20; ++round) {
+            parallel_pieces(200, [&](std::size_t piece) { sum += static_cast<long>(piece); });
+        }
+        ::_exit(sum == 20 * 199 * 100 ? 0 : 1);
+    }
+    int status = -1;
+    BOOST_REQUIRE(::waitpid(child, &status, 0) == child);
+    BOOST_TEST(WIFEXITED(status));
+    BOOST_TEST(WEXITSTATUS(status) == 0);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,6 +2,8 @@
 /// \file
 /// A real number known to a bound.
 
+#include <isostat/core/floating_point.hpp>
+
 #include <cmath>
 
 namespace isostat {
@@ -19,9 +21,6 @@ struct Enclosure {
 };
 
 /// Enclosure of the difference; the rounding of the subtraction is added to the radius (2 ulp).
-inline Enclosure operator-(const Enclosure& a, const Enclosure& b) {
-    const double value = a.value - b.value;
-    return {value, (a.radius + b.radius + 0x1p-52 * std::abs(value)) * (1 + 0x1p-50)};
-}
+Enclosure operator-(const Enclosure& a, const Enclosure& b);
 
 } // namespace isostat

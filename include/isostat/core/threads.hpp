@@ -12,7 +12,8 @@
 namespace isostat {
 
 /// Threads of this process for `parallel_pieces`, the calling one included. \pre count >= 1. Not while work is going
-/// on. Before the first call: 1, so that a library does not start threads unasked.
+/// on. Before the first call: 1, so that a library does not start threads unasked. Where the system refuses threads,
+/// fewer do the work.
 void set_threads(int count);
 
 /// What `set_threads` asked for.

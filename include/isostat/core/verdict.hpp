@@ -3,6 +3,8 @@
 /// Three-valued answers. A question about real numbers that are known only to a bound has three answers, and the
 /// third must not be usable as one of the other two by accident.
 
+#include <isostat/core/floating_point.hpp>
+
 #include <cstdint>
 #include <string_view>
 

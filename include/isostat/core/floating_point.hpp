@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// The arithmetic that every error bound counts with: IEEE double, each operation rounded to nearest, subnormal numbers
+/// kept, no product fused into a sum. Headers with numbers include this one, so that a compiler told to compute in
+/// another way refuses them.
+
+#include <cfloat>
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) ||                               \
+    defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
+#error "isostat: -ffast-math and its parts break every error bound: expected a compilation without them"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error                                                                                                                 \
+    "isostat: double expressions are computed with more digits here: expected FLT_EVAL_METHOD 0 (-msse2 -mfpmath=sse)"
+#endif
+
+namespace isostat {
+
+/// What of the arithmetic is not as it must be, in words; nullptr when all is well: rounding to nearest (of the unit
+/// that computes and as `fegetround` says), subnormal numbers, no more digits than a double has, and the library
+/// compiled without contraction. Looks at results of operations, not at registers, so that it holds on any processor.
+/// Cost: 0.1 microseconds.
+const char* floating_point_defect();
+
+/// Throws `Error(internal)` when there is a defect. Called where work begins: by the program, by the readers, by every
+/// function that proves something, and by each thread for each piece of work that it takes over.
+void require_floating_point();
+
+} // namespace isostat

@@ -1,0 +1,59 @@
+#include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
+
+#include <cfenv>
+#include <string>
+
+namespace isostat {
+
+namespace {
+
+// volatile: the operations are carried out when asked, not by the compiler.
+
+bool rounds_to_nearest() {
+    const volatile double one = 1;
+    const volatile double half_ulp = 0x1p-53;
+    const volatile double above_half_ulp = 0x1p-53 + 0x1p-78; // a sum in extended precision would round twice, to 1
+    const volatile double down = one + half_ulp;
+    const volatile double up = one + above_half_ulp;
+    return down == 1 && up == 1 + 0x1p-52;
+}
+
+bool keeps_subnormals() {
+    const volatile double smallest_normal = 0x1p-1022;
+    const volatile double half = 0.5;
+    const volatile double subnormal = smallest_normal * half; // 0 when results are flushed
+    return subnormal > 0;                                     // false when operands are
+}
+
+bool contracts() {
+    const volatile double given = 1 + 0x1p-27;
+    const volatile double rounded_square = 1 + 0x1p-26;
+    const double x = given;
+    const double y = rounded_square;
+    const volatile double difference = x * x - y; // 2^-54 when the square is not rounded
+    return difference != 0;
+}
+
+} // namespace
+
+const char* floating_point_defect() {
+    if (std::fegetround() != FE_TONEAREST || !rounds_to_nearest()) {
+        return "results are not rounded to nearest";
+    }
+    if (!keeps_subnormals()) {
+        return "subnormal numbers are taken for 0";
+    }
+    return contracts() ? "products are fused into sums" : nullptr;
+}
+
+void require_floating_point() {
+    if (const char* const defect = floating_point_defect()) {
+        throw Error(ErrorKind::internal,
+                    std::string("floating-point arithmetic: ") + defect +
+                        ": expected IEEE double, rounded to nearest; nothing can be proved here (another library, or a "
+                        "compiler option such as -ffast-math, has changed it)");
+    }
+}
+
+} // namespace isostat

@@ -82,11 +82,12 @@ EventRecord event_of(const std::string& line, const std::string& where) {
         const Field value = field.at(name);
         return value.value().is_null() ? std::numeric_limits<double>::quiet_NaN() : value.number();
     };
+    constexpr int most = std::numeric_limits<int>::max();
     EventRecord event;
     event.where = where;
     event.step = field.at("step").integer();
-    event.equilibrium = static_cast<int>(field.at("equilibrium").integer());
-    event.arc = static_cast<int>(field.at("arc").integer());
+    event.equilibrium = field.at("equilibrium").integer(0, most);
+    event.arc = field.at("arc").integer(0, most);
     event.kind = field.at("kind").string();
     event.opened = field.at("opened").string();
     event.closed = field.at("closed").string();
@@ -137,7 +138,7 @@ std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path) {
     std::vector<EquilibriumLine> lines;
     for_each_line(read_text(path), [&](int number, const std::string& text) {
         const std::string where = fmt::format("{}:{}", path.string(), number);
-        if (text.starts_with('#')) {
+        if (names.empty() && text.starts_with('#')) {
             names = split(text.substr(text.find_first_not_of("# ")), ',');
             for (const char* name : needed_columns) {
                 if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -161,6 +162,15 @@ std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path) {
 }
 
 } // namespace
+
+int EquilibriumLine::integer(const char* name) const {
+    constexpr double largest = std::numeric_limits<int>::max();
+    const double number = at(name);
+    if (!(std::abs(number) <= largest) || number != std::trunc(number)) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: {} is {}: expected an integer", where, name, number));
+    }
+    return static_cast<int>(number);
+}
 
 std::optional<StateFile<2>> RunRecords::stored(int equilibrium) const {
     const std::filesystem::path path = states / fmt::format("eq_{:06}.json", equilibrium);

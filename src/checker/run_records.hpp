@@ -39,7 +39,8 @@ struct EquilibriumLine {
     std::string where;
     std::map<std::string, double> value;
     [[nodiscard]] double at(const char* name) const { return value.at(name); }
-    [[nodiscard]] int integer(const char* name) const { return static_cast<int>(value.at(name)); }
+    /// Throws `Error(bad_input)` when it is none.
+    [[nodiscard]] int integer(const char* name) const;
 };
 
 struct RunRecords {

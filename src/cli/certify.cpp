@@ -30,7 +30,7 @@ int certify(const CertifyArguments& arguments) {
         object["claims"] = claims_json(result);
         object["refuted"] = result.refuted;
         object["undecided"] = result.claims.undecided;
-        fmt::print("{}\n", object.dump());
+        print_json(object);
     } else {
         print_claims(result);
         fmt::print("{:<14} {}: {}\n", to_string(result.verdict),

@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
@@ -20,6 +21,10 @@ std::string program_name() {
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+void print_json(const Json& object) {
+    fmt::print("{}\n", json::dumped(object));
 }
 
 int status_of(FailureKind kind) {
@@ -112,7 +117,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
     provenance["infinitesimal_seed"] = report.infinitesimal_seed;
     provenance["linear_programmes"] = report.programmes;
     provenance["pivots"] = report.pivots;
-    prepared.value().provenance = provenance.dump();
+    prepared.value().provenance = json::dumped(provenance);
     return prepared;
 }
 

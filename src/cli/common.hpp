@@ -19,6 +19,9 @@ using Json = nlohmann::ordered_json;
 /// null for infinities and NaN, which JSON does not have.
 Json number(double value);
 
+/// One line on standard output.
+void print_json(const Json& object);
+
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
 int status_of(FailureKind kind);
 

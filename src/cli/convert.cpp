@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "io/json.hpp"
 
 #include <isostat/io/state_file.hpp>
 
@@ -16,13 +17,11 @@ int convert(const ConvertArguments& arguments) {
         provenance["program"] = program_name();
         provenance["command"] = arguments.common.command;
     }
-    file.state.provenance = provenance.dump();
+    file.state.provenance = json::dumped(provenance);
     write_state<2>(arguments.output, file.state, file.forces);
     const int disks = file.state.packing.disk_count();
     if (arguments.common.json) {
-        fmt::print(
-            "{}\n",
-            Json{{"state", arguments.output}, {"disks", disks}, {"contacts", file.state.contacts.size()}}.dump());
+        print_json(Json{{"state", arguments.output}, {"disks", disks}, {"contacts", file.state.contacts.size()}});
     } else {
         fmt::print("{}: {} disks, {} contacts\n", arguments.output, disks, file.state.contacts.size());
     }

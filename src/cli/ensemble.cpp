@@ -63,10 +63,10 @@ void note_ending(const SampleFolders& folders, std::size_t number, const Process
     } else if (end.signal != 0) {
         folders.note(number, SampleStatus::crashed,
                      fmt::format("killed by signal {} ({})", end.signal, strsignal(end.signal)));
+    } else if (end.status == Error(ErrorKind::internal, "").exit_status()) {
+        folders.note(number, SampleStatus::crashed, words());
     } else if (end.status != done && end.status != failed && end.status != undecided && end.status != interrupted) {
         folders.note(number, SampleStatus::refused, fmt::format("exit status {}: {}", end.status, words()));
-    } else if (!folders.sample(number).finished() && end.status == failed) {
-        folders.note(number, SampleStatus::crashed, words()); // an exception that nobody expected
     }
 }
 
@@ -207,7 +207,7 @@ void print_outcome(const std::filesystem::path& path, const std::vector<Sample>&
         object["equilibria"] = equilibria;
         object["proved"] = proved;
         object["arcs"] = arcs;
-        fmt::print("{}\n", object.dump());
+        print_json(object);
         return;
     }
     std::string words;

@@ -257,7 +257,7 @@ int genericity(const GenericityArguments& a) {
                            {"k", original.mechanisms},
                            {"rank_exact", to_string(original.exact)}};
         out["sizes"] = std::move(results);
-        fmt::print("{}\n", out.dump());
+        print_json(out);
         return every ? done : undecided;
     }
     fmt::print(

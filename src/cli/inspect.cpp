@@ -127,7 +127,7 @@ int inspect(const InspectArguments& arguments) {
             object["remark"] = result.failure().message;
         }
         object["true_configuration"] = true_vertex_json(truth);
-        fmt::print("{}\n", object.dump());
+        print_json(object);
     } else {
         print_counting(state, counting);
         if (result.ok()) {

@@ -104,7 +104,7 @@ int inspect_packing(const InspectArguments& arguments) {
         if (inspection.bases_exact != Verdict::proved) {
             out["enclosed_bases"] = enclosed_json(file.packing, inspection);
         }
-        fmt::print("{}\n", out.dump());
+        print_json(out);
     } else {
         fmt::print("{}\n", crafted::to_text(inspection, file.packing));
         if (inspection.bases_exact != Verdict::proved) {

@@ -9,7 +9,7 @@ namespace isostat::cli {
 
 namespace {
 
-void print_json(const Scene& scene) {
+void print_plan(const Scene& scene) {
     Json object;
     object["scene"] = scene.file;
     for (const PlanEntry& entry : make_plan(scene)) {
@@ -24,7 +24,7 @@ void print_json(const Scene& scene) {
         object["settings"].push_back(
             {{"section", setting.section}, {"key", setting.key}, {"value", setting.value}, {"line", setting.line}});
     }
-    fmt::print("{}\n", object.dump());
+    print_json(object);
 }
 
 /// The effective scene: valid TOML, so that it can be saved and changed.
@@ -49,7 +49,7 @@ int plan(const PlanArguments& arguments) {
         load_start(scene); // a start that a run would refuse is refused here
     }
     if (arguments.common.json) {
-        print_json(scene);
+        print_plan(scene);
         return done;
     }
     const std::vector<PlanEntry> entries = make_plan(scene);

@@ -173,7 +173,7 @@ int plateau(const PlateauArguments& a) {
         write_atomically(a.csv, to_csv(result));
     }
     if (a.common.json) {
-        fmt::print("{}\n", to_json(a, file, result, thresholds).dump());
+        print_json(to_json(a, file, result, thresholds));
     } else {
         print_text(a, file, result, thresholds);
     }

@@ -38,9 +38,7 @@ int prepare(const PrepareArguments& arguments) {
     if (!prepared.ok()) {
         fmt::print(stderr, "isostat: {}\n", prepared.failure().message);
         if (arguments.common.json) {
-            fmt::print(
-                "{}\n",
-                Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message}}.dump());
+            print_json(Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message}});
         }
         return status_of(prepared.failure().kind);
     }
@@ -54,7 +52,7 @@ int prepare(const PrepareArguments& arguments) {
         object["contacts"] = state.contacts.size();
         object["length"] = {state.packing.length(0), state.packing.length(1)};
         object["solid_fraction"] = number(state.packing.solid_fraction());
-        fmt::print("{}\n", object.dump());
+        print_json(object);
     } else if (!quiet) {
         fmt::print("{}: {} disks, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),
                    state.contacts.size(), state.packing.solid_fraction());

@@ -31,7 +31,7 @@ int report(const ReportArguments& arguments) {
         }
         object["notes"] = result.notes;
         object["text"] = result.text;
-        fmt::print("{}\n", object.dump());
+        print_json(object);
         return done;
     }
     if (!arguments.common.quiet) {

@@ -3,6 +3,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "cli/state_certifier.hpp"
+#include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/work.hpp>
@@ -159,13 +160,14 @@ void record_work(const std::filesystem::path& path) {
     const auto work = work_done();
     for (std::size_t k = 0; k < work_kinds; ++k) {
         const char* name = to_string(static_cast<Work>(k));
-        counts[name] = counts.value(name, 0L) + work[k];
+        const long before = counts.contains(name) && counts[name].is_number_integer() ? counts[name].get<long>() : 0;
+        counts[name] = before + work[k];
     }
     Json object;
     object["format"] = "isostat-work";
     object["version"] = 1;
     object["counts"] = counts;
-    write_atomically(path, object.dump(2) + "\n");
+    write_atomically(path, json::dumped(object, 2) + "\n");
 }
 
 void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {

@@ -73,7 +73,7 @@ int verify_folder(const VerifyArguments& arguments) {
         object["undecided"] = run.undecided;
         object["finished"] = run.finished;
         object["verdict"] = words(run);
-        fmt::print("{}\n", object.dump());
+        print_json(object);
         return status_of_verdict(run.verdict);
     }
     if (!run.finished) {
@@ -124,7 +124,7 @@ int verify(const VerifyArguments& arguments) {
             object["checks"].push_back(json_of(check));
         }
         object["verdict"] = to_string(verification.verdict);
-        fmt::print("{}\n", object.dump());
+        print_json(object);
         return status_of_verdict(verification.verdict);
     }
     fmt::print("{}: claims of {} about {} ({} disks, {} contacts)\n", arguments.certificate, certificate.program,

@@ -187,12 +187,11 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
         {"stable", std::string(to_string(inspection.stable))},
     };
     const auto mismatch = [&](const ExpectedEntry& entry, const std::string& wanted, const std::string& found) {
-        out.push_back(
-            fmt::format("{}, line {}: {}: expected {}, found {}", source, entry.line, entry.key, wanted, found));
+        out.push_back(fmt::format("{}:{}: {}: expected {}, found {}", source, entry.line, entry.key, wanted, found));
     };
     const auto bad = [&](const ExpectedEntry& entry, const std::string& wanted) {
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}, line {}: expected.{}: expected {}", source, entry.line, entry.key, wanted));
+                    fmt::format("{}:{}: expected.{}: expected {}", source, entry.line, entry.key, wanted));
     };
     for (const ExpectedEntry& entry : file.expected) {
         if (const auto word = words.find(entry.key); word != words.end()) {
@@ -247,7 +246,7 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
                         return Number::parse(row[1]);
                     } catch (const Error& error) {
                         throw Error(ErrorKind::bad_input,
-                                    fmt::format("{}, line {}: expected.forces: {}", source, entry.line, error.what()));
+                                    fmt::format("{}:{}: expected.forces: {}", source, entry.line, error.what()));
                     }
                 }();
                 std::string found = inspection.forces_unique ? "no such contact" : "forces that are not unique";

@@ -1,10 +1,10 @@
+#include "io/toml.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/packing_file.hpp>
-
-#include <toml++/toml.h>
+#include <isostat/io/files.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
 #include <sstream>
 #include <string_view>
@@ -47,14 +47,8 @@ class Source {
 
 class Reader {
   public:
-    Reader(const std::string& text, const std::string& name) : source_(text), name_(name) {
-        try {
-            root_ = toml::parse(std::string_view(text), std::string_view(name));
-        } catch (const toml::parse_error& error) {
-            throw Error(ErrorKind::bad_input, name + ", line " + std::to_string(error.source().begin.line) + ": " +
-                                                  std::string(error.description()));
-        }
-    }
+    Reader(const std::string& text, const std::string& name)
+        : source_(text), name_(name), root_(parse_toml(text, name)) {}
 
     PackingFile read() {
         allow(root_, "", {"format", "title", "source", "note", "disks", "disk", "box", "load", "expected"});
@@ -78,8 +72,8 @@ class Reader {
   private:
     [[noreturn]] void fail(const toml::node& node, const std::string& key, const std::string& found,
                            const std::string& wanted) const {
-        throw Error(ErrorKind::bad_input, name_ + ", line " + std::to_string(node.source().begin.line) + ": " + key +
-                                              " = " + found + ", expected " + wanted);
+        throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(node.source().begin.line) + ": " + key + " = " +
+                                              found + ", expected " + wanted);
     }
 
     static std::string type_name(const toml::node& node) {
@@ -95,7 +89,7 @@ class Reader {
                 for (const std::string_view k : keys) {
                     wanted += (wanted.empty() ? "" : ", ") + std::string(k);
                 }
-                throw Error(ErrorKind::bad_input, name_ + ", line " + std::to_string(key.source().begin.line) +
+                throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(key.source().begin.line) +
                                                       ": unknown key \"" + where + std::string(key.str()) +
                                                       "\", expected one of " + wanted);
             }
@@ -105,9 +99,8 @@ class Reader {
     const toml::node& required(const toml::table& table, const std::string& key, const std::string& where = "") const {
         const toml::node* node = table.get(key);
         if (node == nullptr) {
-            throw Error(ErrorKind::bad_input, name_ + ", line " +
-                                                  std::to_string(std::max(table.source().begin.line, 1u)) + ": key \"" +
-                                                  where + key + "\" is missing");
+            throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(std::max(table.source().begin.line, 1u)) +
+                                                  ": key \"" + where + key + "\" is missing");
         }
         return *node;
     }
@@ -204,7 +197,7 @@ class Reader {
             }
         }
         if (out_.packing.radius.empty()) {
-            throw Error(ErrorKind::bad_input, name_ + ", line 1: no disk, expected \"disks\" or [[disk]]");
+            throw Error(ErrorKind::bad_input, name_ + ":1: no disk, expected \"disks\" or [[disk]]");
         }
     }
 
@@ -329,16 +322,11 @@ class Reader {
 } // namespace
 
 PackingFile parse_packing(const std::string& text, const std::string& source) {
-    return Reader(text, source).read();
+    return Reader(std::string(without_byte_order_mark(text)), source).read();
 }
 
 PackingFile read_packing(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    std::ostringstream text;
-    if (!stream || !(text << stream.rdbuf())) {
-        throw Error(ErrorKind::bad_input, path + ": cannot be read");
-    }
-    return parse_packing(text.str(), path);
+    return parse_packing(read_text(path), path);
 }
 
 } // namespace isostat::crafted

@@ -143,7 +143,7 @@ void EnsembleDirectory::write_header(const std::string& status, const std::vecto
         object["counts"] = counts;
         object["not_completed"] = reasons;
     }
-    write_atomically(samples_.path() / "ensemble.json", object.dump(2) + "\n");
+    write_atomically(samples_.path() / "ensemble.json", json::dumped(object, 2) + "\n");
 }
 
 std::vector<Sample> EnsembleDirectory::merge() const {

@@ -117,7 +117,7 @@ bool SampleFolders::prepare(std::size_t number) const {
 void SampleFolders::note(std::size_t number, SampleStatus status, const std::string& reason) const {
     Json object;
     object["status"] = fmt::format("{}: {}", to_string(status), reason);
-    write_atomically(folder(number) / "sample.json", object.dump() + "\n");
+    write_atomically(folder(number) / "sample.json", json::dumped(object) + "\n");
 }
 
 } // namespace isostat

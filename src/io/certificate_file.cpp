@@ -176,7 +176,7 @@ bool is_hash(const std::string& text) {
 } // namespace
 
 Certificate parse_certificate(const std::string& text, const std::string& source) {
-    const json::Json parsed = json::parse_strictly(text, source);
+    const json::Json parsed = Field::parse(text, source);
     const Field document(parsed, source);
     if (!document.value().is_object()) {
         document.fail("an object with \"format\": \"isostat-certificate\"");

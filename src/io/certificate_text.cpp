@@ -92,14 +92,9 @@ template <class Claim> Json or_absent(const std::optional<Claim>& value) {
     return value ? claim(*value) : Json(nullptr);
 }
 
-/// Text for people may hold bytes that are no UTF-8 (names of files): they become replacement characters.
-std::string dumped(const Json& value) {
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 /// A member of the document in one line.
 std::string line(const char* name, const Json& value) {
-    return fmt::format("\"{}\": {}", name, dumped(value));
+    return fmt::format("\"{}\": {}", name, json::dumped(value));
 }
 
 } // namespace

@@ -48,10 +48,15 @@ std::string read_text(const std::filesystem::path& path) {
     if (file.bad()) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: cannot read to its end", path.string()));
     }
-    if (text.str().find_first_not_of(" \t\r\n") == std::string::npos) {
+    if (without_byte_order_mark(text.view()).find_first_not_of(" \t\r\n") == std::string_view::npos) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: is empty", path.string()));
     }
     return text.str();
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view mark = "\xEF\xBB\xBF";
+    return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
 
 void write_atomically(const std::filesystem::path& path, const std::string& text) {

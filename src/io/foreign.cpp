@@ -1,6 +1,7 @@
 #include "io/foreign_source.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 
@@ -37,6 +38,21 @@ void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions&
         if (raw.boundary[a] == Boundary::unknown && raw.box) {
             raw.notes.push_back(fmt::format(
                 "the file does not say whether {} is periodic: no contact is looked for across the boundary", axis));
+        }
+    }
+}
+
+/// Not `validate`: disks of any size may overlap, and reach beyond the walls.
+void check_range(const Packing<2>& packing, const std::string& source) {
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        if (!(packing.radius[i] >= shortest_length && packing.radius[i] <= longest_length)) {
+            refuse(source, fmt::format("radius of disk {} is {}: expected one from {} to {}", i, packing.radius[i],
+                                       shortest_length, longest_length));
+        }
+    }
+    for (const double x : packing.q) {
+        if (!(std::abs(x) <= longest_length)) {
+            refuse(source, fmt::format("a coordinate is {}: expected a size of at most {}", x, longest_length));
         }
     }
 }
@@ -103,7 +119,8 @@ const std::vector<std::string>& foreign_formats() {
     return formats;
 }
 
-std::string recognise_format(const std::string& text) {
+std::string recognise_format(const std::string& marked) {
+    const std::string_view text = without_byte_order_mark(marked);
     const std::string source;
     Lines lines(text, source);
     const auto blank = [](std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; };
@@ -150,6 +167,7 @@ std::string recognise_format(const std::string& text) {
 }
 
 ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options) {
+    require_floating_point();
     ForeignPacking out;
     out.format = options.format.empty() ? recognise_format(text) : options.format;
     if (options.size && options.size->column.empty() &&
@@ -183,11 +201,9 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
         out.packing.q.push_back(raw.x[i]);
         out.packing.q.push_back(raw.y[i]);
         out.packing.radius.push_back(raw.meaning == SizeMeaning::radius ? raw.size[i] : raw.size[i] / 2);
-        if (!(out.packing.radius.back() > 0)) {
-            refuse(source, fmt::format("diameter {} of disk {}: expected a larger one", raw.size[i], i));
-        }
     }
     add_walls(out, raw, source, options);
+    check_range(out.packing, source);
     return out;
 }
 

@@ -1,6 +1,7 @@
 #include "io/foreign_source.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -91,6 +92,9 @@ long Line::integer(std::size_t k, const std::string& name, long lowest, long hig
     }
     return value;
 }
+
+Lines::Lines(std::string_view text, const std::string& source)
+    : rest_(without_byte_order_mark(text)), source_(&source) {}
 
 std::string_view Lines::peek() const {
     return rest_.substr(0, rest_.find('\n'));

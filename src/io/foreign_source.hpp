@@ -40,10 +40,11 @@ class Line {
 /// A number, all of the text; empty when it is none or not finite.
 std::optional<double> to_number(std::string_view text);
 
-/// Walks through a text line by line. \pre text and source outlive it and its lines.
+/// Walks through a text line by line, after its byte order mark if it has one. \pre text and source outlive it and its
+/// lines.
 class Lines {
   public:
-    Lines(std::string_view text, const std::string& source) : rest_(text), source_(&source) {}
+    Lines(std::string_view text, const std::string& source);
     [[nodiscard]] bool at_end() const { return rest_.empty(); }
     /// True when only blank lines are left.
     [[nodiscard]] bool only_blanks() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }

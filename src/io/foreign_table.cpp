@@ -4,8 +4,11 @@
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 
 namespace isostat::foreign {
 
@@ -49,6 +52,26 @@ bool is_comment(std::string_view line) {
     return first != std::string_view::npos && line[first] == '#';
 }
 
+/// A number, or what stands for one that is missing or that other programs write: not a name of a column.
+bool is_value(std::string_view field) {
+    std::string word(field.substr(field.find_first_not_of("+-") == 1 ? 1 : 0));
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    static constexpr std::array<std::string_view, 7> missing{"nan", "inf", "infinity", "na", "n/a", "null", "none"};
+    const bool digit = !word.empty() && (std::isdigit(static_cast<unsigned char>(word[0])) != 0 || word[0] == '.');
+    return digit || std::find(missing.begin(), missing.end(), word) != missing.end();
+}
+
+/// A row without any value is taken for names; all others are disks.
+bool is_row_of_names(const Line& line) {
+    for (std::size_t k = 0; k < line.size(); ++k) {
+        if (is_value(line.field(k))) {
+            return false;
+        }
+    }
+    return line.size() > 0;
+}
+
 } // namespace
 
 Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options) {
@@ -73,12 +96,17 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     }
     const char separator = separator_of(lines.peek());
     const Line first(lines.peek(), lines.number() + 1, &source, separator);
-    if (first.size() > 0 && !to_number(first.field(0))) {
+    Raw raw;
+    if (is_row_of_names(first)) {
         names = names_of(first);
         (void)lines.take("names");
         header = lines.number();
     }
     if (!options.columns.empty()) {
+        if (!names.empty()) {
+            raw.notes.push_back(fmt::format("line {} ({}) is taken for names of columns; those stated are used", header,
+                                            fmt::join(names, " ")));
+        }
         names = options.columns;
     }
     if (names.empty()) {
@@ -90,7 +118,6 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     for (std::string& name : names) {
         name = name == "-" ? "" : name;
     }
-    Raw raw;
     Columns columns;
     columns.x = find_column(names, "x", where);
     columns.y = find_column(names, "y", where);

@@ -1,12 +1,15 @@
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
+#include <set>
 
 namespace isostat::json {
 
@@ -20,6 +23,8 @@ std::string shortened(const Json& value) {
     }
     return text;
 }
+
+constexpr int deepest = 64;
 
 /// "0x1.8p+3" or "-0x1p-2", whole string.
 bool parse_hexadecimal(const std::string& text, double& value) {
@@ -36,7 +41,25 @@ bool parse_hexadecimal(const std::string& text, double& value) {
 
 } // namespace
 
-Json Field::parse(const std::string& text, const std::string& source, const Json::parser_callback_t& watch) {
+Json Field::parse(const std::string& text, const std::string& source) {
+    require_floating_point(); // the library behind reads numbers as the C library does, which rounds as it is told
+    std::vector<std::set<std::string>> open; // names of the fields of the objects that are not complete yet
+    const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+        if (depth > deepest) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: objects and arrays are nested deeper than {} levels: expected fewer", source,
+                                    deepest));
+        }
+        if (event == Json::parse_event_t::object_start) {
+            open.emplace_back();
+        } else if (event == Json::parse_event_t::object_end) {
+            open.pop_back();
+        } else if (event == Json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: the field '{}' comes twice in one object: expected once",
+                                                          source, parsed.get<std::string>()));
+        }
+        return true;
+    };
     try {
         return Json::parse(text, watch);
     } catch (const nlohmann::json::parse_error& error) {
@@ -115,10 +138,20 @@ double Field::number() const {
 }
 
 long Field::integer() const {
-    if (!value_->is_number_integer()) {
+    constexpr auto largest = std::numeric_limits<long>::max();
+    if (!value_->is_number_integer() ||
+        (value_->is_number_unsigned() && value_->get<unsigned long>() > static_cast<unsigned long>(largest))) {
         fail("an integer");
     }
     return value_->get<long>();
+}
+
+int Field::integer(int lowest, int highest) const {
+    const long value = integer();
+    if (value < lowest || value > highest) {
+        fail(fmt::format("an integer from {} to {}", lowest, highest));
+    }
+    return static_cast<int>(value);
 }
 
 bool Field::boolean() const {
@@ -133,6 +166,10 @@ const std::string& Field::string() const {
         fail("a string");
     }
     return value_->get_ref<const std::string&>();
+}
+
+std::string dumped(const Json& document, int indent) {
+    return document.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
 Json or_null(double value) {

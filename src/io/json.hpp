@@ -19,10 +19,10 @@ using Json = nlohmann::ordered_json;
 /// A value of a document together with where it is: "state.json: load.stress[1]".
 class Field {
   public:
-    /// Parses the whole text. Throws `Error(bad_input)` with line and column when it is not one complete JSON document.
-    /// `watch` is called at every object, array and key (nlohmann's parser callback) and may throw.
-    static Json parse(const std::string& text, const std::string& source,
-                      const Json::parser_callback_t& watch = nullptr);
+    /// Parses the whole text; a byte order mark is skipped. Throws `Error(bad_input)` with the line when it is not one
+    /// complete JSON document, with the name when a field comes twice in one object, and when objects and arrays are
+    /// nested deeper than 64 levels (functions that walk a document call themselves).
+    static Json parse(const std::string& text, const std::string& source);
 
     Field(const Json& value, std::string source, std::string path = "")
         : value_(&value), source_(std::move(source)), path_(std::move(path)) {}
@@ -45,6 +45,8 @@ class Field {
     /// A finite number, or a string with a hexadecimal float.
     [[nodiscard]] double number() const;
     [[nodiscard]] long integer() const;
+    /// The same, from `lowest` to `highest`.
+    [[nodiscard]] int integer(int lowest, int highest) const;
     [[nodiscard]] bool boolean() const;
     [[nodiscard]] const std::string& string() const;
     [[nodiscard]] const Json& value() const { return *value_; }
@@ -54,6 +56,9 @@ class Field {
     std::string source_;
     std::string path_;
 };
+
+/// The text of a document. Bytes of its strings that are not UTF-8 (names of files may have some) become U+FFFD.
+std::string dumped(const Json& document, int indent = -1);
 
 /// A number for a record: infinities and NaN, which JSON does not have, become null.
 Json or_null(double value);

@@ -1,3 +1,5 @@
+#include "io/record_text.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
@@ -6,6 +8,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 
 namespace isostat {
 
@@ -25,7 +29,8 @@ double column(const std::string& name, std::string_view field, const std::string
 } // namespace
 
 std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
-    const std::string text = read_text(path);
+    const std::string content_of_file = read_text(path);
+    const std::string_view text = without_byte_order_mark(content_of_file);
     const std::vector<std::string>& columns = equilibria_columns();
     const auto index = [&](const char* name) {
         return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
@@ -37,9 +42,14 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
         if (end == std::string::npos) {
             break; // a row still being written by a run that was killed
         }
-        const std::string_view content = std::string_view(text).substr(begin, end - begin);
+        const std::string_view content = text.substr(begin, end - begin);
         begin = end + 1;
-        if (content.empty() || content.front() == '#') {
+        if (line == 1) {
+            if (std::string(content) + "\n" != equilibria_header()) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}:{}: the names of the columns are not those of this program: expected {}",
+                                        path.string(), line, equilibria_header()));
+            }
             continue;
         }
         std::vector<std::string_view> fields;
@@ -54,7 +64,14 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
                         fmt::format("{}: {} columns: expected {}", where, fields.size(), columns.size()));
         }
         const auto number = [&](const char* name) { return column(name, fields[index(name)], where); };
-        const auto integer = [&](const char* name) { return static_cast<int>(number(name)); };
+        const auto integer = [&](const char* name) {
+            constexpr double largest = std::numeric_limits<int>::max();
+            const double value = number(name);
+            if (!(std::abs(value) <= largest) || value != std::trunc(value)) {
+                throw Error(ErrorKind::bad_input, fmt::format("{}: {} is {}: expected an integer", where, name, value));
+            }
+            return static_cast<int>(value);
+        };
         EquilibriumRow& row = rows.emplace_back();
         row.number = integer("number");
         row.previous = integer("previous");

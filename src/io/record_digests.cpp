@@ -57,8 +57,8 @@ std::optional<CheckedRecords> check_records(const fs::path& directory) {
         const std::size_t begin = state + std::string_view(before_state).size();
         found.state = whole.substr(begin, body - begin);
     }
-    for (const auto& [name, digest] : file.at("files").value().items()) {
-        found.files[name] = digest.get<std::string>();
+    for (const auto& [name, unused] : file.at("files").value().items()) {
+        found.files[name] = file.at("files").at(name.c_str()).string();
         check_digest(directory / name, sha256(read_text(directory / name)), found.files[name]);
     }
     for (const auto& [name, unused] : file.at("bytes").value().items()) {

@@ -98,7 +98,7 @@ std::string event_line(const ArcRecord<2>& arc) {
     if (arc.certificate) {
         line["certificate"] = certificate_json(*arc.certificate);
     }
-    return line.dump() + "\n";
+    return json::dumped(line) + "\n";
 }
 
 const std::vector<std::string>& equilibria_columns() {

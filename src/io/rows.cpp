@@ -1,6 +1,8 @@
 #include "io/rows.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
+#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 
@@ -52,6 +54,11 @@ long Row::integer(std::size_t field, const std::string& name, long lowest, long 
         fail(field, name, fmt::format("an integer from {} to {}", lowest, highest));
     }
     return value;
+}
+
+RowReader::RowReader(const std::string& text, const std::string& source)
+    : text_(without_byte_order_mark(text)), source_(&source) {
+    require_floating_point();
 }
 
 std::string_view RowReader::peek() {

@@ -26,11 +26,11 @@ class Row {
     const std::string* source_;
 };
 
-/// Walks through the rows of a text; lines that start with '#' are comments. \pre text and source outlive the reader
-/// and its rows.
+/// Walks through the rows of a text, after its byte order mark if it has one; lines that start with '#' are comments.
+/// \pre text and source outlive the reader and its rows.
 class RowReader {
   public:
-    RowReader(const std::string& text, const std::string& source) : text_(text), source_(&source) {}
+    RowReader(const std::string& text, const std::string& source);
 
     /// The next row, which must have `fields` fields (0: any number). Throws when the file ends before; `what` says
     /// what was expected.

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace isostat {
 
@@ -42,7 +43,7 @@ std::string header_text(const RunHeader& header, const std::string& status) {
     object["scene"] = header.scene_text;
     object["programme"] = header.programme;
     object["settings"] = Json::parse(header.settings);
-    return object.dump(2) + "\n";
+    return json::dumped(object, 2) + "\n";
 }
 
 } // namespace
@@ -102,7 +103,7 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
     provenance["command"] = header_.command;
     provenance["scene_file"] = header_.scene_name;
     provenance["settings"] = Json::parse(header_.settings);
-    provenance_ = provenance.dump();
+    provenance_ = json::dumped(provenance);
 }
 
 RunDirectory::~RunDirectory() = default;
@@ -132,8 +133,9 @@ void RunDirectory::open_for_resume() {
     const std::string path = (directory_ / "checkpoint.json").string();
     const Field file(checked->checkpoint, path);
     Checkpoint& point = checkpoint_.emplace();
-    point.segment = static_cast<int>(file.at("segment").integer());
-    point.made = static_cast<int>(file.at("made").integer());
+    constexpr int most = std::numeric_limits<int>::max();
+    point.segment = file.at("segment").integer(0, most);
+    point.made = file.at("made").integer(0, most);
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
     StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path);
@@ -247,7 +249,7 @@ void RunDirectory::write_checkpoint() {
     object["bytes"] = {{"events.jsonl", pending_->events_bytes}, {"equilibria.csv", pending_->equilibria_bytes}};
     object["digests"] = {{"events.jsonl", pending_->events_digest}, {"equilibria.csv", pending_->equilibria_digest}};
     object["files"] = digests_;
-    std::string text = object.dump();
+    std::string text = json::dumped(object);
     text.pop_back();
     text += before_state + state_text<2>(last_, last_forces_);
     write_atomically(directory_ / "checkpoint.json", text + before_digest + '"' + sha256(text) + "\"}\n");
@@ -286,7 +288,7 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
         object["eps2"] = json::or_null(strain(loaded));
         object["solid_fraction"] = json::or_null(last_.packing.solid_fraction());
     }
-    summary_ = object.dump(2) + "\n";
+    summary_ = json::dumped(object, 2) + "\n";
     files_->events.sync();
     files_->equilibria.sync();
     write_atomically(directory_ / "summary.json", summary_);

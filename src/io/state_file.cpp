@@ -199,7 +199,8 @@ template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std
 
 template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) {
     const std::string text = read_text(path);
-    if (text[text.find_first_not_of(" \t\r\n")] == '{') {
+    const std::string_view content = without_byte_order_mark(text);
+    if (content[content.find_first_not_of(" \t\r\n")] == '{') {
         return parse_state<Dim>(text, path.string());
     }
     return {parse_vertex_text(text, path.string()), {}};

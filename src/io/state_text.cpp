@@ -141,7 +141,7 @@ void write_state(const std::filesystem::path& path, const State<Dim>& state, std
 template <int Dim>
 void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason) {
     std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 1,\n";
-    text += fmt::format("  \"incomplete\": {},\n", Json(reason).dump());
+    text += fmt::format("  \"incomplete\": {},\n", json::dumped(reason));
     append_disks(text, packing);
     write_atomically(path, text + "\n}\n");
 }

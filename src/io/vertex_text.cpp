@@ -75,7 +75,7 @@ State<2> parse_vertex_text(const std::string& text, const std::string& source) {
     std::sort(state.contacts.begin(), state.contacts.end());
     snap_to_grid(state.packing);
     state.load.reference_length = {state.packing.length(0), state.packing.length(1)};
-    state.provenance = json::Json{{"converted_from", source}}.dump();
+    state.provenance = json::dumped({{"converted_from", source}});
     return state;
 }
 

@@ -86,13 +86,15 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
     }
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         const double r = packing.radius[i];
-        if (!(r > 0) || !std::isfinite(r)) {
-            bad(fmt::format("radius of disk {} is {}: expected a positive finite number", i, r));
+        if (!(r >= shortest_length && r <= longest_length)) {
+            bad(fmt::format("radius of disk {} is {}: expected a positive finite number from {} to {}", i, r,
+                            shortest_length, longest_length));
         }
         for (std::size_t a = 0; a < Dim; ++a) {
             const double x = packing.q[Dim * i + a];
-            if (!std::isfinite(x)) {
-                bad(fmt::format("{} of disk {} is {}: expected a finite number", axis_name[a], i, x));
+            if (!(std::abs(x) <= longest_length)) {
+                bad(fmt::format("{} of disk {} is {}: expected a finite number of size at most {}", axis_name[a], i, x,
+                                longest_length));
             }
         }
     }
@@ -101,8 +103,9 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
             continue;
         }
         const double length = packing.length(static_cast<int>(a));
-        if (!std::isfinite(length) || (packing.walls.lower[a] != WallKind::absent && !(length > 0))) {
-            bad(fmt::format("position of the {} is {}: expected a positive finite number", upper_name[a], length));
+        if (!(std::abs(length) <= longest_length) || (packing.walls.lower[a] != WallKind::absent && !(length > 0))) {
+            bad(fmt::format("position of the {} is {}: expected a positive finite number of at most {}", upper_name[a],
+                            length, longest_length));
         }
         if (packing.walls.lower[a] == WallKind::absent) {
             continue;

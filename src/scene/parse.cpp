@@ -1,3 +1,4 @@
+#include "io/toml.hpp"
 #include "scene/radii_file.hpp"
 #include "scene/section.hpp"
 
@@ -65,8 +66,10 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
         options.disks = static_cast<int>(section.integer("disks", 0, 1, 10'000'000));
         options.diameters = {1.0, 2.0};
         if (diameters) {
-            if (diameters->size() != 2 || !((*diameters)[0] > 0) || !((*diameters)[1] >= (*diameters)[0])) {
-                section.fail("diameters", "[smallest, largest] with 0 < smallest <= largest");
+            if (diameters->size() != 2 || !((*diameters)[0] >= smallest_size) ||
+                !((*diameters)[1] >= (*diameters)[0]) || !((*diameters)[1] <= largest_size)) {
+                section.fail("diameters", fmt::format("[smallest, largest] with 0 < smallest <= largest, from {} to {}",
+                                                      smallest_size, largest_size));
             }
             options.diameters = {(*diameters)[0], (*diameters)[1]};
         }
@@ -77,9 +80,10 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
             section.fail("radii", "at least one radius");
         }
         for (std::size_t i = 0; i < radii->size(); ++i) {
-            if (!((*radii)[i] > 0)) {
-                section.refuse("radii",
-                               fmt::format("radii[{}] in [packing] is {}: expected a positive radius", i, (*radii)[i]));
+            if (!((*radii)[i] >= smallest_size && (*radii)[i] <= largest_size)) {
+                section.refuse("radii", fmt::format("radii[{}] in [packing] is {}: expected a positive radius, from {} "
+                                                    "to {}",
+                                                    i, (*radii)[i], smallest_size, largest_size));
             }
         }
         options.radii = *radii;
@@ -219,13 +223,7 @@ void check_sections(const toml::table& document, const std::string& source) {
 } // namespace
 
 Scene parse_scene(const std::string& text, const std::string& source, const std::filesystem::path& folder) {
-    toml::table document;
-    try {
-        document = toml::parse(text, source);
-    } catch (const toml::parse_error& error) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: not valid TOML: {}", source, error.source().begin.line, error.description()));
-    }
+    const toml::table document = parse_toml(without_byte_order_mark(text), source);
     check_sections(document, source);
     Scene scene;
     scene.file = source;

@@ -17,8 +17,8 @@ std::vector<double> read_radii(const std::filesystem::path& path) {
         const std::string name = fmt::format("radius of disk {}", radii.size());
         const Row row = rows.next(name, 1);
         const double radius = row.number(0, name);
-        if (!(radius > 0)) {
-            row.fail(0, name, "a positive number");
+        if (!(radius >= smallest_size && radius <= largest_size)) {
+            row.fail(0, name, fmt::format("a positive number from {} to {}", smallest_size, largest_size));
         }
         radii.push_back(radius);
     } while (!rows.at_end());

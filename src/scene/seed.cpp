@@ -1,6 +1,8 @@
+#include "io/toml.hpp"
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
 #include <isostat/scene/scene.hpp>
 #include <isostat/scene/seed.hpp>
 
@@ -36,8 +38,9 @@ void replace_value(std::string& text, const toml::node& value, const std::string
 
 } // namespace
 
-std::string with_seed(const std::string& text, std::uint64_t seed, const std::string& source,
+std::string with_seed(const std::string& marked, std::uint64_t seed, const std::string& source,
                       const std::filesystem::path& folder) {
+    const std::string text(without_byte_order_mark(marked));
     const Scene scene = parse_scene(text, source, folder);
     if (!scene.start.empty()) {
         throw Error(ErrorKind::bad_input,
@@ -51,12 +54,12 @@ std::string with_seed(const std::string& text, std::uint64_t seed, const std::st
     }
     const auto value_of = [](const toml::table& document, const char* key) { return document["packing"][key].node(); };
     std::string result = text;
-    const toml::table original = toml::parse(text);
+    const toml::table original = parse_toml(text, source);
     if (const toml::node* file = value_of(original, "radii_file")) {
         const std::filesystem::path name = file->value<std::string>().value_or("");
         replace_value(result, *file, toml_text(std::filesystem::absolute(folder / name).lexically_normal().string()));
     }
-    const toml::table document = toml::parse(result);
+    const toml::table document = parse_toml(result, source);
     if (const toml::node* old = value_of(document, "seed")) {
         replace_value(result, *old, fmt::format("{}", seed));
     } else {

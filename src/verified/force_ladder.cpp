@@ -452,6 +452,12 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
     if (structure->size() > options.exact_size || !exact_allowed) {
         return false;
     }
+    const auto finite = [](const Part& part) { // a load beyond the range of double is no number to begin with
+        return std::all_of(part.force.begin(), part.force.end(), [](double f) { return std::isfinite(f); });
+    };
+    if (!std::all_of(parts.begin(), parts.end(), finite)) {
+        return false;
+    }
     if (vertex != nullptr) { // the stored configuration must be the true vertex, not only near it
         const auto closed = [&](const Contact& c) {
             return c.kind == ContactKind::held || gap_sign(*packing, c, 0) == 0;

@@ -236,4 +236,33 @@ BOOST_AUTO_TEST_CASE(our_own_formats_are_recognised) {
     BOOST_TEST(recognise_format(scratch::read(std::string(ISOSTAT_EXAMPLES) + "/packings/wedge.toml")) == "packing");
 }
 
+BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_file) {
+    const std::string mark = "\xEF\xBB\xBF";
+    for (const auto& [format, text] : {std::pair{"lammps-dump", dump}, {"lammps-data", data_file}, {"xyz", xyz}}) {
+        expect_disks(read(mark + text), format);
+    }
+    ForeignOptions columns;
+    columns.columns = {"x", "y", "r"};
+    const ForeignPacking three = read(mark + "0.5 0.5 0.5\n1.5 0.5 0.5\n2.5 0.5 0.5\n", columns);
+    BOOST_TEST(three.packing.radius.size() == 3U);
+    BOOST_TEST(read(mark + "x y r\n0.5 0.5 0.5\n").packing.radius.size() == 1U);
+    BOOST_TEST(read(mark + "# x y r\n0.5 0.5 0.5\n").packing.radius.size() == 1U);
+    BOOST_TEST(recognise_format(mark + "{\"format\": 1}") == "state");
+}
+
+BOOST_AUTO_TEST_CASE(a_first_row_that_is_no_row_of_names_is_a_disk) {
+    ForeignOptions columns;
+    columns.columns = {"x", "y", "r"};
+    const std::string rest = "\n0.5 0.5 0.5\n1.5 0.5 0.5\n";
+    for (const std::string bad : {"nan", "NaN", "-inf", "0.5D0", "1e400", "NA", "--1", "0x1p-1"}) {
+        expect_bad_input([&] { (void)read(bad + " 0.5 0.5" + rest, columns); }, {"FILE:1:", "x of disk 0", "finite"});
+        expect_bad_input([&] { (void)read("# x y r\n0.5 " + bad + " 0.5" + rest); },
+                         {"FILE:2:", "y of disk 0", bad, "finite"});
+    }
+    // Names are named, and the stated ones count.
+    const ForeignPacking two = read("px py rad" + rest, columns);
+    BOOST_TEST(two.packing.radius.size() == 2U);
+    BOOST_TEST(says(two, "line 1 (px py rad) is taken for names"));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -282,4 +282,52 @@ BOOST_AUTO_TEST_CASE(what_a_failed_preparation_leaves_is_no_state) {
     expect_bad_input([&] { (void)read_state<2>(folder / "left.json"); }, {"left.json", "isostat-packing"});
 }
 
+BOOST_AUTO_TEST_CASE(a_field_that_comes_twice_is_named) {
+    const std::string text = two_disk_text();
+    expect_bad_input(
+        [&] { (void)parse_state<2>(replaced(text, "\"length\"", "\"length\": [9, 9], \"length\""), "FILE"); },
+        {"FILE", "'length'", "twice"});
+    expect_bad_input([&] { (void)parse_state<2>(replaced(text, "\"kind\"", "\"kind\": \"true\", \"kind\""), "FILE"); },
+                     {"FILE", "'kind'", "twice"});
+}
+
+BOOST_AUTO_TEST_CASE(nesting_has_an_end) {
+    const std::string open(100'000, '['), close(100'000, ']');
+    expect_bad_input([&] { (void)parse_state<2>("{\"format\":" + open + close + "}", "FILE"); },
+                     {"FILE", "deeper than 64"});
+    expect_bad_input([&] { (void)parse_state<2>("{\"format\":" + open, "FILE"); }, {"FILE"});
+    std::string objects;
+    for (int k = 0; k < 100'000; ++k) {
+        objects += "{\"a\":";
+    }
+    expect_bad_input([&] { (void)parse_state<2>(objects, "FILE"); }, {"FILE", "deeper than 64"});
+}
+
+BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_state) {
+    const scratch::Folder folder;
+    for (const std::string& text : {two_disk_text(), scratch::read(scratch::data("vertex100.txt"))}) {
+        scratch::write(folder / "plain", text);
+        scratch::write(folder / "marked", "\xEF\xBB\xBF" + text);
+        StateFile<2> plain = read_state<2>(folder / "plain"), marked = read_state<2>(folder / "marked");
+        marked.state.provenance = plain.state.provenance; // the name of the file
+        check_same(marked.state, plain.state);
+    }
+    scratch::write(folder / "nothing", "\xEF\xBB\xBF\n");
+    expect_bad_input([&] { (void)read_state<2>(folder / "nothing"); }, {"nothing", "empty"});
+}
+
+BOOST_AUTO_TEST_CASE(lengths_beyond_the_range_of_the_arithmetic_are_refused) {
+    for (const char* radius : {"1e-200", "1e-151", "1e151", "1e200", "1e308", "5e-324"}) {
+        expect_bad_input(
+            [&] {
+                (void)parse_state<2>(
+                    replaced(two_disk_text(), "[1.0,1.0,1.0]", std::string("[") + radius + ",1.0,1.0]"), "FILE");
+            },
+            {"FILE", "radius of disk 0", "1e-150"});
+    }
+    expect_bad_input(
+        [&] { (void)parse_state<2>(replaced(two_disk_text(), "[1.0,1.0,1.0]", "[1.0,-1e200,1.0]"), "FILE"); },
+        {"FILE", "x of disk 0", "1e+150"});
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -2,6 +2,7 @@
 #include "support/scratch.hpp"
 
 #include <isostat/scene/scene.hpp>
+#include <isostat/scene/seed.hpp>
 
 #include <algorithm>
 #include <string>
@@ -205,6 +206,45 @@ BOOST_AUTO_TEST_CASE(a_start_file_is_relative_to_the_scene) {
     BOOST_TEST(scene.start.string() == "/folder/v.txt");
     BOOST_TEST(*scene.infinitesimal_seed == 3U);
     BOOST_TEST(!scene.load_kind.has_value());
+}
+
+BOOST_AUTO_TEST_CASE(a_byte_order_mark_is_no_part_of_a_scene) {
+    const std::string text = "packing = { radii = [1.25, 2.5], seed = 3 }\n";
+    const Scene plain = parse_scene(text, "FILE", ""), marked = parse_scene("\xEF\xBB\xBF" + text, "FILE", "");
+    BOOST_TEST((marked.preparation.radii == plain.preparation.radii));
+    const std::string other = with_seed("\xEF\xBB\xBF" + text, 12, "FILE", "");
+    BOOST_TEST(other == "packing = { radii = [1.25, 2.5], seed = 12 }\n");
+}
+
+BOOST_AUTO_TEST_CASE(names_with_too_many_parts_are_refused) {
+    const auto dotted = [](int parts) {
+        std::string text = "a";
+        for (int k = 1; k < parts; ++k) {
+            text += k % 3 == 0 ? " . \"b.c\"" : k % 3 == 1 ? ".a" : ". 'd'";
+        }
+        return text;
+    };
+    for (const std::string& text :
+         {dotted(100'000) + " = 1\n", "[" + dotted(65) + "]\n", "x = {" + dotted(65) + " = 1}\n"}) {
+        expect_bad_input([&] { (void)parse_scene("# first\n" + text, "FILE", ""); }, {"FILE:2:", "64 parts"});
+    }
+    // Points of numbers, of text and of comments are none of a name.
+    std::string numbers = "radii = [";
+    for (int k = 0; k < 100; ++k) {
+        numbers += "1.5, ";
+    }
+    std::string points(200, '.');
+    const std::string text = "[packing] # " + points + "\n" + numbers +
+                             "]\n[[programme]]\ndo = \"up\"\nequilibria = 1\nname = \"\"\"" + points + "\\\"\n" +
+                             points + "\"\"\"\"\n";
+    BOOST_TEST(parse_scene(text, "FILE", "").preparation.radii.size() == 100U);
+}
+
+BOOST_AUTO_TEST_CASE(sizes_beyond_the_range_of_the_arithmetic_are_refused) {
+    expect_bad_input([] { (void)parse_scene("[packing]\ndisks = 8\ndiameters = [1e-200, 1e200]\n", "FILE", ""); },
+                     {"FILE:3:", "diameters", "1e+140"});
+    expect_bad_input([] { (void)parse_scene("[packing]\nradii = [1.0, 1e-200]\n", "FILE", ""); },
+                     {"FILE:2:", "radii[1]", "1e-140"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

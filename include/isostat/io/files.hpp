@@ -4,11 +4,16 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace isostat {
 
-/// The content of a file. Throws `Error(bad_input)` naming the file when it cannot be read or is empty.
+/// The bytes of a file. Throws `Error(bad_input)` naming the file when it cannot be read or is blank.
 std::string read_text(const std::filesystem::path& path);
+
+/// The text after a UTF-8 byte order mark, which some programs write at the start of a file: all of it when there is
+/// none. Every reader of text begins with this.
+std::string_view without_byte_order_mark(std::string_view text);
 
 /// Replaces or makes a file in one step: the text goes to `path` + ".part" beside it, reaches the disk (fsync), and is
 /// then renamed. At every instant `path` is absent, the old file or the complete new one, also after a kill or a full

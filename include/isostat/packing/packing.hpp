@@ -2,6 +2,7 @@
 /// \file
 /// The grains and where they are: disks (Dim = 2; spheres later) and flat walls normal to the axes.
 
+#include <isostat/core/floating_point.hpp>
 #include <isostat/core/ids.hpp>
 
 #include <array>
@@ -11,6 +12,11 @@
 #include <vector>
 
 namespace isostat {
+
+/// Radii are between these, in any unit, and no coordinate is larger: squares of lengths are then far inside the range
+/// of double, and so are areas and their quotients.
+inline constexpr double shortest_length = 1e-150;
+inline constexpr double longest_length = 1e150;
 
 /// State of one wall. A movable wall is a grain with one degree of freedom, its position along its axis.
 enum class WallKind : unsigned char { absent, fixed, movable };
@@ -30,7 +36,8 @@ template <int Dim> struct Walls {
 ///
 /// Coordinates are stored flat: `q[Dim*i + a]` is coordinate a of disk i, `q[Dim*n + a]` is L_a, the position of the
 /// upper wall of axis a (present in q even when that wall is absent, then meaningless and 0). A *coordinate index* is
-/// an index into q. Invariant (checked by `validate`): every radius positive and finite, every coordinate finite.
+/// an index into q. Invariant (checked by `validate`): every radius from `shortest_length` to `longest_length`, every
+/// coordinate finite, those of disks and walls at most `longest_length`.
 template <int Dim> struct Packing {
     std::vector<double> radius; ///< n radii
     std::vector<double> q;      ///< Dim*(n+1) coordinates

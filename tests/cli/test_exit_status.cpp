@@ -1,0 +1,162 @@
+// What an exit status means: an internal failure and an answer that did not get out are no answers. No input crashes a
+// command.
+#include "cli/program.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+using namespace program;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string vertex = scratch::data("vertex100.txt");
+const std::string packing = std::string(ISOSTAT_EXAMPLES) + "/packings/two_disks.toml";
+
+/// `run`, with standard output to another place.
+int status_with_output_to(const std::string& place, const std::vector<std::string>& arguments) {
+    std::string line = quoted(ISOSTAT_PROGRAM);
+    for (const std::string& argument : arguments) {
+        line += " " + quoted(argument);
+    }
+    const int status = std::system((line + " >" + place + " 2>/dev/null </dev/null").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/// A scene with a short run from the sample of 100 disks.
+fs::path small_scene(const scratch::Folder& folder) {
+    scratch::write(folder / "s.toml", scene_from(vertex, "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    return folder / "s.toml";
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
+    const scratch::Folder folder;
+    const std::string scene = small_scene(folder).string();
+    const std::string cert = (folder / "c.json").string();
+    const std::string done_run = (folder / "done").string();
+    expect(run({"certify", vertex, "-o", cert}), 0);
+    expect(run({"run", scene, "-o", done_run, "-q"}), 0);
+    const std::vector<std::vector<std::string>> commands{
+        {"--version"},
+        {"--help"},
+        {"inspect", vertex},
+        {"inspect", packing},
+        {"inspect", vertex, "--json"},
+        {"certify", vertex, "-o", (folder / "d.json").string()},
+        {"verify", cert},
+        {"verify", done_run},
+        {"plan", scene},
+        {"convert", vertex, "-o", (folder / "v.json").string()},
+        {"plateau", vertex, "--thresholds", "1e-9:1e-8"},
+        {"genericity", packing, "--samples", "1"},
+        {"report", done_run, "--no-charts"},
+        {"run", scene, "-o", (folder / "run").string()},
+        {"run", scene, "-o", (folder / "run2").string(), "--json"},
+    };
+    for (const std::vector<std::string>& command : commands) {
+        BOOST_TEST(status_with_output_to("/dev/full", command) == 74, command[0]);
+    }
+    BOOST_TEST(status_with_output_to("/dev/null", {"inspect", vertex}) == 0);
+}
+
+BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
+    const scratch::Folder folder;
+    const std::string bad = (folder / "bad\xff.json").string();
+    fs::copy(vertex, bad);
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"inspect", bad, "--json"},
+             {"certify", bad, "-o", (folder / "\xfe.cert").string(), "--json"},
+             {"verify", (folder / "\xfe.cert").string(), "--input", bad, "--json"},
+             {"convert", bad, "-o", (folder / "out\xff").string(), "--json"},
+             {"plateau", bad, "--json", "--thresholds", "1e-9:1e-8"},
+             {"report", bad, "-o", (folder / "fig\xff").string(), "--json", "--no-charts"},
+         }) {
+        const Outcome outcome = run(command);
+        expect(outcome, 0);
+        BOOST_TEST(contains(outcome.out, "\xEF\xBF\xBD"), command[0]); // U+FFFD stands for the byte
+    }
+    const std::string scene = (folder / "s\xff.toml").string();
+    fs::copy(small_scene(folder), scene);
+    const std::string out = (folder / "run\xff").string();
+    expect(run({"run", scene, "-o", out, "-q"}), 0);
+    expect(run({"run", scene, "-o", out, "--resume", "--json"}), 0);
+    expect(run({"plan", scene, "--json"}), 0);
+    expect(run({"report", out, "--no-charts", "--json"}), 0);
+    expect(run({"verify", out, "--json"}), 0);
+    expect(run({"inspect", (folder / "absent\xff").string()}), 65, {"absent\xff"});
+}
+
+BOOST_AUTO_TEST_CASE(nesting_without_end_is_bad_input_for_every_command) {
+    const scratch::Folder folder;
+    const std::string deep = (folder / "deep.json").string();
+    scratch::write(deep, "{\"format\":" + std::string(100'000, '[') + std::string(100'000, ']') + "}");
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"inspect", deep},
+             {"certify", deep, "-o", (folder / "c.json").string()},
+             {"convert", deep, "-o", (folder / "o.json").string()},
+             {"plateau", deep},
+             {"genericity", deep},
+             {"report", deep, "-o", folder.path().string()},
+             {"verify", deep},
+         }) {
+        expect(run(command), 65, {"deep.json", "64"});
+    }
+    std::string dotted = "a";
+    for (int k = 1; k < 100'000; ++k) {
+        dotted += ".a";
+    }
+    scratch::write(folder / "dotted.toml", dotted + " = 1\n");
+    for (const std::string command : {"plan", "inspect"}) {
+        expect(run({command, (folder / "dotted.toml").string()}), 65, {"dotted.toml:1:", "64 parts"});
+    }
+}
+
+BOOST_AUTO_TEST_CASE(sizes_beyond_the_arithmetic_are_bad_input_and_sizes_at_its_ends_are_answered) {
+    const scratch::Folder folder;
+    const auto prepared = [&](const std::string& diameters) {
+        scratch::write(folder / "p.toml", "[packing]\ndisks = 8\ndiameters = " + diameters + "\nseed = 2\n");
+        return run({"prepare", (folder / "p.toml").string(), "-o", (folder / "p.json").string(), "-q"});
+    };
+    expect(prepared("[1e-200, 1e200]"), 65, {"p.toml:3", "diameters", "1e+140"});
+    for (const char* diameters : {"[1e-140, 1e140]", "[1.0, 1e100]", "[1e-140, 2e-140]", "[5e139, 1e140]"}) {
+        const Outcome outcome = prepared(diameters);
+        BOOST_TEST((outcome.status == 0 || outcome.status == 1 || outcome.status == 2),
+                   diameters << ": " << outcome.status << ": " << outcome.err);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(where_memory_allows_few_threads_the_records_are_the_same) {
+    const scratch::Folder folder;
+    const std::string scene = small_scene(folder).string();
+    expect(run({"run", scene, "-o", (folder / "one").string(), "-q", "--threads", "1"}), 0);
+#if !defined(__SANITIZE_ADDRESS__) // it takes terabytes of addresses
+    expect(run({"run", scene, "-o", (folder / "few").string(), "-q", "--threads", "64"}, "ulimit -v 400000; "), 0);
+    BOOST_TEST((scratch::read(folder / "one/events.jsonl") == scratch::read(folder / "few/events.jsonl")));
+#endif
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+BOOST_AUTO_TEST_CASE(a_library_that_changed_the_rounding_is_an_internal_failure) {
+    const std::string before = "LD_PRELOAD=" + quoted(ISOSTAT_ROUND_UP) + " ";
+    for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+             {"inspect", vertex}, {"inspect", packing}, {"plateau", vertex, "--thresholds", "1e-9:1e-8"}}) {
+        expect(run(command, before), 70, {"rounded to nearest"});
+    }
+}
+
+BOOST_AUTO_TEST_CASE(memory_that_does_not_suffice_is_an_internal_failure) {
+    const scratch::Folder folder;
+    std::string table = "x y r\n";
+    for (int k = 0; k < 400'000; ++k) {
+        table += std::to_string(k % 1000) + ".25 " + std::to_string(k / 1000) + ".5 0.5\n";
+    }
+    scratch::write(folder / "t.txt", table);
+    expect(run({"plateau", (folder / "t.txt").string()}, "ulimit -v 80000; "), 70, {"not enough memory"});
+}
+#endif
+
+BOOST_AUTO_TEST_SUITE_END()

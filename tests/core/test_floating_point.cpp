@@ -1,0 +1,141 @@
+// The arithmetic that the bounds count with: any other is noticed, by the thread that computes.
+
+#include "support/crafted.hpp"
+#include "support/threads.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/contact/candidates.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/core/floating_point.hpp>
+#include <isostat/crafted/exact_packing.hpp>
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/plateau.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/io/vertex_text.hpp>
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/rigidity/counting.hpp>
+#include <isostat/scene/scene.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cfenv>
+#include <functional>
+#include <string>
+#include <thread>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+using namespace isostat;
+
+namespace {
+
+/// Another direction of rounding for one scope.
+struct Rounding {
+    explicit Rounding(int direction) { std::fesetround(direction); }
+    Rounding(const Rounding&) = delete;
+    Rounding& operator=(const Rounding&) = delete;
+    ~Rounding() { std::fesetround(FE_TONEAREST); }
+};
+
+/// The exit status that `work` leads to when results are rounded up; 0 when it does not notice.
+int status_rounding_up(const std::function<void()>& work) {
+    try {
+        const Rounding up(FE_UPWARD);
+        work();
+    } catch (const Error& error) {
+        return error.exit_status();
+    }
+    return 0;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(core)
+
+BOOST_AUTO_TEST_CASE(arithmetic_as_it_must_be_has_no_defect) {
+    BOOST_TEST((floating_point_defect() == nullptr));
+    BOOST_CHECK_NO_THROW(require_floating_point());
+}
+
+BOOST_AUTO_TEST_CASE(directed_rounding_is_a_defect) {
+    for (const int direction : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+        const char* defect = nullptr;
+        {
+            const Rounding rounding(direction);
+            defect = floating_point_defect();
+        }
+        BOOST_TEST_REQUIRE((defect != nullptr), direction);
+        BOOST_TEST(std::string(defect).find("nearest") != std::string::npos);
+    }
+}
+
+#if defined(__SSE2__)
+BOOST_AUTO_TEST_CASE(a_change_of_the_vector_unit_alone_is_a_defect) {
+    const unsigned sound = _mm_getcsr();
+    // Flush to zero, denormals are zero, and the three directions of rounding.
+    for (const unsigned change : {0x8000U, 0x0040U, 0x2000U, 0x4000U, 0x6000U}) {
+        _mm_setcsr(sound | change);
+        const char* const defect = floating_point_defect();
+        _mm_setcsr(sound);
+        BOOST_TEST((defect != nullptr), change);
+    }
+}
+#endif
+
+BOOST_AUTO_TEST_CASE(every_way_into_the_library_refuses_other_arithmetic) {
+    const State<2> state = ::crafted::two_disks(1, 2, 1, 1);
+    const std::string text = state_text(state);
+    Certificate certificate;
+    certificate.state = state;
+    RunCounters counters;
+    struct Nothing final : RunObserver<2> {
+        void on_arc(const ArcRecord<2>& /*arc*/) override {}
+        void on_equilibrium(const EquilibriumRecord<2>& /*record*/, const State<2>& /*state*/,
+                            const std::vector<double>& /*forces*/) override {}
+    } nothing;
+    const std::vector<std::pair<const char*, std::function<void()>>> ways{
+        {"inspect_vertex", [&] { (void)inspect_vertex(state); }},
+        {"certify", [&] { (void)certify(state); }},
+        {"verify", [&] { (void)verify(certificate); }},
+        {"count_contacts", [&] { (void)count_contacts(state.packing, state.contacts); }},
+        {"certify_admissible", [&] { (void)certify_admissible(state.packing, 0); }},
+        {"prove", [&] { (void)IsostaticStructure<2>::prove(state.packing, state.contacts); }},
+        {"run_segment",
+         [&] {
+             State<2> moved = state;
+             (void)run_segment<2>(moved, Segment{}, 0, {}, counters, nothing);
+         }},
+        {"prepare",
+         [&] {
+             PreparationReport<2> report;
+             (void)prepare<2>({}, report);
+         }},
+        {"plateau", [&] { (void)isostat::crafted::plateau(state.packing, {0.1}); }},
+        {"crafted::inspect", [&] { (void)isostat::crafted::inspect(isostat::crafted::exact_copy(state.packing)); }},
+        {"parse_state", [&] { (void)parse_state<2>(text, "text"); }},
+        {"parse_vertex_text", [&] { (void)parse_vertex_text("1\n", "text"); }},
+        {"parse_scene", [&] { (void)parse_scene("[packing]\ndisks = 4\n", "text", ""); }},
+        {"parse_foreign", [&] { (void)parse_foreign("x y r\n0 0 1\n", "text", {}); }},
+    };
+    for (const auto& [name, work] : ways) {
+        BOOST_TEST(status_rounding_up(work) == 70, name);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_thread_that_inherited_other_arithmetic_does_no_work) {
+    const Threads threads(2);
+    const auto errand = [] {
+        Errand work([] {}); // the worker begins with it and inherits
+        std::fesetround(FE_TONEAREST);
+        while (work.underway()) {
+            std::this_thread::yield();
+        }
+        work.finish();
+    };
+    BOOST_TEST(status_rounding_up(errand) == 70);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,145 @@
+#pragma once
+// Mutants of a file are given to its reader: it must end with success and something sound, or with Error(bad_input) and
+// the name of the file; nothing else, and soon.
+
+#include "fuzz/mutation.hpp"
+
+#include <isostat/contact/state.hpp>
+#include <isostat/core/error.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <string>
+
+namespace fuzz {
+
+using namespace isostat;
+
+/// ISOSTAT_LONG=1: twenty times as many files, a million in all.
+inline int effort() {
+    const char* const asked = std::getenv("ISOSTAT_LONG"); // NOLINT(concurrency-mt-unsafe): one thread
+    return asked != nullptr && std::string(asked) == "1" ? 20 : 1;
+}
+
+struct Count {
+    long accepted = 0, refused = 0;
+    double seconds = 0, slowest = 0;
+};
+/// Of all cases of this process.
+inline Count& all_files() {
+    static Count tally;
+    return tally;
+}
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr double longest = 20; // seconds for one file
+#else
+constexpr double longest = 2;
+#endif
+
+/// `read` throws, or says what is unsound about what it read: nothing when all is well.
+inline Count fuzz(const std::string& name, const std::string& text, int samples,
+                  const std::function<std::string(const std::string&)>& read) {
+    using Clock = std::chrono::steady_clock;
+    Random random(2024);
+    Count tally;
+    BOOST_TEST_REQUIRE(read(text) == "", name << ": the original is read");
+    for (int s = 0; s < samples * effort(); ++s) {
+        const std::string changed = mutated(text, random);
+        BOOST_TEST_CHECKPOINT(name << ", sample " << s); // named when the process crashes
+        const auto begin = Clock::now();
+        try {
+            const std::string wrong = read(changed);
+            if (!wrong.empty()) {
+                BOOST_ERROR(name + ", sample " + std::to_string(s) + ": accepted, but " + wrong + ":\n" +
+                            changed.substr(0, 2000));
+            }
+            ++tally.accepted;
+        } catch (const Error& error) {
+            const std::string message = error.what();
+            if (!message.starts_with("FILE") || message.size() < 12 || error.kind() != ErrorKind::bad_input) {
+                BOOST_ERROR(name + ", sample " + std::to_string(s) + ": " + message);
+            }
+            ++tally.refused;
+        } catch (const std::exception& error) {
+            BOOST_ERROR(name + ", sample " + std::to_string(s) + ": " + error.what() + "\n" + changed.substr(0, 2000));
+        }
+        const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+        tally.seconds += seconds;
+        tally.slowest = std::max(tally.slowest, seconds);
+    }
+    BOOST_TEST(tally.slowest < longest, name << ": " << tally.slowest << " s for one file");
+    BOOST_TEST_MESSAGE(name << ": " << tally.refused << " refused, " << tally.accepted << " accepted, " << tally.seconds
+                            << " s, slowest " << tally.slowest << " s");
+    Count& all = all_files();
+    all.accepted += tally.accepted;
+    all.refused += tally.refused;
+    all.seconds += tally.seconds;
+    all.slowest = std::max(all.slowest, tally.slowest);
+    return tally;
+}
+
+inline std::string unsound(const Packing<2>& packing) {
+    const auto finite = [](double x) { return std::isfinite(x); };
+    const auto positive = [](double r) { return r > 0 && std::isfinite(r); };
+    if (packing.radius.empty() || packing.q.size() != 2 * packing.radius.size() + 2 ||
+        !(packing.fixed.empty() || packing.fixed.size() == packing.radius.size())) {
+        return "sizes do not fit";
+    }
+    if (!std::all_of(packing.radius.begin(), packing.radius.end(), positive)) {
+        return "a radius is not positive and finite";
+    }
+    return std::all_of(packing.q.begin(), packing.q.end(), finite) ? "" : "a coordinate is not finite";
+}
+
+inline std::string unsound(const State<2>& state) {
+    if (std::string wrong = unsound(state.packing); !wrong.empty()) {
+        return wrong;
+    }
+    const int n = state.packing.disk_count();
+    std::vector<Contact> sorted = state.contacts;
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+        return "a contact comes twice";
+    }
+    for (const Contact& c : state.contacts) {
+        const bool pair = c.kind == ContactKind::disk_disk;
+        if (c.i < 0 || c.j < 0 || c.i >= (c.kind == ContactKind::held ? 2 * n + 2 : n) ||
+            !(pair ? c.i < c.j && c.j < n : c.j < 2)) {
+            return "a contact is out of range";
+        }
+    }
+    const std::size_t loads = state.load.infinitesimal.size();
+    return loads == 0 || loads == 2U * static_cast<std::size_t>(n) ? "" : "infinitesimal loads do not fit";
+}
+
+/// Lines, with or without the last end of line; a byte order mark is none of them, nor is the \r of Windows.
+inline std::vector<std::string> lines_of(std::string text) {
+    if (text.starts_with("\xEF\xBB\xBF")) {
+        text.erase(0, 3);
+    }
+    std::vector<std::string> lines;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        lines.push_back(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return lines;
+}
+
+/// Neither blank nor a comment.
+inline bool has_content(const std::string& line, const std::string& blanks = " \t\r") {
+    const std::size_t first = line.find_first_not_of(blanks);
+    return first != std::string::npos && line[first] != '#';
+}
+
+inline std::string rows_differ(std::size_t read, std::size_t counted) {
+    return read == counted ? "" : std::to_string(read) + " rows were read of " + std::to_string(counted);
+}
+
+} // namespace fuzz

@@ -73,6 +73,9 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
         }
     }
     const Counting count = count_contacts(state.packing, state.contacts);
+    if (count.dof_count == 0) {
+        bad("N_f = 0: there are no degrees of freedom: expected a grain that can move");
+    }
     if (count.hyperstaticity > 0 && count.mechanisms == 0) {
         if (hyperstatic_allowed) {
             return;

@@ -879,7 +879,9 @@ template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const P
     return true;
 }
 
-template <int Dim> struct ArcDeparture<Dim>::Implementation { Follower<Dim> follower; };
+template <int Dim> struct ArcDeparture<Dim>::Implementation {
+    Follower<Dim> follower;
+};
 
 template <int Dim>
 ArcDeparture<Dim>::ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,

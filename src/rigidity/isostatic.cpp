@@ -202,6 +202,9 @@ Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::v
     structure.dofs_ = std::make_shared<const DofMap<Dim>>(packing);
     const int dof_count = structure.dofs_->dof_count();
     const int contact_count = static_cast<int>(contacts.size());
+    if (dof_count == 0) {
+        return Failure{FailureKind::not_isostatic, "N_f = 0: there are no degrees of freedom, no grain can move"};
+    }
     if (dof_count != contact_count) {
         return Failure{
             FailureKind::not_isostatic,

@@ -227,6 +227,7 @@ BOOST_AUTO_TEST_CASE(pieces_cover_the_items_without_overlap) {
     BOOST_TEST((Pieces{8, 4}.count()) == 2U);
 }
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // they take terabytes of addresses
 BOOST_AUTO_TEST_CASE(where_the_system_refuses_threads_fewer_do_the_work) {
     // In a child: its address space is limited to what it has and a little more, too little for 64 stacks of 8 MB.
     const pid_t child = ::fork();
@@ -251,5 +252,6 @@ BOOST_AUTO_TEST_CASE(where_the_system_refuses_threads_fewer_do_the_work) {
     BOOST_TEST(WIFEXITED(status));
     BOOST_TEST(WEXITSTATUS(status) == 0);
 }
+#endif
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -58,7 +58,10 @@ const std::vector<std::string>& foreign_formats();
 ///   without `pbc` is periodic by the convention of the format). Plain XYZ with a stated size.
 /// - `table`: rows of numbers separated by blanks, commas, semicolons or tabs, under a header: a first row of names, a
 ///   comment `# x y r`, `#format x_y_z_r`, or `columns`. Names: x, y, z, id; r, R, radius, Radius; d, D, diameter,
-///   Diameter; others are ignored.
+///   Diameter; others are ignored. A first row is of names when none of its fields is a value (begins like a number, or
+///   is nan, inf, NA, null, none); every other row is a disk. Where `columns` are stated too, a note says so.
+///
+/// A byte order mark is skipped. Exponents are written with e: the D of Fortran is refused, with nan and inf.
 ///
 /// Throws `Error(bad_input)` with file, line, value and what was expected: also for sizes whose meaning nobody stated,
 /// periodic boundaries, tilted boxes, different z, ids given twice, more or fewer rows than announced, disks with their

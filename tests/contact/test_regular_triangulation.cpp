@@ -8,6 +8,8 @@
 #include <boost/test/unit_test.hpp>
 #include <gmpxx.h>
 
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -230,6 +232,46 @@ BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_swept) {
     BOOST_TEST(swept < 30);
 }
 
+BOOST_AUTO_TEST_CASE(a_disk_that_comes_to_be_hidden_is_not_carried) {
+    // In the middle of six, beside the centre: hidden when the disk in the centre grows. No face turns over, but an
+    // edge that is not regular has no place to go.
+    Packing<2> packing = empty_cluster();
+    append(packing, 0, 0, 0.2);
+    append(packing, 0.5, 0.0625, 0.2);
+    for (int k = 0; k < 6; ++k) {
+        append(packing, 2 * std::cos(k * std::numbers::pi / 3), 2 * std::sin(k * std::numbers::pi / 3), 0.9);
+    }
+    const auto before = Triangulation::build(packing);
+    BOOST_REQUIRE(before != nullptr);
+    packing.radius[0] = 0.95;
+    BOOST_TEST((Triangulation::build(packing) == nullptr));
+    BOOST_TEST((Triangulation::carry(before, packing) == nullptr));
+    const CandidateList<2> list = find_candidates(packing, 0.8, before);
+    BOOST_TEST((list.contacts == near_pairs_by_sweep(packing, list.reach)));
+}
+
+BOOST_AUTO_TEST_CASE(pairs_at_the_reach_are_listed_alike) {
+    // Gaps a few roundings below and above the reach, along an axis and far from the origin.
+    int near = 0;
+    int apart = 0;
+    for (const double from : {0.0, -1.4, 1000.0}) {
+        for (int ulps = -40; ulps <= 40; ++ulps) {
+            for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+                Packing<2> packing = empty_cluster();
+                append(packing, from, from, 1);
+                append(packing, from, from, 1);
+                packing.q[2 + axis] = from + (2.8 + ulps * 0x1p-51);
+                const NearPairs<2> pairs = near_pairs(packing, 0.8);
+                BOOST_REQUIRE(pairs.triangulation != nullptr);
+                BOOST_TEST((pairs.pairs == near_pairs_by_sweep(packing, 0.8)));
+                ++(pairs.pairs.empty() ? apart : near);
+            }
+        }
+    }
+    BOOST_TEST(near > 100);
+    BOOST_TEST(apart > 100);
+}
+
 BOOST_AUTO_TEST_CASE(equal_disks_in_one_place_are_not_taken_for_one) {
     Random random(2027);
     Packing<2> packing = grown_cluster(30, 20, random, [&] { return random.real(0, 0.5); });
@@ -253,14 +295,16 @@ BOOST_AUTO_TEST_CASE(samples_of_the_paper_are_triangulated_and_not_swept) {
 }
 
 BOOST_AUTO_TEST_CASE(coordinates_far_larger_than_the_radii_are_listed_completely) {
-    // The outer disks stay outside though the centres are rounded: 2^40 and 2^60 from the origin.
+    // Centres are rounded, and those of the outer disks too: they must not come to lie on others.
     for (const double away : {0x1p40, 0x1p60}) {
+        Packing<2> one = empty_cluster();
+        append(one, -away, away, 1);
+        BOOST_TEST((Triangulation::build(one) != nullptr));
         Packing<2> packing = square_lattice(3, 2.25);
         for (double& x : packing.q) {
             x -= away;
         }
-        const double reach = 0.8;
-        BOOST_TEST((near_pairs(packing, reach).pairs == near_pairs_by_sweep(packing, reach)));
+        BOOST_TEST((near_pairs(packing, 0.8).pairs == near_pairs_by_sweep(packing, 0.8)));
     }
 }
 

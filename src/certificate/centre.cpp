@@ -29,7 +29,7 @@ Centre<Dim>::Centre(Packing<Dim> p, IsostaticStructure<Dim> s)
     for (const Contact& contact : structure.contacts()) {
         const double h = std::abs(gap(packing, contact));
         const double length = contact_length(packing, contact);
-        largest_gap = std::max(largest_gap, h);
+        largest_gap = std::max(largest_gap, (h + 8 * u * (h + length)) * (1 + 4 * u));
         relative_gap = std::max(relative_gap, h / length);
         if (contact.kind == ContactKind::disk_disk) {
             ++count[static_cast<std::size_t>(contact.i)];

@@ -28,7 +28,7 @@ template <int Dim> class Centre {
     IsostaticStructure<Dim> structure;
     Factorisation factorisation;
     InverseBound inverse;
-    double largest_gap = 0;  ///< |gap| of a contact, as computed
+    double largest_gap = 0;  ///< bound of |gap| of a contact
     double relative_gap = 0; ///< largest |gap| / D of a contact, as computed
     double lipschitz = 0;    ///< K of V4 (a), for the derivative of the gap functions F_l
     double inverse_norm = 0; ///< bound of |DF^-1| here, V4 (b); infinity when nothing is known

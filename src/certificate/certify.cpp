@@ -3,6 +3,7 @@
 #include "certificate/true_vertex.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/contact/candidates.hpp>
 #include <isostat/core/floating_point.hpp>
 
 #include <fmt/format.h>
@@ -75,6 +76,13 @@ template <int Dim> class Prover {
             absent(claim, reason);
         }
     }
+    static std::string fixed_and_overlap(const Contact& pair) {
+        return fmt::format("{} overlap, and cannot move", to_string<Dim>(pair));
+    }
+    /// With all digits: shorter ones would be other numbers.
+    static std::string shown(const Interval& interval) {
+        return fmt::format("[{:.17g}, {:.17g}]", interval.lower, interval.upper);
+    }
     std::string name(std::size_t l) const { return to_string<Dim>(state_.contacts[l]); }
 
     bool prove_counting();
@@ -92,7 +100,9 @@ template <int Dim> class Prover {
     const State<Dim>& state_;
     CertifyOptions options_;
     Certification result_;
-    std::unique_ptr<Centre<Dim>> centre_;
+    std::unique_ptr<Centre<Dim>> stored_; ///< at the stored coordinates
+    std::unique_ptr<Centre<Dim>> moved_;  ///< at the end of a Newton iteration, when that is wanted
+    const Centre<Dim>* centre_ = nullptr; ///< one of them
     std::unique_ptr<Subject<Dim>> subject_;
     std::unique_ptr<TrueVertex<Dim>> vertex_;
 };
@@ -115,6 +125,7 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
     const auto held = std::find_if(state_.contacts.begin(), state_.contacts.end(),
                                    [](const Contact& c) { return c.kind == ContactKind::held; });
     if (held != state_.contacts.end()) {
+        result_.counting = count_contacts(state_.packing, state_.contacts);
         const std::string reason =
             fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
         absent("counting", reason);
@@ -122,21 +133,37 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
         return false;
     }
     if (const auto reason = out_of_range(state_)) {
+        result_.counting = count_contacts(state_.packing, state_.contacts);
         absent("counting", *reason);
         absent_from_vertex_on(*reason);
         return false;
     }
     const int dof_count = DofMap<Dim>(state_.packing).dof_count();
     const int count = static_cast<int>(state_.contacts.size());
-    if (dof_count == count && count > 0) {
+    if (count == 0 && dof_count == 0) {
+        result_.claims.counting = CountingClaim{};
+        result_.counting.rank_exact = Verdict::proved;
+        const std::string reason = "N_f = 0: there are no degrees of freedom, no grain can move";
+        refute("vertex", reason);
+        for (const char* claim : {"forces", "gaps", "load interval", "stability"}) {
+            absent(claim, reason);
+        }
+        if (const auto pair = fixed_overlap(state_.packing)) {
+            refute("gaps", fixed_and_overlap(*pair));
+        }
+        return false;
+    }
+    if (dof_count == count) {
         auto made = Centre<Dim>::make(state_.packing, state_.contacts);
         if (made.ok()) {
-            centre_ = std::move(made.value());
+            stored_ = std::move(made.value());
             result_.claims.counting = CountingClaim{dof_count, count, count, 0, 0, Rung::exact};
+            result_.counting = {dof_count, count, count, 0, 0, Verdict::proved, {}};
             return true;
         }
     }
     const Counting counting = exact_counting(state_);
+    result_.counting = counting;
     const std::string numbers =
         fmt::format("N_f = {}, N = {}, rank {}{}, h {} {}, k {} {}", counting.dof_count, counting.contact_count,
                     counting.rank_exact == Verdict::proved ? "" : "at least ", counting.rank,
@@ -161,22 +188,21 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
 }
 
 template <int Dim> bool Prover<Dim>::prove_vertex() {
+    centre_ = stored_.get();
     result_.stored_gap = centre_->largest_gap;
-    subject_ = std::make_unique<Subject<Dim>>(state_);
+    subject_ = std::make_unique<Subject<Dim>>(state_, stored_->structure);
     if (centre_->inverse.verdict != Verdict::proved) {
         absent_from_vertex_on("no bound of the inverse of the contact matrix was found");
         return false;
     }
     // Where the gaps are visibly open, the stored place says less than the end of a Newton iteration. Either will do.
     constexpr double visible = 1e-10;
-    std::unique_ptr<Centre<Dim>> moved = centre_->relative_gap < visible ? nullptr : Centre<Dim>::downhill(*centre_);
-    if (moved) {
-        std::swap(centre_, moved);
-    }
+    moved_ = stored_->relative_gap < visible ? nullptr : Centre<Dim>::downhill(*stored_);
+    centre_ = moved_ ? moved_.get() : stored_.get();
     bool exists = exists_on_some_rung();
-    if (!exists && moved) {
+    if (!exists && moved_) {
         vertex_.reset();
-        std::swap(centre_, moved);
+        centre_ = stored_.get();
         exists = exists_on_some_rung();
     }
     if (!exists) {
@@ -184,7 +210,7 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
             fmt::format("no configuration in which all gaps of the contacts are 0 was proved to exist, and to be "
                         "alone, near the stored "
                         "one (largest |gap| of a contact {:.3g}, smallest singular value at least {:.3g})",
-                        result_.stored_gap, centre_->inverse.sigma_min));
+                        result_.stored_gap, stored_->inverse.sigma_min));
         return false;
     }
     result_.claims.vertex = VertexClaim{vertex_->radius(), vertex_->unique_radius(), vertex_->rung()};
@@ -195,13 +221,14 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
 template <int Dim> bool Prover<Dim>::prove_forces() {
     const std::size_t count = state_.contacts.size();
     ForcesClaim claim;
+    result_.structural_zero = subject_->zero;
     for (std::size_t l = 0; l < count; ++l) {
         if (subject_->zero[l] != 0) {
             claim.structural_zeros.push_back(static_cast<int>(l));
         }
     }
-    const auto show = [this](std::size_t l, const Interval& f) {
-        return fmt::format("in contact {} is in [{:.6g}, {:.6g}]", name(l), f.lower, f.upper);
+    const auto with_name = [this](std::size_t l, const Interval& f) {
+        return fmt::format("in contact {} is in {}", name(l), shown(f));
     };
     std::string negative;
     std::string doubtful;
@@ -220,13 +247,14 @@ template <int Dim> bool Prover<Dim>::prove_forces() {
                 ++signs.positive;
             } else if (f.upper < 0) {
                 ++signs.negative;
-                negative = negative.empty() ? "the force " + show(l, f) : negative;
+                negative = negative.empty() ? "the force " + with_name(l, f) : negative;
             } else {
                 ++signs.undecided;
-                doubtful = doubtful.empty() ? "the force " + show(l, f) : doubtful;
+                doubtful = doubtful.empty() ? "the force " + with_name(l, f) : doubtful;
             }
         }
         result_.signs = signs;
+        result_.finite = claim.finite;
         if (!claim.structural_zeros.empty()) {
             const std::vector<Interval> infinitesimal = vertex_->infinitesimal();
             for (const int zero : claim.structural_zeros) {
@@ -234,9 +262,9 @@ template <int Dim> bool Prover<Dim>::prove_forces() {
                 const Interval& f = infinitesimal[l];
                 claim.infinitesimal.push_back(f);
                 if (f.upper < 0 && negative.empty()) {
-                    negative = "the finite force is exactly 0 and the infinitesimal one " + show(l, f);
+                    negative = "the finite force is exactly 0 and the infinitesimal one " + with_name(l, f);
                 } else if (!(f.lower > 0) && doubtful.empty()) {
-                    doubtful = "the finite force is exactly 0 and the infinitesimal one " + show(l, f);
+                    doubtful = "the finite force is exactly 0 and the infinitesimal one " + with_name(l, f);
                 }
             }
         }
@@ -254,6 +282,10 @@ template <int Dim> bool Prover<Dim>::prove_forces() {
 }
 
 template <int Dim> bool Prover<Dim>::prove_gaps() {
+    if (const auto pair = fixed_overlap(state_.packing)) {
+        refute("gaps", fixed_and_overlap(*pair));
+        return false;
+    }
     const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
     std::string doubtful;
     do {
@@ -264,12 +296,11 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
         for (const Contact& pair : pairs.near) {
             const Interval h = vertex_->gap(pair);
             if (h.upper < 0) {
-                refute("gaps", fmt::format("{} overlap: the gap is in [{:.6g}, {:.6g}]", to_string<Dim>(pair), h.lower,
-                                           h.upper));
+                refute("gaps", fmt::format("{} overlap: the gap is in {}", to_string<Dim>(pair), shown(h)));
                 return false;
             }
             if (!(h.lower > 0) && doubtful.empty()) {
-                doubtful = fmt::format("the gap of {} is in [{:.6g}, {:.6g}]", to_string<Dim>(pair), h.lower, h.upper);
+                doubtful = fmt::format("the gap of {} is in {}", to_string<Dim>(pair), shown(h));
             }
             claim.smallest = std::min(claim.smallest, h.lower);
             if (h.upper < nearest) {
@@ -305,12 +336,19 @@ template <int Dim> void Prover<Dim>::prove_load_interval() {
 }
 
 template <int Dim> void Prover<Dim>::prove_stability(bool forces, bool gaps) {
+    const Load<Dim>& load = state_.load;
     if (!forces || !gaps) {
         absent("stability", "it needs positive forces and no overlap");
-    } else if (state_.load.kind != LoadKind::nominal) {
-        absent("stability", "true stresses have no potential; no motion is possible that the load does not oppose");
+    } else if (load.kind == LoadKind::nominal) {
+        result_.claims.stable = true;
+        result_.potential = "the potential of the load";
+    } else if (std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
+        absent("stability", "true stresses together with forces on disks have no potential");
+    } else if (!(std::min(centre_->packing.length(0), centre_->packing.length(1)) > vertex_->distance())) {
+        absent("stability", "the potential of true stresses needs two positive lengths");
     } else {
         result_.claims.stable = true;
+        result_.potential = "sum sigma_a ln L_a, the potential of the true stresses";
     }
 }
 

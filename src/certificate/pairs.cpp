@@ -13,23 +13,20 @@ template <int Dim> std::vector<Contact> all_pairs(const Packing<Dim>& packing) {
     std::vector<Contact> pairs;
     const int n = packing.disk_count();
     for (int i = 0; i < n; ++i) {
-        const bool fixed = packing.is_fixed(DiskId(i));
         for (int j = i + 1; j < n; ++j) {
-            if (!fixed || !packing.is_fixed(DiskId(j))) {
-                pairs.push_back({ContactKind::disk_disk, i, j});
-            }
+            pairs.push_back({ContactKind::disk_disk, i, j});
         }
         for (int a = 0; a < Dim; ++a) {
             const auto axis = static_cast<std::size_t>(a);
-            if (packing.walls.lower[axis] != WallKind::absent && !fixed) {
+            if (packing.walls.lower[axis] != WallKind::absent) {
                 pairs.push_back({ContactKind::lower_wall, i, a});
             }
-            if (packing.walls.upper[axis] == WallKind::movable ||
-                (packing.walls.upper[axis] == WallKind::fixed && !fixed)) {
+            if (packing.walls.upper[axis] != WallKind::absent) {
                 pairs.push_back({ContactKind::upper_wall, i, a});
             }
         }
     }
+    std::erase_if(pairs, [&packing](const Contact& pair) { return !can_move(packing, pair); });
     return pairs;
 }
 

@@ -1,42 +1,30 @@
 #pragma once
 /// \file
-/// What is asked of a state, the same for every rung: load, patterns, structural zeros.
+/// What is asked of a state, the same for every rung: load and structural zeros.
 
 #include <isostat/contact/state.hpp>
-#include <isostat/sparse/pattern.hpp>
+#include <isostat/rigidity/contact_pattern.hpp>
 
 #include <vector>
 
 namespace isostat {
 
-/// Rows (degrees of freedom) that each contact may act on, with a perfect matching.
-struct ContactPattern {
-    std::vector<int> start{0};
-    std::vector<int> row;
-    std::vector<int> matched; ///< empty: none exists
-};
-
-/// \pre a structure that was proved regular: the matchings exist.
+/// \pre of the structure: of the contacts of the state; it outlives the subject.
 template <int Dim> class Subject {
   public:
-    explicit Subject(const State<Dim>& state);
+    Subject(const State<Dim>& state, const IsostaticStructure<Dim>& structure);
 
     const State<Dim>& state;
-    DofMap<Dim> dofs;
-    /// All rows that a contact touches: contains the pattern of every configuration.
-    ContactPattern touched;
-    /// The same without entries that vanish at every true vertex: two disks of one radius on one wall have the same
-    /// coordinate along its normal.
-    ContactPattern exact;
+    const DofMap<Dim>& dofs;
+    ContactPattern pattern;
     std::vector<int> loaded_rows;          ///< that carry a finite load other than the loaded wall's
     int wall_row = -1;                     ///< of the loaded wall; -1: it cannot move
-    std::vector<unsigned char> zero;       ///< per contact: the finite force is a structural zero of `touched`
-    std::vector<unsigned char> zero_slope; ///< per contact: the slope is a structural zero of `exact`
+    std::vector<unsigned char> zero;       ///< per contact: the finite force is a structural zero
+    std::vector<unsigned char> zero_slope; ///< per contact: the slope is one
 
     [[nodiscard]] int size() const { return static_cast<int>(state.contacts.size()); }
-    /// Contacts whose finite force vanishes at the same load as that of `opens` for every choice of the entries in
-    /// `exact` that gives `opens` a slope: the structural zeros after its column was replaced by that of the loaded
-    /// wall (D3). `opens` itself and the contacts in `zero` are not listed.
+    /// Contacts whose finite force vanishes at the same load as that of `opens`, for structural reasons (D3). `opens`
+    /// itself and the contacts in `zero` are not listed.
     [[nodiscard]] std::vector<int> vanish_with(int opens) const;
 };
 

@@ -292,7 +292,6 @@ auto TrueVertexAt<Dim, T>::solve(const std::vector<T>& load, double load_error) 
 }
 
 template <int Dim, class T> std::vector<T> TrueVertexAt<Dim, T>::external_force(bool loaded_wall_only) const {
-    static_assert(Dim == 2, "the force on a wall is the stress times one length");
     const Load<Dim>& load = subject_.state.load;
     const DofMap<Dim>& dofs = subject_.dofs;
     std::vector<T> force(static_cast<std::size_t>(dofs.dof_count()), T(0.0));
@@ -303,17 +302,15 @@ template <int Dim, class T> std::vector<T> TrueVertexAt<Dim, T>::external_force(
             }
         }
     }
-    for (int a = 0; a < Dim; ++a) {
-        const int dof = dofs.dof_of(static_cast<std::size_t>(Dim * centre_.packing.disk_count() + a));
-        if (dof < 0 || (loaded_wall_only && a != load.loaded_axis)) {
+    for (const WallForce& wall : load.wall_forces(centre_.packing)) {
+        if (loaded_wall_only && !wall.loaded) {
             continue;
         }
-        const auto other = static_cast<std::size_t>(1 - a);
-        const double stress = loaded_wall_only ? 1.0 : load.stress[static_cast<std::size_t>(a)];
-        const auto at = static_cast<std::size_t>(Dim) * centre_.packing.radius.size() + other;
-        force[static_cast<std::size_t>(dof)] = load.kind == LoadKind::nominal
-                                                   ? -A::product(stress, load.reference_length[other])
-                                                   : -(T(stress) * (T(centre_.packing.q[at]) + correction_[at]));
+        const double stress = loaded_wall_only ? 1.0 : wall.stress;
+        const auto dof = static_cast<std::size_t>(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
+        force[dof] = wall.length_at < 0
+                         ? -A::product(stress, wall.length)
+                         : -(T(stress) * (T(wall.length) + correction_[static_cast<std::size_t>(wall.length_at)]));
     }
     return force;
 }

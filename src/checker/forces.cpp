@@ -207,9 +207,9 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
         listed[static_cast<std::size_t>(l)] = true;
     }
     int count = 0;
-    for (std::size_t j = 0; j < problem.contacts_of.size(); ++j) {
+    for (std::size_t j = 0; j < problem.acting_on.size(); ++j) {
         const bool loaded = load[j].lower != 0 || load[j].upper != 0;
-        const std::vector<int>& touching = problem.contacts_of[j];
+        const std::vector<int>& touching = problem.acting_on[j];
         count += !loaded && std::all_of(touching.begin(), touching.end(),
                                         [&listed](int l) { return listed[static_cast<std::size_t>(l)]; })
                      ? 1

@@ -1,5 +1,6 @@
 #include "checker/gaps.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <set>
 
@@ -116,6 +117,49 @@ class Collector {
 };
 
 } // namespace
+
+std::optional<Contact> fixed_overlap(const Problem& problem, const State<2>& state) {
+    std::vector<int> fixed;
+    for (int i = 0; i < problem.disks; ++i) {
+        if (is_fixed(state.packing, i)) {
+            fixed.push_back(i);
+        }
+    }
+    const std::vector<Integer>& q = problem.stored;
+    const auto coordinate = [&q](int i, std::size_t a) { return q[2 * static_cast<std::size_t>(i) + a]; };
+    const auto radius = [&problem](int i) { return problem.radius[static_cast<std::size_t>(i)]; };
+    std::sort(fixed.begin(), fixed.end(), [&](int i, int j) { return coordinate(i, 0) < coordinate(j, 0); });
+    Integer widest = 0;
+    for (const int i : fixed) {
+        widest = std::max(widest, radius(i));
+    }
+    for (std::size_t k = 0; k < fixed.size(); ++k) {
+        const int i = fixed[k];
+        for (int a = 0; a < 2; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            const Integer wall = q[2 * state.packing.radius.size() + axis];
+            if (state.packing.walls.lower[axis] != WallKind::absent && coordinate(i, axis) < radius(i)) {
+                return Contact{ContactKind::lower_wall, i, a};
+            }
+            if (state.packing.walls.upper[axis] == WallKind::fixed && wall - coordinate(i, axis) < radius(i)) {
+                return Contact{ContactKind::upper_wall, i, a};
+            }
+        }
+        for (std::size_t m = k + 1; m < fixed.size(); ++m) {
+            const int j = fixed[m];
+            const Integer dx = coordinate(j, 0) - coordinate(i, 0);
+            if (dx >= radius(i) + widest) {
+                break;
+            }
+            const Integer dy = coordinate(j, 1) - coordinate(i, 1);
+            const Integer sum = radius(i) + radius(j);
+            if (dx * dx + dy * dy < sum * sum) {
+                return Contact{ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+            }
+        }
+    }
+    return {};
+}
 
 bool is_free_pair(const State<2>& state, const Contact& pair) {
     return exists_and_moves(state.packing, pair) &&

@@ -4,7 +4,12 @@
 
 #include "checker/vertex.hpp"
 
+#include <optional>
+
 namespace isostat::checker {
+
+/// A pair that cannot move (two fixed disks, a fixed disk and a fixed wall) and overlaps, exactly.
+std::optional<Contact> fixed_overlap(const Problem& problem, const State<2>& state);
 
 /// A pair of grains and its gap at the true vertex.
 struct Gap {

@@ -8,6 +8,9 @@ namespace isostat::checker {
 
 ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
     ClaimCheck check{.claim = "gaps", .claimed = true};
+    if (const auto pair = fixed_overlap(evidence.problem, evidence.state)) {
+        return answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string<2>(*pair)));
+    }
     const std::vector<Gap> near = smallest_gaps(evidence.problem, evidence.state, evidence.vertex);
     if (near.empty()) {
         return answer(check, std::isinf(claim.smallest) ? Verdict::proved : Verdict::refuted,

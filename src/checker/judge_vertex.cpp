@@ -78,6 +78,23 @@ ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool
         fmt::format("{}; claimed within {:.3g}, the only one within {:.3g}", found, claim.radius, claim.unique_radius));
 }
 
+/// True stresses: the load is minus the volume times the gradient of sum sigma_a ln L_a (S5) when no disk carries a
+/// finite force of its own.
+bool has_volume_potential(const Evidence& evidence) {
+    const State<2>& state = evidence.state;
+    if (!std::all_of(state.load.disk_force.begin(), state.load.disk_force.end(), [](double f) { return f == 0; })) {
+        return false;
+    }
+    for (std::size_t a = 0; a < 2; ++a) {
+        const std::size_t coordinate = 2 * state.packing.radius.size() + a;
+        if (!evidence.vertex.found ||
+            Rational(evidence.problem.length(evidence.vertex.middle[coordinate])) <= evidence.vertex.radius) {
+            return false;
+        }
+    }
+    return true;
+}
+
 ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimCheck>& others) {
     ClaimCheck check{.claim = "stable", .claimed = true};
     for (std::size_t l = 0; l < evidence.forces.size(); ++l) {
@@ -87,8 +104,10 @@ ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimChec
                                       shown(evidence.forces[l])));
         }
     }
-    if (evidence.state.load.kind != LoadKind::nominal) {
-        return answer(check, Verdict::undecided, "true stresses have no potential");
+    const bool nominal = evidence.state.load.kind == LoadKind::nominal;
+    if (!nominal && !has_volume_potential(evidence)) {
+        return answer(check, Verdict::undecided,
+                      "true stresses have a potential only without forces on disks and with positive lengths");
     }
     for (const ClaimCheck& other : others) {
         if (other.claim != "load_interval" && other.verdict != Verdict::proved) {
@@ -96,7 +115,9 @@ ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimChec
                           fmt::format("follows from '{}', which is not proved", other.claim));
         }
     }
-    return answer(check, Verdict::proved, "strict local minimum of the potential: regular, all forces positive");
+    return answer(check, Verdict::proved,
+                  fmt::format("strict local minimum of {}: regular, all forces positive",
+                              nominal ? "the potential" : "sum sigma_a ln L_a"));
 }
 
 } // namespace isostat::checker

@@ -2,6 +2,7 @@
 
 #include <isostat/contact/contact.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 
@@ -35,6 +36,37 @@ Integer in_units(double value, long unit) {
 
 /// Bits beyond the stored ones in which the true vertex is sought.
 constexpr long extra_bits = 80;
+
+/// Where a coordinate is at every true vertex, counted from the origin or from the upper wall.
+struct Known {
+    enum From { nothing, origin, upper_wall } from = nothing;
+    Integer value = 0;
+};
+
+/// Disks on walls, held and fixed coordinates.
+std::vector<Known> known_coordinates(const State<2>& state, const std::vector<Integer>& stored,
+                                     const std::vector<Integer>& radius) {
+    std::vector<Known> known(stored.size());
+    const auto at = [](int index) { return static_cast<std::size_t>(index); };
+    for (std::size_t k = 0; k < 2 * radius.size(); ++k) {
+        if (!state.packing.fixed.empty() && state.packing.fixed[k / 2] != 0) {
+            known[k] = {Known::origin, stored[k]};
+        }
+    }
+    for (const Contact& contact : state.contacts) {
+        switch (contact.kind) {
+        case ContactKind::disk_disk: break;
+        case ContactKind::lower_wall:
+            known[at(2 * contact.i + contact.j)] = {Known::origin, radius[at(contact.i)]};
+            break;
+        case ContactKind::upper_wall:
+            known[at(2 * contact.i + contact.j)] = {Known::upper_wall, radius[at(contact.i)]};
+            break;
+        case ContactKind::held: known[at(contact.i)] = {Known::origin, stored[at(contact.i)]}; break;
+        }
+    }
+    return known;
+}
 
 Row row_of(const Contact& contact, int disks) {
     Row row;
@@ -120,16 +152,26 @@ Problem::Problem(const State<2>& state, bool held_allowed) : Structure(state.pac
         radius.push_back(in_units(r, fine));
     }
 
+    const std::vector<Known> known = known_coordinates(state, stored, radius);
+    const auto level = [&known](int i, int j, int axis) {
+        const Known& at_i = known[static_cast<std::size_t>(2 * i + axis)];
+        const Known& at_j = known[static_cast<std::size_t>(2 * j + axis)];
+        return at_i.from != Known::nothing && at_i.from == at_j.from && at_i.value == at_j.value;
+    };
     contacts_of.resize(coordinate_of.size());
+    acting_on.resize(coordinate_of.size());
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
+        const Contact& contact = state.contacts[l];
         for (int k = 0; k < row.count; ++k) {
             const int dof = dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
             if (dof >= 0) {
                 contacts_of[static_cast<std::size_t>(dof)].push_back(static_cast<int>(l));
+                if (!row.quadratic || !level(contact.i, contact.j, k % 2)) {
+                    acting_on[static_cast<std::size_t>(dof)].push_back(static_cast<int>(l));
+                }
             }
         }
-        const Contact& contact = state.contacts[l];
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::held) {
             sum.push_back(stored[i]);

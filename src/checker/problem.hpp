@@ -49,6 +49,9 @@ class Problem : public Structure {
     std::vector<Integer> stored;     ///< coordinates
     std::vector<Integer> radius;
     std::vector<std::vector<int>> contacts_of; ///< per degree of freedom: the contacts that touch it
+    /// The same without those whose entry is 0 at every true vertex: two disks that walls, holds or being fixed keep at
+    /// one coordinate (proofs/definition.md).
+    std::vector<std::vector<int>> acting_on;
     long fine = 0;
     long spare = 0;
     long weight_bits = 0; ///< the weight of walls is 2^weight_bits units

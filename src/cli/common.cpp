@@ -9,9 +9,12 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
+#include <mpfr.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace isostat::cli {
 
@@ -25,6 +28,48 @@ Json number(double value) {
 
 void print_json(const Json& object) {
     fmt::print("{}\n", json::dumped(object));
+}
+
+namespace {
+
+std::string rounded(double value, int digits, const char* format) {
+    if (!std::isfinite(value)) {
+        return fmt::format("{}", value);
+    }
+    mpfr_t exact;
+    mpfr_init2(exact, 53);
+    mpfr_set_d(exact, value, MPFR_RNDN);
+    char* text = nullptr;
+    mpfr_asprintf(&text, format, digits, exact);
+    std::string result(text);
+    mpfr_free_str(text);
+    mpfr_clear(exact);
+    return result;
+}
+
+} // namespace
+
+std::string rounded_up(double value, int digits) {
+    return rounded(value, digits, "%.*RUg");
+}
+
+std::string rounded_down(double value, int digits) {
+    return rounded(value, digits, "%.*RDg");
+}
+
+std::string with_bound(double lower, double upper) {
+    constexpr int enough = 17; // tells every double
+    const double middle = 0.5 * lower + 0.5 * upper;
+    for (int digits = 12;; ++digits) {
+        const std::string shown = fmt::format("{:.{}g}", middle, digits);
+        const double value = std::strtod(shown.c_str(), nullptr);
+        // The text itself is off its double by half a unit of the last place.
+        const double off = std::abs(value) * 0x1p-53;
+        const double bound = (std::max(upper - value, value - lower) + off) * (1 + 0x1p-50);
+        if (digits == enough || bound <= 0.75 * (upper - lower)) {
+            return fmt::format("{} +- {}", shown, rounded_up(bound, 2));
+        }
+    }
 }
 
 int status_of(FailureKind kind) {
@@ -56,7 +101,6 @@ State<2> load_start(const Scene& scene) {
     }
     state.equilibrium = 0;
     state.perturbation.reset(); // a run has its own
-    snap_to_grid(state.packing);
     for (std::size_t a = 0; a < 2; ++a) {
         if (!(state.load.stress[a] > 0)) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: load.stress[{}] is {}: expected a positive stress",
@@ -66,6 +110,11 @@ State<2> load_start(const Scene& scene) {
     check_start(state, source, scene.run.ties == TiePolicy::perturb);
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
     check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
+    if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
+        Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
+        provenance["moved_to_grid"] = moved;
+        state.provenance = provenance.dump();
+    }
     return state;
 }
 

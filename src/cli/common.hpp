@@ -22,13 +22,21 @@ Json number(double value);
 /// One line on standard output.
 void print_json(const Json& object);
 
+/// Decimal number with that many digits that is not below (not above) the value.
+std::string rounded_up(double value, int digits);
+std::string rounded_down(double value, int digits);
+
+/// "value +- bound" of an interval: what is printed contains it. 12 digits, or more where the interval is narrower.
+std::string with_bound(double lower, double upper);
+
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
 int status_of(FailureKind kind);
 
 /// 0 proved, 1 refuted, 2 undecided.
 int status_of(Verdict verdict);
 
-/// The start of a scene that reads one: file, overrides of [load], checks in the words of a user. Throws
+/// The start of a scene that reads one: file, overrides of [load], checks in the words of a user, and then the grid
+/// (`snap_to_grid`; the provenance says in `moved_to_grid` by how much it moved a coordinate, when it did). Throws
 /// `Error(bad_input)`.
 State<2> load_start(const Scene& scene);
 

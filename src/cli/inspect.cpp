@@ -2,28 +2,25 @@
 #include "cli/common.hpp"
 #include "cli/true_vertex_text.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/rigidity/counting.hpp>
-#include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace isostat::cli {
 
 namespace {
 
-std::string end_of_interval(double stress, const Contact& opens) {
-    return std::isfinite(stress) ? fmt::format("{:.12g} (opens {})", stress, to_string<2>(opens)) : "unbounded";
-}
-
 void print_counting(const State<2>& state, const Counting& c) {
     fmt::print("disks                    {}\n", state.packing.disk_count());
-    fmt::print("box                      {:.12g} x {:.12g}, solid fraction {:.6f}\n", state.packing.length(0),
+    fmt::print("box                      {} x {}, solid fraction {:.6f}\n", state.packing.length(0),
                state.packing.length(1), state.packing.solid_fraction());
-    fmt::print("load                     sigma = ({:.12g}, {:.12g}), {}\n", state.load.stress[0], state.load.stress[1],
+    fmt::print("load                     sigma = ({}, {}), {}\n", state.load.stress[0], state.load.stress[1],
                state.load.kind == LoadKind::nominal ? "nominal (constant wall forces)" : "true stresses");
     fmt::print("degrees of freedom N_f   {}\n", c.dof_count);
     fmt::print("contacts N               {}\n", c.contact_count);
@@ -33,22 +30,52 @@ void print_counting(const State<2>& state, const Counting& c) {
     fmt::print("mechanisms k             {}\n", c.mechanisms);
 }
 
+/// The smallest finite force that is no structural zero lies in it.
+Interval smallest_force(const Inspection<2>& inspection) {
+    Interval smallest{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
+        if (inspection.structural_zero[l] == 0) {
+            smallest.lower = std::min(smallest.lower, inspection.truth.finite[l].lower);
+            smallest.upper = std::min(smallest.upper, inspection.truth.finite[l].upper);
+        }
+    }
+    return smallest;
+}
+
+void print_forces(const Inspection<2>& inspection) {
+    const EquilibriumRecord<2>& r = inspection.record;
+    const CertificateClaims& claims = inspection.truth.claims;
+    if (claims.load_interval) {
+        fmt::print("supported interval       from {}\n", end_text(claims.load_interval->low));
+        fmt::print("                         to   {}\n", end_text(claims.load_interval->high));
+    } else {
+        fmt::print("supported interval       undecided\n");
+    }
+    if (r.backbone > 0) {
+        const Interval smallest = smallest_force(inspection);
+        fmt::print("smallest force           {} in {} (every force known to {})\n",
+                   with_bound(smallest.lower, smallest.upper), to_string<2>(r.min_force_contact),
+                   rounded_up(r.force_bound, 2));
+    }
+}
+
 void print_inspection(const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     fmt::print("rattlers                 {}\n", inspection.rattlers.size());
     fmt::print("force-carrying contacts  {}\n", r.backbone);
     if (inspection.equilibrium) {
-        fmt::print("supported interval       from {}\n", end_of_interval(r.stress_low, r.opens_low));
-        fmt::print("                         to   {}\n", end_of_interval(r.stress_high, r.opens_high));
-        fmt::print("smallest force           {:.6g} in {} (every force known to {:.2g})\n", r.min_force,
-                   to_string<2>(r.min_force_contact), r.force_bound);
+        print_forces(inspection);
     }
-    fmt::print("smallest gap             {:.6g} of {}\n", r.min_gap, to_string<2>(r.min_gap_contact));
-    fmt::print("largest gap of a contact {:.2g}\n", r.gap_residual);
-    fmt::print("smallest singular value  at least {:.3g}\n", r.sigma_min_bound);
-    if (inspection.equilibrium) {
-        fmt::print("balance of forces        {:.2g}, virtual power {:.2g}\n", r.balance, r.virtual_power);
-        fmt::print("smallest margin          {:.3g} ({})\n", r.margin, to_string(r.decided_by));
+    if (inspection.truth.claims.gaps) {
+        fmt::print("smallest gap             {}\n",
+                   std::isfinite(r.min_gap) ? fmt::format("at least {} (nearest: {})", rounded_down(r.min_gap, 6),
+                                                          to_string<2>(r.min_gap_contact))
+                                            : "there is no other pair");
+    }
+    if (inspection.truth.claims.vertex) {
+        fmt::print("largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
+        fmt::print("smallest singular value  at least {}\n", rounded_down(r.sigma_min_bound, 3));
+        fmt::print("decided by               {}\n", to_string(r.decided_by));
     }
     fmt::print("isostatic equilibrium    {}{}{}\n", to_string(r.verdict), inspection.remark.empty() ? "" : ": ",
                inspection.remark);
@@ -72,29 +99,47 @@ Json counting_json(const std::string& file, const State<2>& state, const Countin
     return object;
 }
 
+Json end_json(const std::optional<LoadIntervalClaim>& claim, bool low, const char* what) {
+    if (!claim) {
+        return nullptr;
+    }
+    const LoadEndClaim& end = low ? claim->low : claim->high;
+    if (end.unbounded) {
+        return nullptr;
+    }
+    if (what == std::string("opens")) {
+        return to_string<2>(end.opens);
+    }
+    return what == std::string("lower") ? number(end.stress.lower) : number(end.stress.upper);
+}
+
 void add_inspection(Json& object, const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
     object["backbone"] = r.backbone;
     object["held"] = r.held;
     if (inspection.equilibrium) {
-        const auto name = [](double stress, const Contact& contact) {
-            return std::isfinite(stress) ? Json(to_string<2>(contact)) : Json(nullptr);
-        };
-        object["supported_interval"] = {number(r.stress_low), number(r.stress_high)};
-        object["opens"] = {name(r.stress_low, r.opens_low), name(r.stress_high, r.opens_high)};
+        const auto& interval = inspection.truth.claims.load_interval;
+        object["interval_decided"] = interval.has_value();
+        object["supported_interval"] = {number(r.stress_low), number(r.stress_high)}; // middles of the next two
+        object["interval_low"] = {end_json(interval, true, "lower"), end_json(interval, true, "upper")};
+        object["interval_high"] = {end_json(interval, false, "lower"), end_json(interval, false, "upper")};
+        object["opens"] = {end_json(interval, true, "opens"), end_json(interval, false, "opens")};
+        const Interval smallest = smallest_force(inspection);
         object["min_force"] = number(r.min_force);
+        object["min_force_between"] = {number(smallest.lower), number(smallest.upper)};
         object["min_force_contact"] = to_string<2>(r.min_force_contact);
         object["force_bound"] = number(r.force_bound);
-        object["balance"] = number(r.balance);
-        object["virtual_power"] = number(r.virtual_power);
         object["margin"] = number(r.margin);
-        object["decided_by"] = to_string(r.decided_by);
     }
-    object["min_gap"] = number(r.min_gap);
-    object["min_gap_contact"] = to_string<2>(r.min_gap_contact);
-    object["gap_residual"] = number(r.gap_residual);
-    object["sigma_min_bound"] = number(r.sigma_min_bound);
+    if (inspection.truth.claims.vertex) {
+        object["decided_by"] = to_string(r.decided_by);
+        object["gap_residual"] = number(r.gap_residual);
+        object["sigma_min_bound"] = number(r.sigma_min_bound);
+    }
+    object["min_gap"] = inspection.truth.claims.gaps ? number(r.min_gap) : Json();
+    object["min_gap_contact"] =
+        inspection.truth.claims.gaps && std::isfinite(r.min_gap) ? Json(to_string<2>(r.min_gap_contact)) : Json();
     object["verdict"] = to_string(r.verdict);
     object["stable"] = to_string(inspection.stable);
     object["remark"] = inspection.remark;
@@ -106,20 +151,12 @@ int inspect(const InspectArguments& arguments) {
     if (arguments.file.ends_with(".toml")) {
         return inspect_packing(arguments);
     }
-    State<2> state = read_state<2>(arguments.file).state;
-    const Certification truth = certify(state); // of the coordinates as they are stored
-    snap_to_grid(state.packing);
+    const State<2> state = read_state<2>(arguments.file).state;
     const Result<Inspection<2>> result = inspect_vertex(state);
-    Counting counting = result.ok() ? result.value().counting : count_contacts(state.packing, state.contacts);
-    if (const auto& stored = truth.claims.counting) {
-        counting.rank = stored->rank;
-        counting.hyperstaticity = stored->hyperstaticity;
-        counting.mechanisms = stored->hypostaticity;
-        counting.rank_exact = Verdict::proved;
-    }
+    const Certification truth = result.ok() ? result.value().truth : certify(state);
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
-        Json object = counting_json(arguments.file, state, counting);
+        Json object = counting_json(arguments.file, state, truth.counting);
         if (result.ok()) {
             add_inspection(object, result.value());
         } else {
@@ -129,7 +166,7 @@ int inspect(const InspectArguments& arguments) {
         object["true_configuration"] = true_vertex_json(truth);
         print_json(object);
     } else {
-        print_counting(state, counting);
+        print_counting(state, truth.counting);
         if (result.ok()) {
             print_inspection(result.value());
         } else {

@@ -148,6 +148,12 @@ Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& fro
     return prepared;
 }
 
+/// By how much `load_start` moved the start.
+double moved_to_grid(const State<2>& start) {
+    const Json provenance = start.provenance.empty() ? Json::object() : Json::parse(start.provenance);
+    return provenance.is_object() ? provenance.value("moved_to_grid", 0.0) : 0.0;
+}
+
 /// work.json: what this process did, added to what earlier ones did on the same run.
 void record_work(const std::filesystem::path& path) {
     Json counts = Json::object();
@@ -213,6 +219,10 @@ int run(const RunArguments& arguments) {
                    point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
     }
     const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
+    if (const double moved = from_file && !quiet ? moved_to_grid(*from_file) : 0; moved > 0) {
+        fmt::print("start: coordinates of what can move are put on a grid, each moved by at most {}\n",
+                   rounded_up(moved, 3));
+    }
     const bool plain = scene.run.certify == CertifyLevel::plain;
     if (plain && !quiet) {
         fmt::print(

@@ -16,15 +16,6 @@ void line(const char* claim, const std::string& text, const std::string& rung) {
     fmt::print("{:<14} {:<88} {}\n", claim, text, rung);
 }
 
-std::string bounds(const Interval& interval) {
-    return fmt::format("{:.12g} +- {:.2g}", 0.5 * (interval.lower + interval.upper),
-                       0.5 * (interval.upper - interval.lower));
-}
-
-std::string end_text(const LoadEndClaim& end) {
-    return end.unbounded ? "unbounded" : fmt::format("{} (opens {})", bounds(end.stress), to_string<2>(end.opens));
-}
-
 /// Smallest lower end, and the largest width, of the intervals that are not structural zeros.
 std::pair<double, double> smallest_and_widest(const ForcesClaim& forces) {
     double smallest = std::numeric_limits<double>::infinity();
@@ -59,6 +50,12 @@ std::string signs_text(const ForceSigns& s) {
 
 } // namespace
 
+std::string end_text(const LoadEndClaim& end) {
+    return end.unbounded
+               ? "unbounded"
+               : fmt::format("{} (opens {})", with_bound(end.stress.lower, end.stress.upper), to_string<2>(end.opens));
+}
+
 void print_claims(const Certification& certification) {
     const CertificateClaims& c = certification.claims;
     fmt::print("{:<14} {:<88} {}\n", "claim", "proved of the stored coordinates (counting) and of the true vertex",
@@ -71,21 +68,23 @@ void print_claims(const Certification& certification) {
     }
     if (c.vertex) {
         line("vertex",
-             fmt::format("exists within {:.3g} per coordinate, the only one within {:.3g}; sigma_min >= {:.3g}",
-                         c.vertex->radius, c.vertex->unique_radius, certification.smallest_sigma),
+             fmt::format("exists within {} per coordinate, the only one within {}; sigma_min >= {}",
+                         rounded_up(c.vertex->radius, 3), rounded_down(c.vertex->unique_radius, 3),
+                         rounded_down(certification.smallest_sigma, 3)),
              std::string(to_string(c.vertex->rung)));
     }
     if (c.forces) {
         const auto [smallest, widest] = smallest_and_widest(*c.forces);
         line("forces",
-             fmt::format("{}; smallest >= {:.6g}, each within {:.2g}", signs_text(certification.signs), smallest,
-                         widest),
+             fmt::format("{}; smallest >= {}, each within {}", signs_text(certification.signs),
+                         rounded_down(smallest, 6), rounded_up(widest, 2)),
              std::string(to_string(c.forces->rung)));
     }
     if (c.gaps) {
         line("gaps",
              std::isfinite(c.gaps->smallest)
-                 ? fmt::format("all other gaps >= {:.6g}, nearest {}", c.gaps->smallest, to_string<2>(c.gaps->where))
+                 ? fmt::format("all other gaps >= {}, nearest {}", rounded_down(c.gaps->smallest, 6),
+                               to_string<2>(c.gaps->where))
                  : "there is no other pair",
              std::string(to_string(c.gaps->rung)));
     }
@@ -95,7 +94,7 @@ void print_claims(const Certification& certification) {
         line("", "to   " + end_text(c.load_interval->high), rung);
     }
     if (c.stable) {
-        line("stable", "strict local minimum of the potential of the load", "");
+        line("stable", "strict local minimum of " + certification.potential, "");
     }
     for (const std::string& reason : c.undecided) {
         const bool refuted = std::find(certification.refuted.begin(), certification.refuted.end(), reason) !=
@@ -150,10 +149,10 @@ void print_true_vertex(const Certification& certification) {
     if (!c.vertex) {
         fmt::print("true configuration       not proved to exist\n");
     } else {
-        fmt::print(
-            "true configuration       exists within {:.3g} of the stored coordinates ({}); rank {}, h = 0, k = 0 "
-            "there (sigma_min >= {:.3g})\n",
-            c.vertex->radius, to_string(c.vertex->rung), c.counting->rank, certification.smallest_sigma);
+        fmt::print("true configuration       exists within {} of the stored coordinates ({}); rank {}, h = 0, k = 0 "
+                   "there (sigma_min >= {})\n",
+                   rounded_up(c.vertex->radius, 3), to_string(c.vertex->rung), c.counting->rank,
+                   rounded_down(certification.smallest_sigma, 3));
         fmt::print("  its forces             {}\n", signs_text(certification.signs));
     }
     for (const std::string& reason : c.undecided) {

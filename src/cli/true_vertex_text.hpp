@@ -11,6 +11,9 @@ namespace isostat::cli {
 /// One line per claim with its bounds and the arithmetic that proved it; absent ones with the reason.
 void print_claims(const Certification& certification);
 
+/// One end of the supported interval with its bound, and what opens there.
+std::string end_text(const LoadEndClaim& end);
+
 /// The same for programs; null where a claim is absent.
 Json claims_json(const Certification& certification);
 

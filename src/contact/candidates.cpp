@@ -29,20 +29,6 @@ template <int Dim, class Visit> void for_each_wall_contact(const Packing<Dim>& p
     }
 }
 
-/// Whether the two grains of a contact can move relative to each other at all.
-template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& contact) {
-    if (!packing.is_fixed(DiskId(contact.i))) {
-        return true;
-    }
-    switch (contact.kind) {
-    case ContactKind::disk_disk: return !packing.is_fixed(DiskId(contact.j));
-    case ContactKind::upper_wall: return packing.walls.upper[static_cast<std::size_t>(contact.j)] == WallKind::movable;
-    case ContactKind::lower_wall:
-    case ContactKind::held: return false;
-    }
-    return true;
-}
-
 /// Bound on the rounding of a wall gap, from the lengths that enter.
 template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Contact& contact) {
     const auto i = static_cast<std::size_t>(contact.i);
@@ -52,6 +38,36 @@ template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Conta
 }
 
 } // namespace
+
+template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pair) {
+    if (!packing.is_fixed(DiskId(pair.i))) {
+        return true;
+    }
+    switch (pair.kind) {
+    case ContactKind::disk_disk: return !packing.is_fixed(DiskId(pair.j));
+    case ContactKind::upper_wall: return packing.walls.upper[static_cast<std::size_t>(pair.j)] == WallKind::movable;
+    case ContactKind::lower_wall:
+    case ContactKind::held: return false;
+    }
+    return true;
+}
+
+template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& packing) {
+    std::optional<Contact> found;
+    const auto look = [&](const Contact& pair) {
+        if (!found && !can_move(packing, pair) && gap_sign(packing, pair, 0) < 0) {
+            found = pair;
+        }
+    };
+    if (std::any_of(packing.fixed.begin(), packing.fixed.end(), [](unsigned char f) { return f != 0; })) {
+        for (const Contact& pair :
+             near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach will do
+            look(pair);
+        }
+        for_each_wall_contact(packing, look);
+    }
+    return found;
+}
 
 template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, double radius) const {
     if (reference.size() != packing.q.size()) {
@@ -149,6 +165,8 @@ Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, 
 }
 
 template struct CandidateList<2>;
+template bool can_move<2>(const Packing<2>&, const Contact&);
+template std::optional<Contact> fixed_overlap<2>(const Packing<2>&);
 template CandidateList<2> find_candidates<2>(const Packing<2>&, double,
                                              const std::shared_ptr<const RegularTriangulation<2>>&);
 template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);

@@ -27,8 +27,7 @@ class Encloser {
   public:
     Encloser(const ExactPacking& packing, const Inspection& inspection) : inspection_(inspection) {
         stored_ = approximate(packing);
-        snap_to_grid(stored_);
-        // Conversion and grid move each coordinate by at most one grid step, so a difference by two, in each direction.
+        // Conversion moves each coordinate by at most half a grid step; two of them are counted for each difference.
         const double moved = 2 * std::sqrt(2.0) * 2 * grid_step(stored_);
         for (const Contact& contact : inspection.contacts) {
             double distance = std::numeric_limits<double>::infinity();

@@ -58,6 +58,9 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
     };
     validate(state.packing, source);
+    if (const auto pair = fixed_overlap(state.packing)) {
+        bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0", to_string<Dim>(*pair)));
+    }
     // Far above the rounding of a vertex (1e-15) and far below any gap that matters to a user's eye.
     const double visible = 1e-6 * state.packing.min_radius();
     const Admissibility admissible = certify_admissible(state.packing, visible);

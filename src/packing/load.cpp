@@ -4,37 +4,72 @@
 
 namespace isostat {
 
-template <int Dim> double Load<Dim>::force_per_stress(const Packing<Dim>& packing, int axis) const {
-    double product = 1;
+template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<Dim>& packing) const {
+    static_assert(Dim == 2, "the area that a wall is pressed on is one length");
+    std::vector<WallForce> forces;
     for (int a = 0; a < Dim; ++a) {
-        if (a != axis) {
-            product *= kind == LoadKind::nominal ? reference_length[static_cast<std::size_t>(a)] : packing.length(a);
+        const int other = 1 - a;
+        const bool follows = kind == LoadKind::true_stress;
+        const int walls = Dim * packing.disk_count();
+        if (packing.walls.upper[static_cast<std::size_t>(a)] == WallKind::movable) {
+            forces.push_back({walls + a, a, stress[static_cast<std::size_t>(a)],
+                              follows ? packing.length(other) : reference_length[static_cast<std::size_t>(other)],
+                              follows ? walls + other : -1, a == loaded_axis});
         }
     }
-    return product;
+    return forces;
+}
+
+template <int Dim> std::vector<int> Load<Dim>::loaded_rows(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const {
+    std::vector<int> rows;
+    for (std::size_t k = 0; k < disk_force.size(); ++k) {
+        if (disk_force[k] != 0 && dofs.dof_of(k) >= 0) {
+            rows.push_back(dofs.dof_of(k));
+        }
+    }
+    for (const WallForce& wall : wall_forces(packing)) {
+        if (!wall.loaded && wall.stress != 0 && wall.length != 0) {
+            rows.push_back(dofs.dof_of(static_cast<std::size_t>(wall.coordinate)));
+        }
+    }
+    return rows;
+}
+
+template <int Dim> int Load<Dim>::loaded_wall_row(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const {
+    for (const WallForce& wall : wall_forces(packing)) {
+        if (wall.loaded && wall.length != 0) {
+            return dofs.dof_of(static_cast<std::size_t>(wall.coordinate));
+        }
+    }
+    return -1;
 }
 
 template <int Dim> std::vector<double> Load<Dim>::external_force(const Packing<Dim>& packing) const {
     std::vector<double> force = fixed_force(packing);
-    const auto wall = static_cast<std::size_t>(Dim * packing.disk_count() + loaded_axis);
-    force[wall] = -stress[static_cast<std::size_t>(loaded_axis)] * force_per_stress(packing, loaded_axis);
+    for (const WallForce& wall : wall_forces(packing)) {
+        if (wall.loaded) {
+            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.stress * wall.length);
+        }
+    }
     return force;
 }
 
 template <int Dim> std::vector<double> Load<Dim>::unit_force(const Packing<Dim>& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
-    force[static_cast<std::size_t>(Dim * packing.disk_count() + loaded_axis)] = -force_per_stress(packing, loaded_axis);
+    for (const WallForce& wall : wall_forces(packing)) {
+        if (wall.loaded) {
+            force[static_cast<std::size_t>(wall.coordinate)] = -wall.length;
+        }
+    }
     return force;
 }
 
 template <int Dim> std::vector<double> Load<Dim>::fixed_force(const Packing<Dim>& packing) const {
     std::vector<double> force(packing.q.size(), 0.0);
     std::copy(disk_force.begin(), disk_force.end(), force.begin());
-    for (int a = 0; a < Dim; ++a) {
-        const auto axis = static_cast<std::size_t>(a);
-        if (a != loaded_axis && packing.walls.upper[axis] == WallKind::movable) {
-            force[static_cast<std::size_t>(Dim * packing.disk_count() + a)] =
-                -stress[axis] * force_per_stress(packing, a);
+    for (const WallForce& wall : wall_forces(packing)) {
+        if (!wall.loaded) {
+            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.stress * wall.length);
         }
     }
     return force;

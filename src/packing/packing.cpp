@@ -122,8 +122,11 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
 
 template <int Dim> double grid_step(const Packing<Dim>& packing) {
     double largest = 0;
-    for (const double x : packing.q) {
-        largest = std::max(largest, std::abs(x));
+    const std::size_t disks = Dim * packing.radius.size();
+    for (std::size_t k = 0; k < packing.q.size(); ++k) {
+        if (k < disks || packing.walls.upper[k - disks] != WallKind::absent) {
+            largest = std::max(largest, std::abs(packing.q[k]));
+        }
     }
     int exponent = 0;
     const double mantissa = std::frexp(largest, &exponent);
@@ -133,25 +136,40 @@ template <int Dim> double grid_step(const Packing<Dim>& packing) {
     return std::ldexp(1.0, exponent - 52);
 }
 
-template <int Dim> void snap_to_grid(Packing<Dim>& packing) {
+template <int Dim> double snap_to_grid(Packing<Dim>& packing) {
     // With |x| <= 2^e, x +- 2^e away from 0 lies in the binade whose spacing is the step, 2^(e-52): the sum is rounded
     // to nearest there, and the difference is exact.
     const double shift = std::ldexp(grid_step(packing), 52);
+    double moved = 0;
     if (!std::isfinite(2 * shift)) {
-        return;
+        return moved;
     }
-    for (double& x : packing.q) {
+    const auto snap = [shift, &moved](double& x) {
         const double away = std::copysign(shift, x);
         const double shifted = x + away;
-        x = shifted - away;
+        const double snapped = shifted - away;
+        moved = std::max(moved, std::abs(snapped - x));
+        x = snapped;
+    };
+    const std::size_t disks = packing.radius.size();
+    for (std::size_t i = 0; i < disks; ++i) {
+        for (std::size_t a = 0; a < Dim && !packing.is_fixed(DiskId(i)); ++a) {
+            snap(packing.q[Dim * i + a]);
+        }
     }
+    for (std::size_t a = 0; a < Dim; ++a) {
+        if (packing.walls.upper[a] == WallKind::movable) {
+            snap(packing.q[Dim * disks + a]);
+        }
+    }
+    return moved;
 }
 
 template struct Walls<2>;
 template struct Packing<2>;
 template class DofMap<2>;
 template void validate<2>(const Packing<2>&, const std::string&);
-template void snap_to_grid<2>(Packing<2>&);
+template double snap_to_grid<2>(Packing<2>&);
 template double grid_step<2>(const Packing<2>&);
 
 } // namespace isostat

@@ -4,6 +4,7 @@
 #include "report/gnuplot.hpp"
 #include "report/tables.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/io/files.hpp>
@@ -11,7 +12,6 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/report/picture.hpp>
 #include <isostat/report/run_report.hpp>
-#include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
 
@@ -82,9 +82,7 @@ class Writer {
 
   private:
     std::vector<double> solve_forces(const State<2>& state, const fs::path& path) {
-        State<2> snapped = state;
-        snap_to_grid(snapped.packing);
-        const auto inspection = inspect_vertex(snapped);
+        const auto inspection = inspect_vertex(state);
         if (!inspection.ok()) {
             note(fmt::format("{}: the picture shows no forces: {}", path.string(), inspection.failure().message));
             return {};

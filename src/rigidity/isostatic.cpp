@@ -75,10 +75,8 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
                 const int kj = Dim * contact.j + a;
                 const auto i = static_cast<std::size_t>(ki);
                 const auto j = static_cast<std::size_t>(kj);
-                if (packing.q[i] != packing.q[j]) { // the pattern of contact_matrix; a difference of p would stay as 0
-                    add(ki, subtract(residue[j], residue[i]));
-                    add(kj, subtract(residue[i], residue[j]));
-                }
+                add(ki, subtract(residue[j], residue[i]));
+                add(kj, subtract(residue[i], residue[j]));
             }
             break;
         case ContactKind::lower_wall: add(Dim * contact.i + contact.j, minus_one); break;
@@ -91,17 +89,6 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
         append(matrix, column);
     }
     return matrix;
-}
-
-/// Whether two matrices have the same pattern in all columns but one.
-bool same_pattern_elsewhere(const sparse::Matrix<double>& a, const sparse::Matrix<double>& b, std::size_t column) {
-    const auto next = static_cast<std::ptrdiff_t>(column) + 1;
-    const int shift = b.start[column + 1] - a.start[column + 1];
-    return std::equal(a.start.begin(), a.start.begin() + next, b.start.begin()) &&
-           std::equal(a.start.begin() + next, a.start.end(), b.start.begin() + next,
-                      [shift](int x, int y) { return x + shift == y; }) &&
-           std::equal(a.row.begin(), a.row.begin() + a.start[column], b.row.begin()) &&
-           std::equal(a.row.begin() + a.start[column + 1], a.row.end(), b.row.begin() + b.start[column + 1]);
 }
 
 } // namespace
@@ -124,7 +111,7 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
             ++end;
         }
     };
-    // The usual case, with the same bits: two disks that can move, and no component of the normal that is 0.
+    // The usual case, with the same bits: two disks that can move.
     const auto add_pair = [&](const Contact& contact) {
         const auto i = static_cast<std::size_t>(Dim * contact.i);
         const auto j = static_cast<std::size_t>(Dim * contact.j);
@@ -136,7 +123,7 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
             square += d[a] * d[a];
             matrix.row[end + a] = dofs.dof_of(i + a);
             matrix.row[end + Dim + a] = dofs.dof_of(j + a);
-            usual = usual && d[a] != 0 && matrix.row[end + a] >= 0 && matrix.row[end + Dim + a] >= 0;
+            usual = usual && matrix.row[end + a] >= 0 && matrix.row[end + Dim + a] >= 0;
         }
         const double length = std::sqrt(square);
         if (!usual || !(length > 0x1p-450 && length < 0x1p500)) { // else squares under- or overflow
@@ -158,15 +145,9 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
             continue;
         }
         const GapGradient<Dim> g = gap_gradient(packing, contact);
-        const bool pair = contact.kind == ContactKind::disk_disk;
         for (int k = 0; k < g.count; ++k) {
             const auto e = static_cast<std::size_t>(k);
-            // The pattern of the exact matrix: a component that underflows is kept as 0.
-            const auto a = static_cast<std::size_t>(k % Dim);
-            if (!(pair && packing.q[static_cast<std::size_t>(g.coordinate[a])] ==
-                              packing.q[static_cast<std::size_t>(g.coordinate[Dim + a])])) {
-                add(g.coordinate[e], -g.value[e]);
-            }
+            add(g.coordinate[e], -g.value[e]);
         }
         matrix.start[l + 1] = static_cast<int>(end);
     }
@@ -265,16 +246,10 @@ IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous, const Pack
     next.contacts_[slot.index()] = contact;
     next.dofs_ = previous.dofs_;
     next.matrix_ = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *next.dofs_, next.contacts_));
-    next.foreseen_ = guess != nullptr && guess->contacts_ == next.contacts_ &&
-                     guess->matrix_->start == next.matrix_->start && guess->matrix_->row == next.matrix_->row;
-    if (next.foreseen_) {
-        next.matching_ = guess->matching_;
-    } else if (same_pattern_elsewhere(*previous.matrix_, *next.matrix_, slot.index())) {
-        next.matching_ =
-            sparse::repaired_matching(previous.matching_, next.matrix_->start, next.matrix_->row, next.slot_);
-    } else { // a normal turned into or out of an axis: other columns changed their pattern too
-        next.matching_ = sparse::perfect_matching(next.matrix_->rows, next.matrix_->start, next.matrix_->row);
-    }
+    next.foreseen_ = guess != nullptr && guess->contacts_ == next.contacts_; // then the pattern is the same
+    next.matching_ = next.foreseen_ ? guess->matching_
+                                    : sparse::repaired_matching(previous.matching_, next.matrix_->start,
+                                                                next.matrix_->row, next.slot_);
     return next.matching_.empty() ? std::nullopt : std::optional(std::move(next));
 }
 

@@ -378,35 +378,10 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
     return decision;
 }
 
-/// Contacts whose finite forces vanish together with that of `opens` for every choice of the coefficients: with the
-/// column of `opens` replaced by the unit column of the loaded wall, they are structural zeros.
+/// The contacts whose forces vanish together with that of `opens`, which comes first.
 template <int Dim> std::vector<ContactId> tie_class(const Statics<Dim>& statics, ContactId opens) {
-    const auto size = static_cast<std::size_t>(statics.structure().size());
-    const std::span<const int> all_start = statics.pattern_start();
-    const std::span<const int> all_row = statics.pattern_row();
-    std::vector<int> start{0};
-    std::vector<int> row;
-    for (std::size_t j = 0; j < size; ++j) {
-        if (j == opens.index()) {
-            row.push_back(statics.loaded_wall_row());
-        } else {
-            row.insert(row.end(), all_row.begin() + all_start[j], all_row.begin() + all_start[j + 1]);
-        }
-        start.push_back(static_cast<int>(row.size()));
-    }
-    std::vector<ContactId> members{opens};
-    const std::vector<int> matched =
-        sparse::repaired_matching(statics.pattern_matching(), start, row, static_cast<int>(opens.index()));
-    if (matched.empty()) {
-        return members; // cannot happen when the slope of `opens` is not zero; then no tie is claimed
-    }
-    const auto nonzero = sparse::structural_nonzeros(start, row, matched, statics.loaded_rows());
-    for (std::size_t j = 0; j < nonzero.size(); ++j) {
-        const ContactId l(j);
-        if (l != opens && nonzero[j] == 0 && !statics.is_structural_zero(l)) {
-            members.push_back(l);
-        }
-    }
+    std::vector<ContactId> members = statics.vanish_with(opens);
+    members.insert(members.begin(), opens);
     return members;
 }
 

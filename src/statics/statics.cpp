@@ -11,25 +11,15 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-std::vector<int> nonzero_rows(const std::vector<double>& force) {
-    std::vector<int> rows;
-    for (std::size_t mu = 0; mu < force.size(); ++mu) {
-        if (force[mu] != 0) {
-            rows.push_back(static_cast<int>(mu));
-        }
-    }
-    return rows;
-}
-
 } // namespace
 
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
                       const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
                       const VertexEnclosure* vertex, const Statics* near, std::vector<double> forces)
-    : structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
+    : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
       sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
-      ladder_(packing, structure, factorisation, inverse, options, vertex) {
+      ladder_(packing, structure, factorisation, inverse, options, vertex), pattern_(packing, structure) {
     const DofMap<Dim>& dofs = structure.dofs();
     // Under true stresses a wall's force follows the length of the other wall.
     const bool follows = load.kind == LoadKind::true_stress;
@@ -39,16 +29,17 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
         const std::span<const double> x = near != nullptr ? near->ladder_.known(part) : std::span<const double>();
         return std::vector<double>(x.begin(), x.end());
     };
-    ladder_.add(on_dofs(load.external_force(packing), dofs), follows ? stress * (1 + 4 * u) : 0,
+    LoadTerms now{{}, follows ? stress * (1 + 4 * u) : 0};
+    for (const WallForce& wall : load.wall_forces(packing)) {
+        now.products.push_back({dofs.dof_of(static_cast<std::size_t>(wall.coordinate)), wall.stress, wall.length});
+    }
+    ladder_.add(on_dofs(load.external_force(packing), dofs), std::move(now),
                 forces.empty() && near != nullptr ? near->guess(sigma_) : std::move(forces));
-    ladder_.add(on_dofs(load.unit_force(packing), dofs), follows ? 1 : 0, known(unit));
-    ladder_.add(on_dofs(load.infinitesimal, dofs), 0, known(infinitesimal_part));
-    loaded_rows_ = nonzero_rows(on_dofs(load.fixed_force(packing), dofs));
-    const std::vector<int> wall = nonzero_rows(ladder_.force(unit));
-    std::vector<int> all = loaded_rows_;
-    all.insert(all.end(), wall.begin(), wall.end());
-    loaded_wall_row_ = wall.empty() ? -1 : wall.front();
-    backbone_ = nonzeros(all);
+    ladder_.add(on_dofs(load.unit_force(packing), dofs), {{}, follows ? 1.0 : 0.0}, known(unit));
+    ladder_.add(on_dofs(load.infinitesimal, dofs), {}, known(infinitesimal_part));
+    loaded_rows_ = load.loaded_rows(packing, dofs);
+    loaded_wall_row_ = load.loaded_wall_row(packing, dofs);
+    find_backbone();
 }
 
 /// Forces at a stress as far as they are known: at another one only with the slopes.
@@ -67,32 +58,29 @@ template <int Dim> std::vector<double> Statics<Dim>::guess(double sigma) const {
     return forces;
 }
 
-template <int Dim> std::vector<unsigned char> Statics<Dim>::nonzeros(std::span<const int> rows) const {
-    if (pattern_) {
-        return sparse::structural_nonzeros(pattern_->start, pattern_->row, pattern_->matched, rows);
-    }
-    const sparse::Matrix<double>& h = structure_->matrix();
-    return sparse::structural_nonzeros(h.start, h.row, structure_->matching(), rows);
-}
-
-template <int Dim> void Statics<Dim>::use_index_pattern() {
-    pattern_ = index_pattern(*structure_);
-    std::vector<int> all = loaded_rows_;
+template <int Dim> void Statics<Dim>::find_backbone() {
+    std::vector<int> loaded = loaded_rows_;
     if (loaded_wall_row_ >= 0) {
-        all.push_back(loaded_wall_row_);
+        loaded.push_back(loaded_wall_row_); // also when its stress is 0 now
     }
-    backbone_ = nonzeros(all);
+    backbone_ = pattern_.carrying(loaded);
     sloped_.clear();
 }
 
-template <int Dim> std::span<const int> Statics<Dim>::pattern_start() const {
-    return pattern_ ? pattern_->start : structure_->matrix().start;
+template <int Dim> void Statics<Dim>::perturb_radii() {
+    pattern_ = ContactPattern(*packing_, *structure_, true);
+    find_backbone();
 }
-template <int Dim> std::span<const int> Statics<Dim>::pattern_row() const {
-    return pattern_ ? pattern_->row : structure_->matrix().row;
-}
-template <int Dim> const std::vector<int>& Statics<Dim>::pattern_matching() const {
-    return pattern_ ? pattern_->matched : structure_->matching();
+
+template <int Dim> std::vector<ContactId> Statics<Dim>::vanish_with(ContactId opens) const {
+    const std::vector<unsigned char> others = pattern_.carrying_without(opens, loaded_wall_row_, loaded_rows_);
+    std::vector<ContactId> members;
+    for (std::size_t l = 0; l < others.size(); ++l) {
+        if (l != opens.index() && others[l] == 0 && backbone_[l] != 0) {
+            members.emplace_back(l);
+        }
+    }
+    return members;
 }
 
 template <int Dim> void Statics<Dim>::set_shift(std::shared_ptr<const LoadShift> shift, double bound) {
@@ -135,7 +123,7 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
 template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
     if (sloped_.empty()) {
         sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
-                                       : nonzeros({&loaded_wall_row_, 1});
+                                       : pattern_.carrying({&loaded_wall_row_, 1});
     }
     return sloped_[contact.index()] == 0;
 }

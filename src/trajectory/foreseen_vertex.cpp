@@ -1,7 +1,7 @@
 #include "trajectory/foreseen_vertex.hpp"
 
 #include <isostat/linear/factorisation.hpp>
-#include <isostat/sparse/pattern.hpp>
+#include <isostat/rigidity/contact_pattern.hpp>
 
 namespace isostat {
 
@@ -30,7 +30,9 @@ ForeseenVertex<Dim> foresee(const IsostaticStructure<Dim>& from, const std::vect
     }
     const sparse::Matrix<double>& h = foreseen.contacts->matrix();
     foreseen.loaded = loaded;
-    foreseen.backbone = sparse::structural_nonzeros(h.start, h.row, foreseen.contacts->matching(), loaded);
+    foreseen.backbone =
+        ContactPattern(end.end, from.dofs(), foreseen.contacts->contacts(), h, foreseen.contacts->matching())
+            .carrying(loaded);
     const auto structure = IsostaticStructure<Dim>::without_proof(*foreseen.contacts);
     foreseen.approximate = approximate.exchanged(foreseen.contacts->slot(), h);
     const Factorisation factorisation(structure, *foreseen.approximate);

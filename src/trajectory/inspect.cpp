@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isostat {
 
@@ -16,16 +17,16 @@ namespace {
 
 constexpr double u = 0x1p-53;
 
-/// Counting of a state, cheap when the gate will prove the rank anyway.
-template <int Dim> Counting count(const State<Dim>& state) {
-    Counting counting;
-    counting.dof_count = DofMap<Dim>(state.packing).dof_count();
-    counting.contact_count = static_cast<int>(state.contacts.size());
-    return counting.dof_count == counting.contact_count ? counting : count_contacts(state.packing, state.contacts);
+double norm_of(const std::vector<double>& x) {
+    double sum = 0;
+    for (const double c : x) {
+        sum += c * c;
+    }
+    return std::sqrt(sum);
 }
 
 /// d2W/ds2 = -sum f_l |u_t|^2 / d_l along the mechanism that moves the held coordinate in column `slot` at unit rate:
-/// with the kept gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l.
+/// with the kept gaps at rest, grad W = sum f_l grad h_l and grad h_l . q'' = -|u_t|^2 / d_l. At the true vertex.
 template <int Dim>
 Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<double>& forces, std::size_t slot,
                                  double sigma) {
@@ -39,6 +40,8 @@ Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<do
         v[static_cast<std::size_t>(vertex.structure.dofs().coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
         largest = std::max(largest, std::abs(on_dofs[mu]));
     }
+    const double away = vertex.enclosure.distance();
+    const double turned = vertex.statics.normal_uncertainty(); // of the matrix, at the true vertex
     // |v - v~| <= |G v~ - e| / sigma_min: bounded here through the residual, row by row.
     double residual = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -54,7 +57,10 @@ Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<do
         const double bound = std::abs(rate) + 16 * u * size;
         residual += bound * bound;
     }
-    const double velocity_error = std::sqrt(residual) * (1 + 1e-10) / vertex.inverse.sigma_min;
+    const double sigma_min = vertex.inverse.sigma_min - turned;
+    const double velocity_error = sigma_min > 0
+                                      ? (std::sqrt(residual) + turned * norm_of(on_dofs)) * (1 + 1e-10) / sigma_min
+                                      : std::numeric_limits<double>::infinity();
     double value = 0;
     double error = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -64,9 +70,10 @@ Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<do
         const double bend = gap_curvature(vertex.packing, contacts[l], v.data());
         const double d = vertex.packing.radius[static_cast<std::size_t>(contacts[l].i)] +
                          vertex.packing.radius[static_cast<std::size_t>(contacts[l].j)];
-        // |u_t|^2 changes by at most (2 |u_t| + e) e with e <= 2 velocity_error.
-        const double e = 2 * velocity_error;
-        const double bend_error = (2 * std::sqrt(bend * d) + e) * e / d + 16 * u * bend;
+        // |u_t|^2 changes by at most (2 |u_t| + e) e: the velocities change, and the normal turns by 4 away / d at
+        // most.
+        const double e = 2 * velocity_error + 8 * largest * 4 * away / d;
+        const double bend_error = (2 * std::sqrt(bend * d) + e) * e / d + bend * (16 * u + 4 * away / d);
         value -= forces[l] * bend;
         error += vertex.statics.force(ContactId(l), sigma).radius * bend + std::abs(forces[l]) * bend_error;
     }
@@ -96,26 +103,24 @@ template <int Dim> double force_norm(const Vertex<Dim>& vertex, double sigma) {
     return std::sqrt(sum);
 }
 
+/// The potential of the load falls where W does: dead loads; true stresses >= 0 without forces on disks (S2, S5).
+template <int Dim> bool falls_with_work(const Load<Dim>& load) {
+    const auto not_zero = [](double f) { return f != 0; };
+    return load.kind == LoadKind::nominal ||
+           (std::none_of(load.disk_force.begin(), load.disk_force.end(), not_zero) &&
+            std::all_of(load.stress.begin(), load.stress.end(), [](double stress) { return stress >= 0; }));
+}
+
 } // namespace
 
-template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state) {
+template <int Dim>
+Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting) {
     require_floating_point();
-    Inspection<Dim> inspection;
-    inspection.counting = count(state);
-    Counting& counting = inspection.counting;
+    MechanismInspection<Dim> inspection;
     inspection.contacts = state.contacts;
-    if (counting.dof_count != counting.contact_count) {
-        if (counting.hyperstaticity > 0) {
-            return Failure{
-                FailureKind::not_isostatic,
-                fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}: forces are not determined by the geometry",
-                            counting.dof_count, counting.contact_count, counting.rank, counting.hyperstaticity,
-                            counting.mechanisms)};
-        }
-        const DofMap<Dim> dofs(state.packing);
-        for (const int dof : counting.free_dofs) {
-            inspection.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
-        }
+    const DofMap<Dim> dofs(state.packing);
+    for (const int dof : counting.free_dofs) {
+        inspection.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
     }
     InverseBoundCache cache;
     auto made = Vertex<Dim>::make(state.packing, inspection.contacts, state.load, cache);
@@ -123,98 +128,61 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
         return made.failure();
     }
     Vertex<Dim>& vertex = *made.value();
-    if (counting.dof_count == counting.contact_count) {
-        counting.rank = counting.dof_count;
-        counting.rank_exact = Verdict::proved;
-    }
     const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
     inspection.rattlers = rattlers(vertex);
     CandidateList<Dim> candidates = find_candidates(state.packing, candidate_fraction);
     KeptCandidates kept;
     auto gaps = vertex.check_gaps(candidates, kept);
-    const bool isostatic = std::none_of(inspection.contacts.begin(), inspection.contacts.end(),
-                                        [](const Contact& c) { return c.kind == ContactKind::held; });
     if (!gaps.ok()) {
         inspection.remark = gaps.failure().message;
     } else if (gaps.value().negative) {
         inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
-    }
-    EquilibriumRecord<Dim>& record = inspection.record;
-    const bool overlaps = gaps.ok() && gaps.value().negative;
-    if (!isostatic || overlaps) {
-        record.verdict = Verdict::refuted;
-    }
-    if (isostatic) {
-        auto decision = decide_opening(vertex.statics, sigma, OpeningRule::most_negative, ContactId(), 0);
-        const bool balanced = decision.ok() && !decision.value().opening;
-        if (balanced) {
-            auto described = describe(vertex, state.load);
-            if (described.ok()) {
-                const Verdict before = record.verdict;
-                record = described.value().record;
-                record.decided_by = std::max(record.decided_by, decision.value().rung);
-                record.margin = std::min(record.margin, decision.value().margin);
-                inspection.equilibrium = inspection.remark.empty();
-                record.verdict = inspection.equilibrium ? Verdict::proved : before;
-                // Isostatic, all forces positive: every motion opens a contact against a force. True stresses have no
-                // potential that could be minimal.
-                inspection.stable = inspection.equilibrium && state.load.kind == LoadKind::nominal ? Verdict::proved
-                                                                                                   : Verdict::undecided;
-            } else if (inspection.remark.empty()) {
-                inspection.remark = described.failure().message;
-            }
-        } else if (inspection.remark.empty()) {
-            record.verdict = decision.ok() ? Verdict::refuted : Verdict::undecided;
-            inspection.remark =
-                decision.ok()
-                    ? fmt::format("not an equilibrium: {}force {:.6g} in contact {}",
-                                  decision.value().opening->infinitesimal ? "infinitesimal " : "",
-                                  decision.value().opening->force.value,
-                                  to_string<Dim>(inspection.contacts[decision.value().opening->contact.index()]))
-                    : decision.failure().message;
-        }
+    } else if (const auto pair = fixed_overlap(state.packing)) {
+        inspection.remark = fmt::format("{} overlap, and cannot move", to_string<Dim>(*pair));
     }
     inspection.forces = finite_forces(vertex, state.load);
     for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
         inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
     }
-    if (!isostatic) {
-        vertex.statics.climb();
-        bool positive = true;
-        bool at_rest = true;
-        for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
-            const Enclosure f = vertex.statics.force(ContactId(l), sigma);
-            if (inspection.contacts[l].kind != ContactKind::held) {
-                positive = positive && (f.positive() || (vertex.statics.is_structural_zero(ContactId(l)) &&
-                                                         vertex.statics.infinitesimal(ContactId(l)).positive()));
-            } else {
-                ++record.held;
-                // Known only as well as the stored configuration: a displacement of 2-norm r changes the matrix by at
-                // most 2 sqrt(z) r / D_min in the 2-norm (V4), the forces by |H^-1| times that times |f|.
-                const double uncertain =
-                    1.01 *
-                    std::sqrt(static_cast<double>(most_contacts(state.packing.disk_count(), inspection.contacts))) *
-                    vertex.enclosure.distance() / state.packing.min_radius() * force_norm(vertex, sigma) /
-                    vertex.inverse.sigma_min;
-                at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
-                if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
-                    inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",
-                                                    f.value, to_string<Dim>(inspection.contacts[l]));
-                }
+    EquilibriumRecord<Dim>& record = inspection.record;
+    record.verdict = Verdict::refuted; // not isostatic
+    vertex.statics.climb();
+    bool positive = true;
+    bool at_rest = true;
+    for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
+        const Enclosure f = vertex.statics.force(ContactId(l), sigma);
+        if (inspection.contacts[l].kind != ContactKind::held) {
+            positive = positive && (f.positive() || (vertex.statics.is_structural_zero(ContactId(l)) &&
+                                                     vertex.statics.infinitesimal(ContactId(l)).positive()));
+        } else {
+            ++record.held;
+            // Known only as well as the stored configuration: a displacement of 2-norm r changes the matrix by at
+            // most 2 sqrt(z) r / D_min in the 2-norm (V4), the forces by |H^-1| times that times |f|.
+            const double uncertain =
+                1.01 * std::sqrt(static_cast<double>(most_contacts(state.packing.disk_count(), inspection.contacts))) *
+                vertex.enclosure.distance() / state.packing.min_radius() * force_norm(vertex, sigma) /
+                vertex.inverse.sigma_min;
+            at_rest = at_rest && std::abs(f.value) <= f.radius + uncertain;
+            if (std::abs(f.value) > f.radius + uncertain && inspection.remark.empty()) {
+                inspection.remark = fmt::format("not an equilibrium: the mechanism moves, force {:.6g} on the {}",
+                                                f.value, to_string<Dim>(inspection.contacts[l]));
             }
         }
-        if (positive && at_rest && counting.mechanisms == 1 && inspection.remark.empty()) {
-            if (state.load.kind == LoadKind::nominal) {
-                inspection.second_order =
-                    curvature_of_potential(vertex, inspection.forces, inspection.contacts.size() - 1, sigma);
-            }
-            const bool maximum = inspection.second_order.negative();
-            if (maximum) {
-                inspection.stable = Verdict::refuted;
-            }
-            inspection.remark = fmt::format("equilibrium with one mechanism (k = 1){}",
-                                            maximum ? ", not stable: W has a maximum along it" : "");
+    }
+    if (positive && at_rest && record.held == 1 && inspection.remark.empty()) {
+        const auto held = std::find_if(inspection.contacts.begin(), inspection.contacts.end(),
+                                       [](const Contact& c) { return c.kind == ContactKind::held; });
+        const Enclosure second = curvature_of_potential(
+            vertex, inspection.forces, static_cast<std::size_t>(held - inspection.contacts.begin()), sigma);
+        if (state.load.kind == LoadKind::nominal) {
+            inspection.second_order = second;
         }
+        const bool maximum = second.negative() && falls_with_work(state.load);
+        if (maximum) {
+            inspection.stable = Verdict::refuted;
+        }
+        inspection.remark = fmt::format("equilibrium with one mechanism (k = 1){}",
+                                        maximum ? ", not stable: the potential has a maximum along it" : "");
     }
     record.number = state.equilibrium;
     record.stress = sigma;
@@ -234,6 +202,6 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     return inspection;
 }
 
-template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
+template Result<MechanismInspection<2>> inspect_mechanism<2>(const State<2>&, const Counting&);
 
 } // namespace isostat

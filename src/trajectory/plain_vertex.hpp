@@ -35,14 +35,13 @@ template <int Dim> class PlainVertex {
                 loaded_.push_back(static_cast<int>(mu));
             }
         }
-        const sparse::Matrix<double>& h = structure.matrix();
         Promised<std::vector<unsigned char>> backbone;
         if (foreseen != nullptr && foreseen->loaded == loaded_) {
             backbone_ = std::move(foreseen->backbone);
         } else {
             foreseen = nullptr;
             backbone = Promised<std::vector<unsigned char>>(
-                [&h, this] { return sparse::structural_nonzeros(h.start, h.row, structure.matching(), loaded_); });
+                [this] { return ContactPattern(packing, structure).carrying(loaded_); });
         }
         const bool departs = rule == OpeningRule::most_negative;
         if (departs && renew_candidates(candidates, packing)) { // not by an errand that may be dropped

@@ -48,7 +48,7 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
 template <int Dim>
 void perturb(Vertex<Dim>& vertex, const Load<Dim>& load, const std::vector<double>& rho, const Enclosure& stress_rate,
              std::shared_ptr<const LoadShift> shift, double shift_bound) {
-    vertex.statics.use_index_pattern();
+    vertex.statics.perturb_radii();
     if (shift) {
         vertex.statics.set_shift(std::move(shift), shift_bound);
     }

@@ -91,8 +91,13 @@ template <int Dim>
 ExactForces<Dim>::ExactForces(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure)
     : solver_(scaled(packing, structure, square_), structure.ordering()) {}
 
-template <int Dim> std::vector<mpq_class> ExactForces<Dim>::solve(const std::vector<double>& force) const {
+template <int Dim>
+std::vector<mpq_class> ExactForces<Dim>::solve(const std::vector<double>& force,
+                                               std::span<const ExactProduct> products) const {
     std::vector<mpq_class> values(force.begin(), force.end());
+    for (const ExactProduct& product : products) {
+        values[static_cast<std::size_t>(product.row)] = -(mpq_class(product.a) * mpq_class(product.b));
+    }
     std::vector<mpz_class> b;
     const long shift = common_integers(values, b);
     const auto x = solver_.solve(b);

@@ -4,10 +4,12 @@
 #include "exact/rational_solver.hpp"
 
 #include <isostat/rigidity/isostatic.hpp>
+#include <isostat/verified/force_solution.hpp>
 
 #include <gmpxx.h>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace isostat {
@@ -20,8 +22,9 @@ template <int Dim> class ExactForces {
     ExactForces(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure);
     /// \pre of the others
     [[nodiscard]] bool regular() const { return solver_.regular(); }
-    /// unknown of H f = force, the doubles taken as exact.
-    [[nodiscard]] std::vector<mpq_class> solve(const std::vector<double>& force) const;
+    /// unknown of H f = force, the doubles taken as exact but for the rows of `products`.
+    [[nodiscard]] std::vector<mpq_class> solve(const std::vector<double>& force,
+                                               std::span<const ExactProduct> products = {}) const;
     [[nodiscard]] const mpz_class& square(ContactId contact) const { return square_[contact.index()]; }
     /// |v|^2 / square_l, v the velocity that opens contact l at unit rate, all others kept (G v = e_l).
     [[nodiscard]] mpq_class mechanism_square(ContactId contact) const;

@@ -120,11 +120,8 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap(const Contact& contact) const 
 
 template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int direction, const Contact& contact) const {
     // h_m = sum a_l h_l over the structure: the rate is a multiple of a_opened, which may be a structural zero.
-    const std::vector<int> rows = touched_rows(structure_->dofs(), packing_->disk_count(), contact);
-    if (!pattern_) {
-        pattern_ = index_pattern(*structure_);
-    }
-    if (sparse::structural_nonzeros(pattern_->start, pattern_->row, pattern_->matched, rows)[opened.index()] == 0) {
+    const std::vector<int> rows = touched_rows(structure_->dofs(), contact);
+    if (ContactPattern(*packing_, *structure_, true).carrying(rows)[opened.index()] == 0) {
         return {0, 0};
     }
     std::vector<double> approach(static_cast<std::size_t>(structure_->size()), 0.0);

@@ -41,7 +41,7 @@ Real root_product(const mpq_class& factor, const mpz_class& square, mpfr_prec_t 
 /// One right-hand side with what is known of its solution on every rung reached.
 struct Part {
     std::vector<double> force;
-    double rate = 0; ///< |F(q) - F(q*)| per |q - q*|
+    LoadTerms terms;
     bool zero = false;
     bool rough = false;        ///< `solution` stopped at `first_accuracy`
     std::vector<double> guess; ///< of the solution, or empty
@@ -83,23 +83,6 @@ double largest_of(const std::vector<double>& x) {
         largest = std::max(largest, std::abs(c));
     }
     return largest;
-}
-
-/// Norm of the components of normals that the matrix of the structure leaves out because they are 0 in the stored
-/// configuration: `moved(j, i)` is a bound of what they are at other coordinates.
-template <int Dim, class Moved>
-double left_out(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Moved moved) {
-    std::vector<double> parts;
-    for (const Contact& contact : contacts) {
-        for (int a = 0; a < Dim && contact.kind == ContactKind::disk_disk; ++a) {
-            const auto i = static_cast<std::size_t>(Dim * contact.i + a);
-            const auto j = static_cast<std::size_t>(Dim * contact.j + a);
-            if (packing.q[i] == packing.q[j]) {
-                parts.push_back(1.5 * moved(j, i) / target(packing, contact)); // twice, in two rows
-            }
-        }
-    }
-    return norm_above(parts);
 }
 
 } // namespace
@@ -173,7 +156,7 @@ const typename ForceLadder<Dim>::Implementation::Place& ForceLadder<Dim>::Implem
 }
 
 template <int Dim> double ForceLadder<Dim>::Implementation::stored_uncertainty() const {
-    return normals() * where().away; // components that are 0 in the stored configuration included
+    return normals() * where().away;
 }
 
 /// The bound of a solution at the place of the rung becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H* - H|),
@@ -193,7 +176,7 @@ template <int Dim> void ForceLadder<Dim>::Implementation::inflate(const Part& pa
     if (rung == Rung::double_bound) {
         turned = std::min(turned, turn_of_forces(*packing, structure->contacts(), s.value) * here.away);
     }
-    const double residual = s.bound * sigma + turned + part.rate * here.away;
+    const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
     s.bound = residual / left * (1 + 16 * u);
 }
 
@@ -209,11 +192,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::extend() {
         Place here;
         here.shift = shift;
         here.away = (shift + at.radius) * (1 + 4 * u);
-        here.uncertainty = normals() * (at.radius + 0x1p-90 * shift) +
-                           left_out(*packing, structure->contacts(), [&](std::size_t j, std::size_t i) {
-                               const double moved = at.correction.empty() ? 0 : at.correction[j] - at.correction[i];
-                               return std::abs(moved) * (1 + 4 * u) + 1.5 * at.radius;
-                           });
+        here.uncertainty = normals() * (at.radius + 0x1p-90 * shift);
         place = here;
     }
     extended = extended_contact_matrix(*packing, *structure, at.correction);
@@ -268,7 +247,7 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
         part.unknown.assign(rung == Rung::exact ? n : 0, mpq_class(0));
         part.refined.value.assign(rung == Rung::multiprecision ? n : 0, Real());
     } else if (rung == Rung::exact) {
-        part.unknown = exact->solve(part.force);
+        part.unknown = exact->solve(part.force, part.terms.products);
         std::vector<Real> x;
         Real error(64);
         Real size(64);
@@ -294,7 +273,7 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
             }
         }
         if (rung != Rung::double_bound && s.rung == Rung::double_bound) {
-            refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force);
+            refine_double_double(s, *extended, *structure, *factorisation, *inverse, part.force, part.terms.products);
         }
         if (rung != Rung::multiprecision) {
             inflate(part, s);
@@ -310,8 +289,15 @@ template <int Dim> void ForceLadder<Dim>::Implementation::bring(Part& part) cons
                 }
                 start.push_back(std::move(x));
             }
+            for (const ExactProduct& product : part.terms.products) {
+                Real exact_product(128);
+                mpfr_set_d(exact_product.get(), -product.a, MPFR_RNDN);
+                mpfr_mul_d(exact_product.get(), exact_product.get(), product.b, MPFR_RNDN); // 106 bits
+                b[static_cast<std::size_t>(product.row)] = std::move(exact_product);
+            }
             Real error(64);
-            mpfr_set_d(error.get(), part.rate == 0 ? 0 : part.rate * where().away * (1 + 4 * u), MPFR_RNDU);
+            const double rate_of_load = part.terms.rate;
+            mpfr_set_d(error.get(), rate_of_load == 0 ? 0 : rate_of_load * where().away * (1 + 4 * u), MPFR_RNDU);
             part.refined = system->solve(b, part.refined.value.size() == n ? part.refined.value : start, false, error);
             if (part.refined.value.size() == n) {
                 round(part.refined.value, part.refined.bound, s);
@@ -464,7 +450,7 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::open_exact() {
         };
         const auto& contacts = structure->contacts();
         const bool loads_exact =
-            std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.rate == 0 || part.zero; });
+            std::all_of(parts.begin(), parts.end(), [](const Part& part) { return part.terms.rate == 0 || part.zero; });
         if (vertex->verdict != Verdict::proved || !loads_exact ||
             !std::all_of(contacts.begin(), contacts.end(), closed)) {
             return false;
@@ -520,10 +506,12 @@ template <int Dim> double ForceLadder<Dim>::normal_uncertainty() const {
     return implementation_->vertex == nullptr ? 0 : implementation_->stored_uncertainty();
 }
 
-template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, double rate, std::vector<double> guess) {
+template <int Dim> int ForceLadder<Dim>::add(std::vector<double> force, LoadTerms terms, std::vector<double> guess) {
     Part part;
-    part.rate = rate;
-    part.zero = all_zero(force);
+    part.zero = all_zero(force) && std::all_of(terms.products.begin(), terms.products.end(), [](const ExactProduct& p) {
+                    return p.a == 0 || p.b == 0; // a product may underflow
+                });
+    part.terms = std::move(terms);
     part.force = std::move(force);
     part.guess = std::move(guess);
     implementation_->parts.push_back(std::move(part));

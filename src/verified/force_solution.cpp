@@ -45,7 +45,8 @@ Residual residual_in_double(const sparse::Matrix<double>& h, const std::vector<d
     const auto n = static_cast<std::size_t>(h.rows);
     std::vector<Row> rows(n);
     for (std::size_t i = 0; i < n; ++i) {
-        rows[i] = {force[i], std::abs(force[i]), 7}; // 5u of the entries, the product and the final sum
+        rows[i] = {force[i], std::abs(force[i]),
+                   7}; // 5u of the entries, the product and the final sum; of the force: its own
     }
     Row* const row = rows.data();
     const double* const value = h.value.data();
@@ -144,7 +145,8 @@ ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const Isosta
 template <int Dim>
 void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
                           const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                          const InverseBound& inverse, const std::vector<double>& force) {
+                          const InverseBound& inverse, const std::vector<double>& force,
+                          std::span<const ExactProduct> products) {
     if (inverse.verdict != Verdict::proved) {
         return;
     }
@@ -167,6 +169,9 @@ void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
         for (std::size_t i = 0; i < n; ++i) {
             r[i] = force[i];
             size[i] = std::abs(force[i]);
+        }
+        for (const ExactProduct& product : products) {
+            r[static_cast<std::size_t>(product.row)] = -dd_real::mul(product.a, product.b);
         }
         for (std::size_t j = 0; j < n; ++j) {
             for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
@@ -214,6 +219,7 @@ template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const Isos
 template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
                                        const std::vector<double>&, std::span<const double>, double);
 template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
-                                      const Factorisation&, const InverseBound&, const std::vector<double>&);
+                                      const Factorisation&, const InverseBound&, const std::vector<double>&,
+                                      std::span<const ExactProduct>);
 
 } // namespace isostat

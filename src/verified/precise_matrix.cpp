@@ -34,7 +34,7 @@ sparse::Matrix<Real> precise_contact_matrix(const IsostaticStructure<Dim>& struc
             for (int a = 0; a < Dim; ++a) {
                 const Real& component = d[static_cast<std::size_t>(a)];
                 const int dof = dofs.dof_of(static_cast<std::size_t>(Dim * grain + a));
-                if (dof < 0 || component.sign() == 0) {
+                if (dof < 0) {
                     continue;
                 }
                 Real value(bits);

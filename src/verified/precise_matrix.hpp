@@ -9,8 +9,8 @@
 
 namespace isostat {
 
-/// H at the given coordinates, every entry within 5 units 2^-bits (relative) of the exact one. Entries that are 0 there
-/// are not stored: at the stored configuration the pattern is that of `structure.matrix()`, elsewhere it may have more.
+/// H at the given coordinates, every entry within 5 units 2^-bits (relative) of the exact one; the pattern is that of
+/// `structure.matrix()`.
 template <int Dim>
 sparse::Matrix<Real> precise_contact_matrix(const IsostaticStructure<Dim>& structure,
                                             const std::vector<Real>& coordinate, mpfr_prec_t bits);

@@ -4,6 +4,7 @@
 #include "support/threads.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>

@@ -4,6 +4,7 @@
 
 #include "oracle/dense_forces.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 

@@ -2,6 +2,7 @@
 #include "extreme/catalogue.hpp"
 #include "support/scratch.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/contact/candidates.hpp>
 
 #include <boost/test/unit_test.hpp>

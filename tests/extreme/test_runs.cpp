@@ -2,6 +2,7 @@
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/shortcuts/soft_grains.hpp>
 
 #include <boost/test/unit_test.hpp>

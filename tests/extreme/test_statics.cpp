@@ -2,6 +2,8 @@
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
 
+#include <isostat/certificate/inspect.hpp>
+
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 

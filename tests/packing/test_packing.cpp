@@ -117,6 +117,25 @@ BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(snapping_moves_only_what_can_move_and_says_how_far) {
+    Packing<2> packing;
+    packing.radius = {1, 0.5};
+    packing.q = {1, 1.1, 2.4, 0.7, 1e15, 2.1};
+    packing.fixed = {0, 1};
+    packing.walls.upper = {WallKind::absent, WallKind::movable};
+    Packing<2> snapped = packing;
+    BOOST_TEST(snap_to_grid(snapped) <= 0x1p-51); // an absent wall has no say
+    BOOST_TEST(snapped.q[2] == 2.4);
+    packing.walls.upper = {WallKind::fixed, WallKind::movable}; // now the grid is coarse
+    snapped = packing;
+    const double moved = snap_to_grid(snapped);
+    BOOST_TEST(moved == std::max(std::abs(snapped.q[1] - packing.q[1]), std::abs(snapped.q[5] - packing.q[5])));
+    BOOST_TEST(moved > 0.01);
+    BOOST_TEST(snapped.q[2] == 2.4);
+    BOOST_TEST(snapped.q[3] == 0.7);
+    BOOST_TEST(snapped.q[4] == 1e15);
+}
+
 BOOST_AUTO_TEST_CASE(snapping_survives_the_ends_of_the_range_of_doubles) {
     for (const double unit : {std::numeric_limits<double>::max(), 0x1p1023, 0x1p-1000, 0x1p-1060,
                               std::numeric_limits<double>::denorm_min(), 0.0}) {

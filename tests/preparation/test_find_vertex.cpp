@@ -5,6 +5,7 @@
 #include "../../src/preparation/programme.hpp"
 #include "check.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 
 #include <map>

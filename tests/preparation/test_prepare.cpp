@@ -2,6 +2,7 @@
 
 #include "check.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/threads.hpp>
 

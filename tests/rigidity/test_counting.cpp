@@ -2,6 +2,7 @@
 #include "support/crafted.hpp"
 #include "support/threads.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/exact/independent_columns.hpp>
 #include <isostat/linear/factorisation.hpp>

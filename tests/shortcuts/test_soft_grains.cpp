@@ -1,6 +1,7 @@
 // The soft grains against closed forms, against energy, and against the rigid packing that they approximate.
 #include "support/crafted.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/shortcuts/soft_grains.hpp>

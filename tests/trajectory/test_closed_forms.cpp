@@ -1,6 +1,8 @@
 // The closed-form cases: one, two and three disks, against their formulas.
 #include "support/crafted.hpp"
 
+#include <isostat/certificate/inspect.hpp>
+
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>

@@ -1,6 +1,7 @@
 // Equilibria made by an independent program, and the sequences that it reached from them in plain double precision.
 #include "support/crafted.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -6,6 +6,7 @@
 #include <isostat/core/verdict.hpp>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -26,6 +27,15 @@ template <int Dim> struct CandidateList {
     /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`.
     [[nodiscard]] bool covers(const Packing<Dim>& packing, double radius = 0) const;
 };
+
+/// Whether the two grains of a pair can move relative to each other at all: not two fixed disks, nor a fixed disk and a
+/// wall that is not movable.
+template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pair);
+
+/// A pair of grains that cannot move relative to each other and that overlaps, exactly: such a packing is in no
+/// equilibrium *without overlap*, whatever else is proved of it (proofs/definition.md). Cost: none without fixed disks,
+/// else that of a search for candidates.
+template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& packing);
 
 /// Candidates with gap < fraction * R_min, \pre 0 < fraction <= 0.82, every coordinate and radius finite. Pairs
 /// that cannot move relative to each other (two fixed disks, a fixed disk and a wall that is not movable) are left
@@ -61,6 +71,8 @@ Admissibility certify_admissible(const Packing<Dim>& packing, double allowance,
                                  const CandidateList<Dim>* known = nullptr);
 
 extern template struct CandidateList<2>;
+extern template bool can_move<2>(const Packing<2>&, const Contact&);
+extern template std::optional<Contact> fixed_overlap<2>(const Packing<2>&);
 extern template CandidateList<2> find_candidates<2>(const Packing<2>&, double,
                                                     const std::shared_ptr<const RegularTriangulation<2>>&);
 extern template Admissibility certify_admissible<2>(const Packing<2>&, double, const CandidateList<2>*);

@@ -18,9 +18,7 @@ namespace isostat {
 ///   top wall; j = -1 or
 ///                          anything for walls)
 /// \endcode
-/// The load is nominal with sigma_1 = sigma_2 = 1 and reference lengths Lx, Ly; contacts come out sorted, coordinates
-/// on the grid
-/// (`snap_to_grid`: moved by at most 2^-53 of the box).
+/// The load is nominal with sigma_1 = sigma_2 = 1 and reference lengths Lx, Ly; contacts come out sorted.
 /// `source` (a file name) starts every message. Throws `Error(bad_input)` with file, line, value and what was expected.
 /// As `parse_state`, it does not look at the geometry.
 State<2> parse_vertex_text(const std::string& text, const std::string& source);

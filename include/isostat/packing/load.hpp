@@ -11,9 +11,20 @@ namespace isostat {
 
 /// How a stress on a movable wall becomes a force.
 /// - `nominal` (default): force = stress x *reference* length of the other axis: dead forces, W is a potential;
-/// - `true_stress`: force = stress x current length: no potential, only the sign of the work of each arc can be
-/// asserted.
+/// - `true_stress`: force = stress x current length: W is no potential; sum sigma_a ln L_a is one up to a factor, where
+/// no disk carries a force of its own (proofs/stability.md, S5).
 enum class LoadKind : unsigned char { nominal, true_stress };
+
+/// The force on the movable wall of one axis, in the real numbers: minus `stress` times `length`, two stored numbers
+/// (proofs/definition.md). `external_force` rounds the product; what decides a sign must not.
+struct WallForce {
+    int coordinate = 0; ///< of the wall
+    int axis = 0;
+    double stress = 0;
+    double length = 0;   ///< of the other axis: the reference length, or under true stresses the present one
+    int length_at = -1;  ///< true stresses: the coordinate that is that length; -1: it does not change
+    bool loaded = false; ///< its stress is the one that the programme changes
+};
 
 /// Load of a packing. Forces in the unit (stress unit x length unit); a compressive stress is positive and pushes the
 /// upper wall inwards. Coordinates are indexed as in `Packing::q`.
@@ -25,11 +36,15 @@ template <int Dim> struct Load {
     std::vector<double> disk_force;             ///< empty, or Dim*n external forces on the disks
     std::vector<double> infinitesimal;          ///< empty, or Dim*n infinitesimal loads g (the eps part)
 
-    /// Force on the upper wall of `axis` per unit stress on it: the product of the other axes' lengths.
-    [[nodiscard]] double force_per_stress(const Packing<Dim>& packing, int axis) const;
-    /// External force on every coordinate (size Dim*(n+1)) for the current stresses.
+    /// What presses on the walls that can move. With `disk_force` this is the load, exactly.
+    [[nodiscard]] std::vector<WallForce> wall_forces(const Packing<Dim>& packing) const;
+    /// Degrees of freedom that carry a finite load other than that of the loaded wall, ascending; and the loaded wall's
+    /// (-1: it cannot move, or its stress presses on nothing).
+    [[nodiscard]] std::vector<int> loaded_rows(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const;
+    [[nodiscard]] int loaded_wall_row(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const;
+    /// External force on every coordinate (size Dim*(n+1)) for the current stresses, each rounded to the nearest.
     [[nodiscard]] std::vector<double> external_force(const Packing<Dim>& packing) const;
-    /// Its derivative with respect to the loaded stress: one non-zero entry, on the loaded wall.
+    /// Its derivative with respect to the loaded stress: one non-zero entry, on the loaded wall, not rounded.
     [[nodiscard]] std::vector<double> unit_force(const Packing<Dim>& packing) const;
     /// External force with the loaded stress set to 0.
     [[nodiscard]] std::vector<double> fixed_force(const Packing<Dim>& packing) const;

@@ -88,10 +88,11 @@ template <int Dim> class DofMap {
 /// disk is larger than the box. `source` (a file name) starts the message.
 template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source);
 
-/// Rounds every coordinate to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of
-/// two that is not below the largest coordinate. Then every difference of two coordinates is exact in double. Moves a
-/// coordinate by at most half a grid step (2^-53 of the box). Idempotent; commutes with scaling by powers of two.
-template <int Dim> void snap_to_grid(Packing<Dim>& packing);
+/// Rounds what can move to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of two
+/// that is not below any coordinate of a disk or of a wall that is there. Fixed disks and walls stay where they are, on
+/// the grid or not; where all coordinates are on it, their differences are exact. Moves a coordinate by at most half a
+/// grid step (2^-53 of the box); returns the largest such move. Idempotent; commutes with scaling by powers of two.
+template <int Dim> double snap_to_grid(Packing<Dim>& packing);
 
 /// The grid step that `snap_to_grid` uses.
 template <int Dim> double grid_step(const Packing<Dim>& packing);
@@ -100,7 +101,7 @@ extern template struct Walls<2>;
 extern template struct Packing<2>;
 extern template class DofMap<2>;
 extern template void validate<2>(const Packing<2>&, const std::string&);
-extern template void snap_to_grid<2>(Packing<2>&);
+extern template double snap_to_grid<2>(Packing<2>&);
 extern template double grid_step<2>(const Packing<2>&);
 
 } // namespace isostat

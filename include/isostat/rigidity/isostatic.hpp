@@ -16,8 +16,9 @@
 
 namespace isostat {
 
-/// Contact matrix H (N_f x N, column l = minus the gap gradient of contact l, unit normals, rows = degrees of freedom;
-/// exact zeros are not stored). H f = F_ext; G = H^T gives approach velocities.
+/// Contact matrix H (N_f x N, column l = minus the gap gradient of contact l, unit normals, rows = degrees of freedom).
+/// The pattern follows from the contacts alone: a component that is 0 here is stored as 0. H f = F_ext; G = H^T gives
+/// approach velocities.
 template <int Dim>
 sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
                                       const std::vector<Contact>& contacts);
@@ -37,7 +38,7 @@ template <int Dim> class ExchangedContacts {
     [[nodiscard]] const std::vector<int>& matching() const { return matching_; }
     /// Place of the new contact in the list (and of its column).
     [[nodiscard]] int slot() const { return slot_; }
-    /// The pattern, and so the matching, is that of the guess given to `exchange`.
+    /// The contacts, and so the pattern and the matching, are those of the guess given to `exchange`.
     [[nodiscard]] bool foreseen() const { return foreseen_; }
 
   private:
@@ -90,7 +91,7 @@ template <int Dim> class IsostaticStructure {
     static Result<IsostaticStructure> prove(const Packing<Dim>& packing, std::vector<Contact> contacts);
 
     /// The list of `previous` with the contact at `slot` replaced, at a new configuration of the same grains. Nothing
-    /// when the new pattern is structurally singular. `guess`: the same exchange at a configuration nearby, if it is at
+    /// when the new pattern is structurally singular. `guess`: the same exchange at another configuration, if it is at
     /// hand; the result does not depend on it. Cost: the matrix, and one augmenting path unless the guess has it.
     static std::optional<ExchangedContacts<Dim>> exchange(const IsostaticStructure& previous,
                                                           const Packing<Dim>& packing, ContactId slot,

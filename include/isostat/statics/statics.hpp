@@ -5,8 +5,8 @@
 #include <isostat/core/enclosure.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
+#include <isostat/rigidity/contact_pattern.hpp>
 #include <isostat/verified/force_ladder.hpp>
-#include <isostat/verified/index_pattern.hpp>
 
 #include <memory>
 #include <optional>
@@ -45,19 +45,16 @@ template <int Dim> class Statics {
     /// Contacts whose finite force is not a structural zero.
     [[nodiscard]] int backbone_count() const;
 
-    /// From now on structural zeros are those of the index pattern: also normals that are parallel to an axis in the
-    /// stored configuration may turn. Before the first question.
-    void use_index_pattern();
+    /// From now on structural zeros are those of grains with radii R_i + eps rho_i. Before the first question.
+    void perturb_radii();
     /// The load that is meant is not the stored stress but `shift` more (|shift| <= bound): forces at the stored
     /// stress, their signs and their order are those at the exact one.
     void set_shift(std::shared_ptr<const LoadShift> shift, double bound);
     /// The shift at which the force of a contact vanishes near `sigma`, see `ForceLadder::zero_of`. \pre slope proved.
     [[nodiscard]] std::shared_ptr<const LoadShift> zero_of(ContactId contact, double sigma);
-    /// The pattern by which structural zeros are judged.
-    [[nodiscard]] std::span<const int> pattern_start() const;
-    [[nodiscard]] std::span<const int> pattern_row() const;
-    /// A perfect matching of it: the column of each row.
-    [[nodiscard]] const std::vector<int>& pattern_matching() const;
+    /// Contacts whose forces vanish at the same load as that of `opens`, for structural reasons (D3), in the order of
+    /// their numbers, without `opens` and the structural zeros. \pre slope of `opens` proved not zero.
+    [[nodiscard]] std::vector<ContactId> vanish_with(ContactId opens) const;
 
     /// Goes to the next rung of precision (ForceLadder); false when there is none. Every enclosure above is then the
     /// better one.
@@ -97,8 +94,9 @@ template <int Dim> class Statics {
   private:
     enum Part : int { present, unit, infinitesimal_part };
     [[nodiscard]] std::vector<double> guess(double sigma) const;
-    [[nodiscard]] std::vector<unsigned char> nonzeros(std::span<const int> rows) const;
+    void find_backbone();
 
+    const Packing<Dim>* packing_;
     const IsostaticStructure<Dim>* structure_;
     const Factorisation* factorisation_;
     const InverseBound* inverse_;
@@ -107,7 +105,7 @@ template <int Dim> class Statics {
     std::vector<int> loaded_rows_;
     int loaded_wall_row_ = -1;
     std::vector<unsigned char> backbone_;
-    std::optional<IndexPattern> pattern_;
+    ContactPattern pattern_;
     std::shared_ptr<const LoadShift> shift_;
     double shift_bound_ = 0;
     mutable std::vector<unsigned char> sloped_; ///< empty until asked for

@@ -73,33 +73,28 @@ template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer);
 
-/// What is known of a state without moving it: the record that a run would make of it, forces included.
-///
-/// With fewer contacts than degrees of freedom (h = 0, k > 0) coordinates are held until the structure is isostatic;
-/// when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is an
-/// equilibrium *as far as the stored numbers say*
-/// (`record.held` = k, `equilibrium` stays false), and `stable` tells what W does along the mechanism (k = 1; statement
-/// T8).
-template <int Dim> struct Inspection {
-    Counting counting;                          ///< N_f, N, rank, h, k
-    EquilibriumRecord<Dim> record;              ///< `record.verdict`: is it an isostatic equilibrium
+/// What is known of a state with mechanisms. Coordinates are held until the structure is isostatic (or already in the
+/// state); when every force is positive and the multipliers of the held coordinates cannot be told from 0, the state is
+/// an equilibrium *as far as the stored numbers say*, and `stable` tells what the potential does along the mechanism
+/// (k = 1; statement T8).
+template <int Dim> struct MechanismInspection {
+    EquilibriumRecord<Dim> record;              ///< `record.verdict` is `refuted`: not isostatic
     std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
     std::vector<double> forces;                 ///< f0, one per entry of `contacts`
     std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
     std::vector<int> rattlers;                  ///< disks without a force-carrying contact
-    bool equilibrium = false;                   ///< isostatic and all forces positive lexicographically, proved
-    /// proved: strict local minimum of W (isostatic equilibrium); refuted: W has a maximum along the mechanism, the
-    /// equilibrium is not stable; undecided: neither was shown (always under true stresses, which have no potential).
+    /// refuted: the potential has a maximum along the mechanism, the equilibrium is not stable; undecided: not shown.
     Verdict stable = Verdict::undecided;
-    Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1), s = the fastest coordinate
+    Enclosure second_order; ///< d2W/ds2 along the mechanism (k = 1, dead loads), s = the fastest coordinate
     std::string remark;     ///< when not an equilibrium: which contact and by how much
 };
-/// Failure: `not_isostatic` when h > 0 (the message gives N_f, N, rank, h, k), `undecided` when no bound of the inverse
-/// or no true vertex near the stored one was proved.
-template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state);
+/// \pre h = 0 in `counting`, of this state. Failure: `not_isostatic` when the completed structure is not proved
+/// regular, `undecided` when no bound of the inverse or no true vertex near the stored one was proved.
+template <int Dim>
+Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting);
 
 extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
                                               RunObserver<2>&);
-extern template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
+extern template Result<MechanismInspection<2>> inspect_mechanism<2>(const State<2>&, const Counting&);
 
 } // namespace isostat

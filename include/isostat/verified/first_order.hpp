@@ -4,8 +4,8 @@
 
 #include <isostat/core/enclosure.hpp>
 #include <isostat/packing/load.hpp>
+#include <isostat/rigidity/contact_pattern.hpp>
 #include <isostat/verified/configuration.hpp>
-#include <isostat/verified/index_pattern.hpp>
 
 #include <optional>
 #include <vector>
@@ -51,7 +51,6 @@ template <int Dim> class FirstOrder {
     double uncertainty_ = 0; ///< |H - H*|_2, H that of the structure
     double away_ = 0;        ///< |q - q*|_2
     Velocity change_;        ///< v
-    mutable std::optional<IndexPattern> pattern_;
 };
 
 extern template class FirstOrder<2>;

@@ -40,6 +40,15 @@ struct ForceExpression {
     int divisor_part = -1;
 };
 
+/// What a right-hand side is besides its doubles.
+struct LoadTerms {
+    /// Rows whose component is a product, of which the double is the rounded value: on every rung the exact one is
+    /// meant.
+    std::vector<ExactProduct> products;
+    /// The force itself depends on the configuration: |F(q) - F(q*)|_2 <= rate |q - q*|_2 (true stresses).
+    double rate = 0;
+};
+
 /// The solutions of H f = F for several right-hand sides, all on one rung, each with its proved bound:
 ///   double -> refined with residuals in double-double -> in MPFR with first_bits, twice as many, ... max_bits ->
 ///   exact.
@@ -57,9 +66,8 @@ template <int Dim> class ForceLadder {
     ForceLadder& operator=(ForceLadder&&) noexcept;
 
     /// Adds a right-hand side (one number per degree of freedom, taken as exact); returns its number, from 0.
-    /// `rate`: the force itself depends on the configuration, |F(q) - F(q*)|_2 <= rate |q - q*|_2 (true stresses).
     /// `guess`: of the solution, or empty; changes the cost.
-    int add(std::vector<double> force, double rate = 0, std::vector<double> guess = {});
+    int add(std::vector<double> force, LoadTerms terms = {}, std::vector<double> guess = {});
     [[nodiscard]] const std::vector<double>& force(int part) const;
 
     /// The solution on the present rung. A zero right-hand side has the exact solution 0 with bound 0 on every rung.

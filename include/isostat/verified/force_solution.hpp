@@ -36,26 +36,35 @@ ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const Isosta
 
 /// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the
 /// rounding of the residual and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound
-/// is infinite. Cost: two solves. With `accuracy` > 0 and factors taken over the solve stops at that relative accuracy,
-/// estimated, and is not refined: fewer passes, and the larger bound that its residual gives. `guess`: empty, or where
-/// the iteration starts.
+/// is infinite. Each component of `force` may be off by its own rounding (unit 2^-53). Cost: two solves. With
+/// `accuracy` > 0 and factors taken over the solve stops at that relative accuracy, estimated, and is not refined:
+/// fewer passes, and the larger bound that its residual gives. `guess`: empty, or where the iteration starts.
 template <int Dim>
 ForceSolution solve_forces(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
                            const InverseBound& inverse, const std::vector<double>& force,
                            std::span<const double> guess = {}, double accuracy = 0);
 
+/// A component of a right-hand side that is meant as minus the product of two doubles, in the real numbers.
+struct ExactProduct {
+    int row = 0;
+    double a = 0;
+    double b = 0;
+};
+
 /// Refines `solution` with residuals in double-double: bound near 1e-30 |f| |H^-1|. The right-hand side is the same
-/// `force`, taken as exact.
+/// `force`, taken as exact but for the rows of `products`, whose products are taken without rounding.
 template <int Dim>
 void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
                           const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                          const InverseBound& inverse, const std::vector<double>& force);
+                          const InverseBound& inverse, const std::vector<double>& force,
+                          std::span<const ExactProduct> products = {});
 
 extern template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                           const std::vector<double>&);
 extern template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
                                               const std::vector<double>&, std::span<const double>, double);
 extern template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
-                                             const Factorisation&, const InverseBound&, const std::vector<double>&);
+                                             const Factorisation&, const InverseBound&, const std::vector<double>&,
+                                             std::span<const ExactProduct>);
 
 } // namespace isostat

@@ -1,6 +1,7 @@
 // Soft grains against the rigid states that they approximate: contacts, forces, strain, the next rearrangement.
 #include "bench/work_precision/report.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/shortcuts/soft_grains.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 

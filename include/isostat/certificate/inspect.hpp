@@ -1,0 +1,41 @@
+#pragma once
+/// \file
+/// What is known of a state without moving it.
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// The answers of `certify` about the state as it is given, with the numbers that people ask for. With fewer contacts
+/// than degrees of freedom (h = 0, k > 0), or with held coordinates, those of `inspect_mechanism`.
+template <int Dim> struct Inspection {
+    Certification truth;
+    Counting counting; ///< N_f, N, rank, h, k
+    /// `record.verdict`: is it an isostatic equilibrium without overlap. Forces, ends of the interval: middles of the
+    /// intervals of `truth`; `record.force_bound`: of every force; ends that are not decided are NaN. `min_gap`: lower
+    /// bound, NaN when there is none. Not computed (0): `balance`, `virtual_power`.
+    EquilibriumRecord<Dim> record;
+    std::vector<Contact> contacts;              ///< those of the state, then the held coordinates
+    std::vector<double> forces;                 ///< f0, one per entry of `contacts`
+    std::vector<unsigned char> structural_zero; ///< 1: f0 vanishes for every load on the walls
+    std::vector<int> rattlers;                  ///< disks without a force-carrying contact
+    bool equilibrium = false;                   ///< `record.verdict` is `proved`
+    /// proved: strict local minimum of the potential of the load (isostatic equilibrium); refuted: it has a maximum
+    /// along the mechanism; undecided: neither was shown.
+    Verdict stable = Verdict::undecided;
+    Enclosure second_order; ///< as in `MechanismInspection`
+    std::string remark;     ///< when not an equilibrium: which contact and by how much
+};
+
+/// Failure: `not_isostatic` when h > 0, or when the rank is not proved (the message gives N_f, N, rank, h, k),
+/// `undecided` when no bound of the inverse or no true vertex near the given place was proved. Cost: as `certify`.
+template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state);
+
+extern template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
+
+} // namespace isostat

@@ -1,0 +1,61 @@
+#pragma once
+/// \file
+/// Where the contact matrix can have entries: the one pattern by which structural zeros are told
+/// (proofs/definition.md).
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/core/ids.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace isostat {
+
+/// The degrees of freedom on which a contact can act, ascending: by the indices alone, wherever the grains are.
+template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const Contact& contact);
+
+/// The pattern of the contact matrix at the true vertex: the entries that the contacts can have by their indices (those
+/// of `contact_matrix`, a stored 0 among them), without those that are 0 at every true vertex: components along an axis
+/// where walls, holds or being fixed keep both disks at one coordinate. What vanishes by this pattern (T11) vanishes
+/// for the true vertex, whatever the stored numbers are. Refers to the structure while no entry is left out.
+class ContactPattern {
+  public:
+    /// `perturbed`: the radii are R_i + eps rho_i; then equal ones are not equal, and nothing is left out.
+    template <int Dim>
+    ContactPattern(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, bool perturbed = false)
+        : ContactPattern(packing, structure.dofs(), structure.contacts(), structure.matrix(), structure.matching(),
+                         perturbed) {}
+    /// The same from the parts of a structure, which must outlive it.
+    template <int Dim>
+    ContactPattern(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts,
+                   const sparse::Matrix<double>& matrix, const std::vector<int>& matching, bool perturbed = false);
+
+    /// Per contact: 1 when its force can be other than 0 under a load on `rows`; 0: a structural zero. Cost O(N).
+    [[nodiscard]] std::vector<unsigned char> carrying(std::span<const int> rows) const;
+    /// The same for what is left of the forces where the force of `opens` has been brought to 0 by a load on `row`: 0
+    /// means that the two vanish together (D3). All 1 when `opens` does not depend on that load.
+    [[nodiscard]] std::vector<unsigned char> carrying_without(ContactId opens, int row,
+                                                              std::span<const int> other_rows) const;
+
+  private:
+    struct Parts {
+        std::vector<int> start{0};
+        std::vector<int> row;
+        std::vector<int> matched; ///< the column of each row, in a perfect matching
+    };
+    std::optional<Parts> own_;
+    const std::vector<int>* start_;
+    const std::vector<int>* row_;
+    const std::vector<int>* matched_;
+    [[nodiscard]] std::span<const int> start() const { return own_ ? own_->start : *start_; }
+    [[nodiscard]] std::span<const int> row() const { return own_ ? own_->row : *row_; }
+    [[nodiscard]] const std::vector<int>& matched() const { return own_ ? own_->matched : *matched_; }
+};
+
+extern template std::vector<int> touched_rows<2>(const DofMap<2>&, const Contact&);
+extern template ContactPattern::ContactPattern(const Packing<2>&, const DofMap<2>&, const std::vector<Contact>&,
+                                               const sparse::Matrix<double>&, const std::vector<int>&, bool);
+
+} // namespace isostat

@@ -1,0 +1,168 @@
+#include <isostat/certificate/inspect.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+double middle(const Interval& interval) {
+    return 0.5 * interval.lower + 0.5 * interval.upper;
+}
+
+/// Bound of the distance to the middle.
+double half_width(const Interval& interval) {
+    const double m = middle(interval);
+    return std::max(interval.upper - m, m - interval.lower) * (1 + 0x1p-50);
+}
+
+template <int Dim> bool has_held(const State<Dim>& state) {
+    return std::any_of(state.contacts.begin(), state.contacts.end(),
+                       [](const Contact& c) { return c.kind == ContactKind::held; });
+}
+
+template <int Dim>
+std::vector<int> without_force(const State<Dim>& state, const std::vector<unsigned char>& structural_zero) {
+    std::vector<unsigned char> carries(state.packing.radius.size(), 0);
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& contact = state.contacts[l];
+        if (structural_zero[l] == 0) {
+            carries[static_cast<std::size_t>(contact.i)] = 1;
+            if (contact.kind == ContactKind::disk_disk) {
+                carries[static_cast<std::size_t>(contact.j)] = 1;
+            }
+        }
+    }
+    std::vector<int> list;
+    for (std::size_t i = 0; i < carries.size(); ++i) {
+        if (carries[i] == 0) {
+            list.push_back(static_cast<int>(i));
+        }
+    }
+    return list;
+}
+
+template <int Dim> void describe_forces(Inspection<Dim>& inspection) {
+    EquilibriumRecord<Dim>& record = inspection.record;
+    record.margin = infinity;
+    record.min_force = infinity;
+    for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
+        const Interval& f = inspection.truth.finite[l];
+        inspection.forces.push_back(middle(f));
+        if (inspection.structural_zero[l] != 0) {
+            continue;
+        }
+        ++record.backbone;
+        record.force_bound = std::max(record.force_bound, half_width(f));
+        record.margin = std::min(record.margin, std::abs(middle(f)) / half_width(f));
+        if (middle(f) < record.min_force) {
+            record.min_force = middle(f);
+            record.min_force_contact = inspection.contacts[l];
+        }
+    }
+}
+
+template <int Dim> void describe_interval(EquilibriumRecord<Dim>& record, const CertificateClaims& claims) {
+    const auto end = [&](int direction, double& stress, Contact& opens) {
+        opens = {ContactKind::disk_disk, -1, -1};
+        stress = unknown;
+        if (claims.load_interval) {
+            const LoadEndClaim& claim = direction < 0 ? claims.load_interval->low : claims.load_interval->high;
+            stress = claim.unbounded ? direction * infinity : middle(claim.stress);
+            opens = claim.unbounded ? opens : claim.opens;
+        }
+    };
+    end(-1, record.stress_low, record.opens_low);
+    end(+1, record.stress_high, record.opens_high);
+}
+
+/// Of a state whose true vertex was found.
+template <int Dim> void describe(const State<Dim>& state, Inspection<Dim>& inspection) {
+    const Certification& truth = inspection.truth;
+    const CertificateClaims& claims = truth.claims;
+    EquilibriumRecord<Dim>& record = inspection.record;
+    inspection.structural_zero = truth.structural_zero;
+    inspection.rattlers = without_force(state, truth.structural_zero);
+    describe_forces(inspection);
+    describe_interval(record, claims);
+    inspection.equilibrium = claims.counting && claims.vertex && claims.forces && claims.gaps;
+    record.verdict = inspection.equilibrium  ? Verdict::proved
+                     : truth.refuted.empty() ? Verdict::undecided
+                                             : Verdict::refuted;
+    inspection.stable = claims.stable ? Verdict::proved : Verdict::undecided;
+    if (!inspection.equilibrium) {
+        inspection.remark = truth.refuted.empty() ? claims.undecided.front() : truth.refuted.front();
+    }
+    record.decided_by = claims.vertex->rung;
+    const auto need = [&record](const auto& claim) {
+        record.decided_by = claim ? std::max(record.decided_by, claim->rung) : record.decided_by;
+    };
+    need(claims.forces);
+    need(claims.gaps);
+    need(claims.load_interval);
+    record.min_gap = claims.gaps ? claims.gaps->smallest : unknown;
+    record.min_gap_contact = claims.gaps ? claims.gaps->where : Contact{ContactKind::disk_disk, -1, -1};
+    record.sigma_min_bound = truth.smallest_sigma;
+}
+
+std::string numbers(const Counting& c) {
+    return fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}", c.dof_count, c.contact_count, c.rank,
+                       c.hyperstaticity, c.mechanisms);
+}
+
+} // namespace
+
+template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state) {
+    Inspection<Dim> inspection;
+    inspection.truth = certify(state);
+    inspection.counting = inspection.truth.counting;
+    inspection.contacts = state.contacts;
+    const Counting& counting = inspection.counting;
+    EquilibriumRecord<Dim>& record = inspection.record;
+    if (counting.hyperstaticity > 0) {
+        return Failure{FailureKind::not_isostatic, numbers(counting) + ": forces are not determined by the geometry"};
+    }
+    if (counting.mechanisms > 0 || has_held(state)) {
+        auto found = inspect_mechanism(state, counting.mechanisms > 0 ? count_contacts(state.packing, state.contacts)
+                                                                      : counting);
+        if (!found.ok()) {
+            return found.failure();
+        }
+        MechanismInspection<Dim>& mechanism = found.value();
+        inspection.record = std::move(mechanism.record);
+        inspection.contacts = std::move(mechanism.contacts);
+        inspection.forces = std::move(mechanism.forces);
+        inspection.structural_zero = std::move(mechanism.structural_zero);
+        inspection.rattlers = std::move(mechanism.rattlers);
+        inspection.stable = mechanism.stable;
+        inspection.second_order = mechanism.second_order;
+        inspection.remark = std::move(mechanism.remark);
+        return inspection;
+    }
+    if (!inspection.truth.claims.vertex) {
+        const auto& reasons =
+            inspection.truth.refuted.empty() ? inspection.truth.claims.undecided : inspection.truth.refuted;
+        return Failure{inspection.truth.refuted.empty() ? FailureKind::undecided : FailureKind::not_isostatic,
+                       reasons.front()};
+    }
+    describe(state, inspection);
+    record.number = state.equilibrium;
+    record.stress = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    record.dof_count = counting.dof_count;
+    record.contact_count = counting.contact_count;
+    record.rank = counting.rank;
+    record.rattlers = static_cast<int>(inspection.rattlers.size());
+    record.gap_residual = inspection.truth.stored_gap;
+    return inspection;
+}
+
+template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
+
+} // namespace isostat

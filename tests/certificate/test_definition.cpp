@@ -1,0 +1,200 @@
+// One definition of the problem (proofs/definition.md): inspection, certificate, checker and the engine of runs speak
+// of the same load, pattern, pairs and point.
+#include "support/crafted.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/certificate/inspect.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/statics/decisions.hpp>
+#include <isostat/verified/configuration.hpp>
+
+#include <boost/test/data/test_case.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+State<2> stored(const std::string& name) {
+    return read_state<2>(scratch::data("definition/" + name + ".json")).state;
+}
+
+/// What the engine of runs says: the contact that opens, nothing for an equilibrium; undecided is a failure.
+Result<OpeningDecision> decided(const State<2>& state, std::optional<LoadLimit>* low = nullptr) {
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_REQUIRE(structure.ok());
+    const Factorisation factorisation(structure.value());
+    InverseBoundCache cache;
+    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
+    const VertexEnclosure vertex = enclose_vertex(state.packing, structure.value(), factorisation, inverse);
+    Statics<2> statics(state.packing, state.load, structure.value(), factorisation, inverse, {}, &vertex);
+    const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    auto decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+    if (low != nullptr) {
+        auto limit = find_limit(statics, sigma, -1);
+        if (limit.ok()) {
+            *low = limit.value();
+        }
+    }
+    return decision;
+}
+
+struct Known {
+    const char* name;
+    Verdict verdict;
+};
+std::ostream& operator<<(std::ostream& out, const Known& known) {
+    return out << known.name;
+}
+constexpr std::array<Known, 9> known_states{{{"load-product", Verdict::refuted},
+                                             {"structural", Verdict::refuted},
+                                             {"02-tension", Verdict::refuted},
+                                             {"07-load-rounding-proved", Verdict::refuted},
+                                             {"07-load-rounding-refuted", Verdict::proved},
+                                             {"08-interval", Verdict::proved},
+                                             {"11-same-height-opens", Verdict::proved},
+                                             {"11-same-height-refuted", Verdict::proved},
+                                             {"fixed-pair", Verdict::refuted}}};
+
+std::vector<ClaimCheck> checks(const State<2>& state, const CertificateClaims& claims) {
+    return verify({state, "state", sha256(""), "test", claims}).checks;
+}
+
+Verdict of_claim(const std::vector<ClaimCheck>& all, const std::string& claim) {
+    for (const ClaimCheck& check : all) {
+        if (check.claim == claim) {
+            return check.verdict;
+        }
+    }
+    return Verdict::undecided;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(certificate)
+
+BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, known_states, known) {
+    const State<2> state = stored(known.name);
+    const auto inspection = inspect_vertex(state);
+    BOOST_REQUIRE(inspection.ok());
+    BOOST_TEST((inspection.value().record.verdict == known.verdict), inspection.value().remark);
+    const Certification& truth = inspection.value().truth;
+    BOOST_TEST((truth.verdict == known.verdict));
+    BOOST_TEST(
+        (inspection.value().stable == (known.verdict == Verdict::proved ? Verdict::proved : Verdict::undecided)));
+    for (const ClaimCheck& check : checks(state, truth.claims)) {
+        BOOST_TEST((!check.claimed || check.verdict == Verdict::proved), check.claim << ": " << check.detail);
+    }
+    if (known.name == std::string("02-tension")) {
+        return; // a centimetre off its vertex: nothing that a run could start from
+    }
+    std::optional<LoadLimit> low;
+    const auto decision = decided(state, &low);
+    BOOST_REQUIRE_MESSAGE(decision.ok(), (decision.ok() ? "" : decision.failure().message));
+    const bool negative = truth.signs.negative > 0;
+    BOOST_TEST(decision.value().opening.has_value() == negative);
+    if (negative) {
+        const std::size_t l = decision.value().opening->contact.index();
+        BOOST_TEST(!decision.value().opening->infinitesimal);
+        BOOST_TEST(truth.finite[l].upper < 0);
+    } else if (truth.claims.load_interval && !truth.claims.load_interval->low.unbounded) {
+        const LoadEndClaim& end = truth.claims.load_interval->low;
+        BOOST_REQUIRE(low);
+        BOOST_TEST((state.contacts[low->opens.index()] == end.opens));
+        BOOST_TEST(low->stress + low->stress_error >= end.stress.lower);
+        BOOST_TEST(low->stress - low->stress_error <= end.stress.upper);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_load_is_the_exact_product_on_every_rung) {
+    // Where a force is 0 but for what rounding does to stress times length, the sign is that of the exact product; with
+    // the length that the rounded product has, it is the other one.
+    const State<2> state = stored("load-product");
+    const auto rounded = decided(state);
+    BOOST_REQUIRE(rounded.ok());
+    BOOST_REQUIRE(rounded.value().opening.has_value());
+    BOOST_TEST((rounded.value().opening->rung >= Rung::double_double));
+    State<2> exact = state;
+    for (std::size_t a = 0; a < 2; ++a) { // stresses that are the rounded products, lengths 1
+        exact.load.stress[a] = state.load.stress[a] * state.load.reference_length[1 - a];
+        exact.load.reference_length[1 - a] = 1;
+    }
+    const auto other = decided(exact);
+    BOOST_REQUIRE(other.ok());
+    BOOST_TEST(!other.value().opening.has_value());
+    BOOST_TEST((inspect_vertex(exact).value().record.verdict == Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(the_state_that_is_inspected_is_the_one_that_is_given) {
+    const State<2> state = stored("01-overlap"); // a fixed disk, and a wall that is absent with a length of 1e15
+    const auto inspection = inspect_vertex(state);
+    BOOST_REQUIRE(inspection.ok());
+    BOOST_TEST((inspection.value().record.verdict == Verdict::refuted));
+    BOOST_TEST(inspection.value().remark.find("0-1 overlap") != std::string::npos, inspection.value().remark);
+    State<2> apart = state;
+    apart.packing.q[2] = 2.5;
+    BOOST_TEST((inspect_vertex(apart).value().record.verdict == Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(pairs_that_cannot_move_must_not_overlap_either) {
+    State<2> state = stored("fixed-pair");
+    const Certification overlapping = certify(state);
+    BOOST_TEST(!overlapping.claims.gaps.has_value());
+    BOOST_TEST(!overlapping.claims.stable);
+    BOOST_REQUIRE(!overlapping.refuted.empty());
+    BOOST_TEST(overlapping.refuted.front().find("2-3") != std::string::npos, overlapping.refuted.front());
+    // A claim from elsewhere is refused by the checker.
+    State<2> apart = state;
+    apart.packing.q[6] = apart.packing.q[4] + 0.5; // 0.2 + 0.2 < 0.5
+    const Certification free = certify(apart);
+    BOOST_TEST((free.verdict == Verdict::proved));
+    BOOST_TEST((of_claim(checks(apart, free.claims), "gaps") == Verdict::proved));
+    BOOST_TEST((of_claim(checks(state, free.claims), "gaps") == Verdict::refuted));
+    // A fixed disk in a wall that does not move.
+    State<2> sunk = apart;
+    sunk.packing.q[4] = std::nextafter(0.2, 0.0);
+    BOOST_TEST((certify(sunk).verdict == Verdict::refuted));
+    BOOST_TEST((of_claim(checks(sunk, free.claims), "gaps") == Verdict::refuted));
+    sunk.packing.q[4] = 0.2; // touches
+    BOOST_TEST((certify(sunk).verdict == Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(true_stresses_without_loads_on_disks_have_a_strict_minimum) {
+    State<2> state = two_disks(1, 2, 1, 1.5);
+    state.load.kind = LoadKind::true_stress;
+    const Certification free = certify(state);
+    BOOST_TEST(free.claims.stable);
+    BOOST_TEST((of_claim(checks(state, free.claims), "stable") == Verdict::proved));
+    state.load.disk_force = {1e-3, 0, 0, 0};
+    const Certification loaded = certify(state);
+    BOOST_TEST(loaded.claims.forces.has_value());
+    BOOST_TEST(!loaded.claims.stable);
+    CertificateClaims claimed = loaded.claims;
+    claimed.stable = true;
+    BOOST_TEST((of_claim(checks(state, claimed), "stable") == Verdict::undecided));
+    state.load.kind = LoadKind::nominal;
+    BOOST_TEST(certify(state).claims.stable);
+}
+
+BOOST_AUTO_TEST_CASE(where_nothing_can_move_there_is_no_equilibrium) {
+    const State<2> state = stored("09-no-dof");
+    const Certification truth = certify(state);
+    BOOST_TEST((truth.verdict == Verdict::refuted));
+    BOOST_REQUIRE(truth.claims.counting.has_value());
+    BOOST_TEST(truth.claims.counting->dof_count == 0);
+    const auto inspection = inspect_vertex(state);
+    BOOST_TEST(!inspection.ok());
+    BOOST_TEST((inspection.failure().kind == FailureKind::not_isostatic));
+    State<2> sunk = state;
+    sunk.packing.q[0] = 0.5;
+    BOOST_TEST(certify(sunk).refuted.size() == 2U); // and it overlaps
+}
+
+BOOST_AUTO_TEST_SUITE_END()

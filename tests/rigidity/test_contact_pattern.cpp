@@ -1,0 +1,59 @@
+// Where the contact matrix can have entries, whatever the stored numbers are.
+#include "support/crafted.hpp"
+
+#include <isostat/rigidity/contact_pattern.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+std::size_t entries(const State<2>& state) {
+    return contact_matrix(state.packing, DofMap<2>(state.packing), state.contacts).row.size();
+}
+
+/// Two disks on the bottom, which touch; the upper wall presses on the first, the right one on the second.
+State<2> side_by_side(double second_radius, double second_height) {
+    State<2> state =
+        in_box({{1, 1, 1}, {1, 3, 1}}, 4, 2, 1, 1, {left(0), bottom(0), pair(0, 1), bottom(1), right(1), top(0)});
+    state.packing.radius[1] = second_radius;
+    state.packing.q[3] = second_height;
+    return state;
+}
+
+std::vector<unsigned char> carrying(const State<2>& state, bool perturbed = false) {
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    BOOST_REQUIRE(structure.ok());
+    const DofMap<2>& dofs = structure.value().dofs();
+    const std::vector<int> right_wall{dofs.dof_of(4)};
+    return ContactPattern(state.packing, structure.value(), perturbed).carrying(right_wall);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(rigidity)
+
+BOOST_AUTO_TEST_CASE(entries_follow_from_the_contacts_not_from_the_stored_coordinates) {
+    BOOST_TEST(entries(side_by_side(1, 1)) == entries(side_by_side(1, 1 + 0x1p-52)));
+    BOOST_TEST(entries(side_by_side(1, 1)) == 4U + 1 + 1 + 1 + 2 + 2);
+}
+
+BOOST_AUTO_TEST_CASE(what_vanishes_is_told_by_indices_and_by_equal_radii_on_one_wall) {
+    // In the order left-0, bottom-0, 0-1, bottom-1, right-1, top-0 of the sorted list: found by contact.
+    const auto bottom_of_second = [](const State<2>& state, bool perturbed) {
+        const auto found = std::find(state.contacts.begin(), state.contacts.end(), bottom(1));
+        return carrying(state, perturbed)[static_cast<std::size_t>(found - state.contacts.begin())] != 0;
+    };
+    // Equal radii: the pair is level at every true vertex, and the right wall presses on the left one alone.
+    BOOST_TEST(!bottom_of_second(side_by_side(1, 1), false));
+    BOOST_TEST(!bottom_of_second(side_by_side(1, 1 + 0x1p-52), false));
+    // Radii that differ in the last bit, or by eps rho: it is not level, whatever is stored.
+    BOOST_TEST(bottom_of_second(side_by_side(1 + 0x1p-52, 1), false));
+    BOOST_TEST(bottom_of_second(side_by_side(1, 1), true));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

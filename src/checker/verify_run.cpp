@@ -1,6 +1,8 @@
 #include "checker/follow.hpp"
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"
+#include "checker/way.hpp"
+#include "io/record_digests.hpp"
 
 #include <isostat/checker/verify_run.hpp>
 #include <isostat/core/floating_point.hpp>
@@ -16,7 +18,8 @@ using namespace checker;
 /// Goes through the records in order and stops at the first wrong one.
 class Replay {
   public:
-    Replay(const RunRecords& records, RunVerification& result) : records_(records), result_(result) {
+    Replay(const RunRecords& records, RunVerification& result)
+        : records_(records), result_(result), witnesses_(records.directory / witness_records) {
         result.arcs = static_cast<int>(records.events.size());
         result.equilibria = static_cast<int>(records.equilibria.size());
     }
@@ -173,11 +176,29 @@ class Replay {
         if (here_.first && !judged(check_step(here_, event, position, direction), event.where)) {
             return false;
         }
+        const int fresh = event.power_turn ? static_cast<int>(position) : -1;
         State<2> state = *here_.state;
         std::shared_ptr<const Solver> factors;
+        Place next;
+        bool proved = false;
         const bool stays =
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
-        if (!stays) {
+        if (!stays && records_.certified_arcs) {
+            const std::optional<Witness> witness = witnesses_.of(event.step);
+            Objections open = Objection{false, "the way is not proved: there is no witness"};
+            if (witness) {
+                const Way way{position, direction, rattles, event.kind == "limit", event.stress, *witness};
+                open = end_of(here_, *closed, way, state);
+                open = open ? open : make_place(state, next, load, fresh);
+                open = open ? open : prove_way(here_, next, way);
+            }
+            proved = !open;
+            if (open) {
+                leave(event.where, open->text);
+                state = *here_.state;
+            }
+        }
+        if (!stays && !proved) {
             Motion motion;
             motion.opened = position;
             motion.direction = direction;
@@ -215,10 +236,7 @@ class Replay {
         }
         state.contacts[position] = *closed;
         state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
-        Place next;
-        if (!judged(make_place(std::move(state), next, load, event.power_turn ? static_cast<int>(position) : -1,
-                               std::move(factors)),
-                    event.where) ||
+        if ((!proved && !judged(make_place(std::move(state), next, load, fresh, std::move(factors)), event.where)) ||
             !judged(check_end(here_, next, event, rattles), event.where) ||
             (event.power_turn && !judged(check_turn(next, event, rattles), event.where)) ||
             (next.first && !judged(check_ties(here_, next, event, position, direction), event.where)) ||
@@ -230,6 +248,7 @@ class Replay {
         result_.turns_checked += event.power_turn ? 1 : 0;
         here_ = std::move(next);
         result_.arcs_proved += opening ? 1 : 0;
+        result_.ways_proved += proved || stays ? 1 : 0;
         return true;
     }
 
@@ -289,6 +308,7 @@ class Replay {
 
     const RunRecords& records_;
     RunVerification& result_;
+    Witnesses witnesses_;
     Place here_; ///< empty: lost
     int here_number_ = -1;
     std::size_t event_ = 0;

@@ -64,6 +64,7 @@ RunHeader header_of(const Scene& scene, const std::string& command) {
     }
     header.keep = needed_equilibria(scene);
     header.states_every = scene.states_every;
+    header.witnesses = scene.run.certify == CertifyLevel::arcs;
     header.checkpoint_seconds = scene.checkpoint_seconds;
     return header;
 }

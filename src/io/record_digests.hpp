@@ -11,6 +11,9 @@
 
 namespace isostat {
 
+/// The records of arcs for a checker, one line per arc, in the folder of a run of level `arcs`.
+inline constexpr const char* witness_records = "certificates/arcs.jsonl";
+
 /// Digest of a list of records: each line together with the digest of those before it.
 std::string chained(const std::string& before, const std::string& line);
 

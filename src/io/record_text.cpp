@@ -101,6 +101,23 @@ std::string event_line(const ArcRecord<2>& arc) {
     return json::dumped(line) + "\n";
 }
 
+std::string witness_line(const ArcRecord<2>& arc) {
+    Json line;
+    line["step"] = arc.step;
+    if (arc.certificate && arc.certificate->verdict == Verdict::proved) {
+        const ArcWitness& witness = arc.certificate->witness;
+        if (!witness.whole) {
+            line["grains"] = witness.grains;
+        }
+        line["centres"] = Json::array();
+        for (const ArcWitness::Centre& centre : witness.centres) {
+            line["centres"].push_back({{"held", centre.held}, {"q", centre.q}});
+        }
+        line["end"] = witness.end;
+    }
+    return json::dumped(line) + "\n";
+}
+
 const std::vector<std::string>& equilibria_columns() {
     static const std::vector<std::string> columns{"number",
                                                   "previous",

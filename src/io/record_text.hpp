@@ -13,6 +13,11 @@ namespace isostat {
 /// One JSON object and a newline.
 std::string event_line(const ArcRecord<2>& arc);
 
+/// One line of certificates/arcs.jsonl: the step, and of a certified arc `grains` (those that move; absent: all),
+/// `centres` (`held`: a coordinate, `q`) and `end`. `q` and `end` list the degrees of freedom that move, in their
+/// order.
+std::string witness_line(const ArcRecord<2>& arc);
+
 /// The header line of equilibria.csv.
 std::string equilibria_header();
 /// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start.

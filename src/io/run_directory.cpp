@@ -59,7 +59,7 @@ const char* to_string(RunStatus status) {
 }
 
 struct RunDirectory::Files {
-    Descriptor lock, events, equilibria;
+    Descriptor lock, events, equilibria, witnesses;
 };
 
 RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, const RunCounters& counters)
@@ -94,6 +94,10 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
     const int flags = O_WRONLY | O_CREAT | O_APPEND | (checkpoint_ ? 0 : O_TRUNC);
     files_->events = Descriptor::open(directory_ / "events.jsonl", flags);
     files_->equilibria = Descriptor::open(directory_ / "equilibria.csv", flags);
+    if (header_.witnesses) {
+        make_directory(directory_ / "certificates");
+        files_->witnesses = Descriptor::open(directory_ / witness_records, flags);
+    }
     if (!checkpoint_) {
         files_->equilibria.write(equilibria_header());
         equilibria_digest_ = chained("", equilibria_header());
@@ -148,7 +152,9 @@ void RunDirectory::open_for_resume() {
     std::vector<std::pair<Descriptor, long>> cut;
     for (const auto& [name, lines] : checked->lines) {
         cut.emplace_back(Descriptor::open(directory_ / name, O_WRONLY), lines.bytes);
-        (name == "events.jsonl" ? events_digest_ : equilibria_digest_) = lines.digest;
+        (name == "events.jsonl"    ? events_digest_
+         : name == witness_records ? witness_digest_
+                                   : equilibria_digest_) = lines.digest;
     }
     for (auto& [records, bytes] : cut) {
         records.truncate(bytes);
@@ -187,6 +193,11 @@ void RunDirectory::on_arc(const ArcRecord<2>& arc) {
     const std::string line = event_line(arc);
     files_->events.write(line);
     events_digest_ = chained(events_digest_, line);
+    if (header_.witnesses) {
+        const std::string witness = witness_line(arc);
+        files_->witnesses.write(witness);
+        witness_digest_ = chained(witness_digest_, witness);
+    }
 }
 
 void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
@@ -217,8 +228,10 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
                      counters_,
                      files_->events.size(),
                      files_->equilibria.size(),
+                     header_.witnesses ? files_->witnesses.size() : 0,
                      events_digest_,
-                     equilibria_digest_};
+                     equilibria_digest_,
+                     witness_digest_};
     const auto now = std::chrono::steady_clock::now();
     const std::chrono::duration<double> interval(header_.checkpoint_seconds);
     if (pending_->segment_done || !last_checkpoint_ || now - *last_checkpoint_ >= interval) {
@@ -237,8 +250,7 @@ void RunDirectory::write_checkpoint() {
         return;
     }
     count_work(Work::checkpoints);
-    files_->events.sync();
-    files_->equilibria.sync();
+    sync();
     Json object;
     object["format"] = "isostat-checkpoint";
     object["version"] = 1;
@@ -248,12 +260,24 @@ void RunDirectory::write_checkpoint() {
     object["counters"] = counters_json(pending_->counters);
     object["bytes"] = {{"events.jsonl", pending_->events_bytes}, {"equilibria.csv", pending_->equilibria_bytes}};
     object["digests"] = {{"events.jsonl", pending_->events_digest}, {"equilibria.csv", pending_->equilibria_digest}};
+    if (header_.witnesses) {
+        object["bytes"][witness_records] = pending_->witness_bytes;
+        object["digests"][witness_records] = pending_->witness_digest;
+    }
     object["files"] = digests_;
     std::string text = json::dumped(object);
     text.pop_back();
     text += before_state + state_text<2>(last_, last_forces_);
     write_atomically(directory_ / "checkpoint.json", text + before_digest + '"' + sha256(text) + "\"}\n");
     pending_.reset();
+}
+
+void RunDirectory::sync() {
+    files_->events.sync();
+    files_->equilibria.sync();
+    if (header_.witnesses) {
+        files_->witnesses.sync();
+    }
 }
 
 void RunDirectory::finish(RunStatus status, const std::string& reason) {
@@ -289,8 +313,7 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
         object["solid_fraction"] = json::or_null(last_.packing.solid_fraction());
     }
     summary_ = json::dumped(object, 2) + "\n";
-    files_->events.sync();
-    files_->equilibria.sync();
+    sync();
     write_atomically(directory_ / "summary.json", summary_);
     write_header(words);
 }

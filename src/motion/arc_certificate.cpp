@@ -71,6 +71,7 @@ template <int Dim> class Certifier {
     bool finish(const Piece& piece, double from, double to);
     std::unique_ptr<Piece> end_piece(double forward);
     bool arrive(const Piece& last, double from, double joint_slack);
+    [[nodiscard]] std::vector<double> moving_coordinates(const Packing<Dim>& at) const;
 
     const ArcVertex<Dim>& start_;
     const ArcVertex<Dim>& end_;
@@ -193,6 +194,15 @@ template <int Dim> bool Certifier<Dim>::arrive(const Piece& last, double from, d
     return check_vertex(end_, closed(), "end");
 }
 
+template <int Dim> std::vector<double> Certifier<Dim>::moving_coordinates(const Packing<Dim>& at) const {
+    const DofMap<Dim>& dofs = part_->curve().dofs;
+    std::vector<double> q;
+    for (int mu = 0; mu < dofs.dof_count(); ++mu) {
+        q.push_back(at.q[static_cast<std::size_t>(dofs.coordinate_of(mu))]);
+    }
+    return q;
+}
+
 template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
     fresh_ends_ = fresh_ends;
     certificate_ = {};
@@ -203,6 +213,9 @@ template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
     power_ = &power;
     if (chain()) {
         certificate_.verdict = Verdict::proved;
+        certificate_.witness.whole = part_->whole();
+        certificate_.witness.grains = part_->grains();
+        certificate_.witness.end = moving_coordinates(end_.packing);
         power.conclude(certificate_, closed().kind == ContactKind::held);
     }
     certificate_.gap_margin = watch_.margin();
@@ -334,6 +347,8 @@ template <int Dim> bool Certifier<Dim>::chain() {
         slack = place->slack;
         piece = std::move(next);
         centre = std::move(next_centre);
+        certificate_.witness.centres.push_back(
+            {centre->structure().contacts()[part_->curve().slot].i, moving_coordinates(centre->packing())});
     }
     return refuse(fmt::format("more than {} pieces", options_.max_pieces));
 }

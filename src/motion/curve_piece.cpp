@@ -477,11 +477,17 @@ std::optional<typename CurvePiece<Dim>::Place> CurvePiece<Dim>::locate(const std
         square += off[k] * off[k];
         coordinate = std::max({coordinate, std::abs(x[k]), std::abs(centre_.q[k])});
     }
-    const double rounding = std::sqrt(static_cast<double>(structure_->size())) * 16 * u * coordinate;
+    double terms = 0; // of Horner's scheme, with the operations that each goes through (A8)
+    double power = 1;
+    for (std::size_t k = 0; k < a_.size(); ++k) {
+        power *= std::abs(s);
+        terms += static_cast<double>(2 * k + 5) * power * largest(a_[k]);
+    }
+    const double rounding = std::sqrt(static_cast<double>(structure_->size())) * u * (16 * coordinate + terms);
     const double distance = (std::sqrt(square) + rounding) * up + uncertainty;
     Place place;
     place.s = s;
-    place.slack = (std::abs(remaining) + 64 * u * coordinate + root2 * uncertainty) / row_rate_ * up;
+    place.slack = (std::abs(remaining) + 4 * u * (16 * coordinate + terms) + root2 * uncertainty) / row_rate_ * up;
     if (!(std::abs(s) + place.slack <= proved_ * (1 - 1e-9)) || !(distance + speed_ * place.slack * up < unique_)) {
         return std::nullopt;
     }

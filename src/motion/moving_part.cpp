@@ -184,6 +184,16 @@ std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::with_fastest(const ArcCentre<Di
                   vertex.structure().dofs().coordinate_of(static_cast<int>(fastest - mechanism.begin())), cache);
 }
 
+template <int Dim> std::vector<int> MovingPart<Dim>::grains() const {
+    std::vector<int> list;
+    for (std::size_t g = 0; g < disk_moves_.size() + Dim && !whole_; ++g) {
+        if (g < disk_moves_.size() ? disk_moves_[g] != 0 : wall_moves_[g - disk_moves_.size()] != 0) {
+            list.push_back(static_cast<int>(g));
+        }
+    }
+    return list;
+}
+
 template <int Dim> std::vector<Contact> MovingPart<Dim>::watched(const CandidateList<Dim>& list) const {
     const Contact& opened = start_.structure.contacts()[slot_];
     const ContactSet kept(start_.structure.contacts(), start_.packing.disk_count());

@@ -59,6 +59,8 @@ template <int Dim> class MovingPart {
     [[nodiscard]] std::unique_ptr<ArcCentre<Dim>> centre(Packing<Dim> packing, int held,
                                                          InverseBoundCache& cache) const;
     [[nodiscard]] bool whole() const { return whole_; }
+    /// The grains that move, when they are not all: disks, then walls.
+    [[nodiscard]] std::vector<int> grains() const;
 
     /// Candidates with a grain that moves and that are not kept; the opened contact is among them.
     [[nodiscard]] std::vector<Contact> watched(const CandidateList<Dim>& list) const;

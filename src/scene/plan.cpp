@@ -128,6 +128,11 @@ void add_outputs(Plan& plan, const Scene& scene) {
              : scene.run.certify >= CertifyLevel::states
                  ? fmt::format("certify = \"{}\"; `isostat verify` checks them", to_string(scene.run.certify))
                  : fmt::format("certify = \"{}\"", to_string(scene.run.certify)));
+    plan.add("output", "certificates/arcs.jsonl", runs && scene.run.certify == CertifyLevel::arcs,
+             !runs ? none
+             : scene.run.certify == CertifyLevel::arcs
+                 ? "certify = \"arcs\"; `isostat verify` proves the way of each arc from it"
+                 : fmt::format("certify = \"{}\"", to_string(scene.run.certify)));
     plan.add("output", "figures/*.svg, *.png (gnuplot), force pictures", runs && scene.pictures,
              !runs            ? none
              : scene.pictures ? "pictures = true"

@@ -137,6 +137,9 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
     structure_ = &here_->structure;
     factorisation_ = &here_->factorisation;
     const std::size_t slot = opening_.contact.index();
+    if (!record.power_turn) {
+        record.power = opening_.infinitesimal ? here_->infinitesimal()[slot] : here_->force[slot];
+    }
     if (!record.power_turn && (opening_.infinitesimal || !here_->is_structural_zero(slot)) &&
         !(opening_.infinitesimal ? here_->infinitesimal()[slot] > 0 : here_->compressive(slot))) {
         return Failure{FailureKind::undecided,

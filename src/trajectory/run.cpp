@@ -391,6 +391,7 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
                                      : to.statics.force(opening.contact, sigma_of(load));
     };
     Enclosure f = sign();
+    record.power = f.value;
     if (to.perturbed && !opening.infinitesimal && !f.decided() && !to.statics.is_structural_zero(opening.contact)) {
         const Order order = to.statics.sign(to.statics.force_expression(opening.contact, sigma_of(load)));
         PerturbedStatics<Dim>& side = to.perturbed->statics;
@@ -415,6 +416,7 @@ std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>&
     }
     while (!f.decided() && to.statics.climb()) {
         f = sign();
+        record.power = f.value;
     }
     if (opening.infinitesimal || !to.statics.is_structural_zero(opening.contact)) {
         if (!f.positive()) {

@@ -305,7 +305,8 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
 BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
     const scratch::Folder folder;
     BOOST_CHECK_THROW((void)verify_run(folder.path()), Error);
-    scratch::write(folder / "run.json", R"({"format":"isostat-run","status":"completed","settings":{"run":{"rule":"most_negative"}}})");
+    scratch::write(folder / "run.json",
+                   R"({"format":"isostat-run","status":"completed","settings":{"run":{"rule":"most_negative"}}})");
     scratch::write(folder / "events.jsonl", "");
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
     try {

@@ -29,6 +29,9 @@ void same_records(const fs::path& a, const fs::path& b) {
             const fs::path other = b / folder / entry.path().filename();
             const auto body = [](const fs::path& file) {
                 const std::string text = scratch::read(file);
+                if (file.extension() == ".jsonl") { // witnesses of arcs
+                    return text;
+                }
                 return text.substr(std::min(text.find("\"load\""), text.size()), text.rfind("\"digest\""));
             };
             BOOST_TEST((fs::exists(other) && body(entry.path()) == body(other)), other.string());

@@ -16,7 +16,8 @@ namespace isostat {
 struct RunVerification {
     /// refuted: `wrong` is the first record that does not follow from those before it. undecided: none is wrong as far
     /// as was seen, and `undecided` lists what could not be checked. proved: every equilibrium and both ends of every
-    /// arc were proved to be as recorded; the ways between them are only looked at: see `words`.
+    /// arc were proved to be as recorded; in a run of level `arcs` the ways between them too, in others they are only
+    /// looked at: see `words`.
     Verdict verdict = Verdict::undecided;
     bool finished = true; ///< false: the run goes on, or was killed; then nothing else is looked at
     std::string wrong;    ///< file, record, what is wrong with it

@@ -24,6 +24,7 @@ struct RunHeader {
     std::vector<std::string> programme; ///< one line of text per segment
     std::vector<int> keep;              ///< equilibria that later segments start from: their states are stored
     double checkpoint_seconds = 1;      ///< shortest time between two checkpoints; 0: one after every equilibrium
+    bool witnesses = false;             ///< level `arcs`: certificates/arcs.jsonl is written
     int states_every = 0;               ///< also store every k-th equilibrium; 0: none but those needed
 };
 
@@ -45,6 +46,7 @@ const char* to_string(RunStatus status);
 /// Receives the records of a run and writes them as they come. Files (all of them JSON but equilibria.csv):
 /// - run.json: what was asked, by which program, and the status ("running" until `finish`);
 /// - events.jsonl: one object per arc, handed to the system line by line;
+/// - certificates/arcs.jsonl: level `arcs`: for each arc that was certified what a checker needs (`witness_line`);
 /// - equilibria.csv: one row per equilibrium, a header line that starts with '#': numpy.loadtxt(delimiter=",") and
 ///   numpy.genfromtxt(delimiter=",", names=True) read it (columns: `equilibria_columns`);
 /// - states/eq_000012.json: the first equilibrium, those that later segments start from, every k-th; states/last.json:
@@ -101,6 +103,7 @@ class RunDirectory final : public RunObserver<2> {
     void write_header(const std::string& status) const;
     /// Of the last equilibrium, unless it was written already.
     void write_checkpoint();
+    void sync();
     void keep_digest(const std::string& name);
     /// The last equilibrium completed its segment.
     [[nodiscard]] bool segment_done() const;
@@ -120,17 +123,19 @@ class RunDirectory final : public RunObserver<2> {
         RunCounters counters;
         long events_bytes = 0;
         long equilibria_bytes = 0;
+        long witness_bytes = 0;
         std::string events_digest;
         std::string equilibria_digest;
+        std::string witness_digest;
     };
     std::optional<Point> pending_; ///< none: checkpoint.json is up to date
     std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
     Segment goal_;
     int segment_ = 0;
     int made_ = 0;
-    int previous_ = 0;                              ///< equilibrium that the next one follows
-    std::string events_digest_, equilibria_digest_; ///< of all records so far: see `chained`
-    std::map<std::string, std::string> digests_;    ///< SHA-256 of the other files that a resume reads
+    int previous_ = 0;                                               ///< equilibrium that the next one follows
+    std::string events_digest_, equilibria_digest_, witness_digest_; ///< of all records so far: see `chained`
+    std::map<std::string, std::string> digests_;                     ///< SHA-256 of the other files that a resume reads
     State<2> last_;
     std::vector<double> last_forces_;
     EquilibriumRecord<2> last_record_;

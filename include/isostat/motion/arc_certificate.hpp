@@ -24,6 +24,19 @@ struct ArcCertificateOptions {
     double smallest_step = 1e-9; ///< shortest piece tried, in units of the smallest radius
 };
 
+/// Where a checker should look: nothing in it is to be trusted. The grains that move, and configurations on the way
+/// from the start vertex to the end vertex, so close that neighbours are joined by one piece of the curve.
+struct ArcWitness {
+    struct Centre {
+        int held = 0;          ///< coordinate that moves fast and monotonely there
+        std::vector<double> q; ///< the coordinates of the moving grains that are degrees of freedom, in their order
+    };
+    bool whole = true;       ///< every grain takes part
+    std::vector<int> grains; ///< else: those that do (walls: after the last disk)
+    std::vector<Centre> centres;
+    std::vector<double> end; ///< the end vertex, like `Centre::q`
+};
+
 /// What was proved of one arc, for the *true* vertices and radii (the stored radii, taken as exact):
 /// - verdict proved: from the true start vertex the kept contacts define exactly one curve in the direction in which
 ///   the opened gap grows; it reaches the true end vertex; strictly between the two every other gap is positive, the
@@ -49,6 +62,7 @@ struct ArcCertificate {
     double power_open_start = 0;
     double power_open_end = 0;
     std::string power_reason; ///< when the power is undecided
+    ArcWitness witness;       ///< when proved
 };
 
 /// Certifies the arc that opens `opened` at `start` (`direction` as for `follow_arc`) and ends at `end`, whose contacts

@@ -28,7 +28,7 @@ template <int Dim> struct ArcRecord {
     double stress = 0;            ///< sigma_2
     double strain = 0;            ///< eps_2 at the end of the arc
     double force = 0;             ///< force f0 in the opened contact (0 for limit and rattler arcs)
-    double power = 0;             ///< -dW/ds at the end of the arc, per unit of the fastest coordinate
+    double power = 0;             ///< -dW/dh at the end, h the gap that closes: the force of the new contact
     double work = 0;              ///< decrease of W along the arc
     double displacement = 0;      ///< largest displacement of a coordinate
     int steps = 0;                ///< predictor steps

@@ -1,0 +1,37 @@
+#pragma once
+/// \file
+/// Signs of the gaps of all pairs along a chain of tubes (proofs/checker.md, K19).
+
+#include "checker/tube.hpp"
+
+#include <map>
+#include <set>
+#include <string>
+
+namespace isostat::checker {
+
+/// How the gap of a pair was last seen; pairs that are not listed were above 0.
+enum class Course : unsigned char { zero, rising, falling };
+
+class GapCourses {
+  public:
+    GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened);
+    /// Every pair but the kept contacts, for s in [from, to] on a tube. False: no sign of the gap nor of its rate was
+    /// proved, `trouble()` says where.
+    bool look(const Tube& tube, double from, double to);
+    [[nodiscard]] bool falls(const Contact& pair) const;
+    [[nodiscard]] const std::string& trouble() const { return trouble_; }
+
+  private:
+    struct Motion;
+    bool look(const Tube& tube, const Contact& pair, double from, double to);
+    bool walk(const Motion& motion, double from, double to, int depth, std::optional<Course>& last);
+    [[nodiscard]] std::vector<Contact> near(const Tube& tube, double h) const;
+
+    const Moving& moving_;
+    std::set<Contact> kept_;
+    std::map<Contact, Course> last_;
+    std::string trouble_;
+};
+
+} // namespace isostat::checker

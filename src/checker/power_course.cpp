@@ -1,0 +1,185 @@
+#include "checker/power_course.hpp"
+
+namespace isostat::checker {
+
+namespace {
+
+constexpr int deepest = 30;
+
+std::size_t at(int k) {
+    return static_cast<std::size_t>(k);
+}
+
+Bounds value_of(const std::vector<Bounds>& c, const Bounds& s) {
+    Bounds sum(0);
+    for (std::size_t k = c.size(); k-- > 0;) {
+        sum = sum * s + c[k];
+    }
+    return sum;
+}
+
+std::vector<Bounds> slope_of(const std::vector<Bounds>& c) {
+    std::vector<Bounds> slope;
+    for (std::size_t k = 1; k < c.size(); ++k) {
+        slope.push_back(c[k] * static_cast<double>(k));
+    }
+    return slope;
+}
+
+/// Whether a polynomial exceeds a number on [from, to].
+bool exceeds(const std::vector<Bounds>& c, const std::vector<Bounds>& slope, double least, double from, double to,
+             int depth) {
+    const Bounds s(from, to);
+    const Bounds middle(s.middle());
+    if ((value_of(c, middle) + value_of(slope, s) * (s - middle)).lower > least) {
+        return true;
+    }
+    const double half = middle.lower;
+    if (depth >= deepest || !(half > from && half < to) || !(value_of(c, middle).upper > least)) {
+        return false;
+    }
+    return exceeds(c, slope, least, from, half, depth + 1) && exceeds(c, slope, least, half, to, depth + 1);
+}
+
+/// Rows of A(m)^T times the multipliers, added to the force.
+void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube, const std::vector<double>& g) {
+    const std::size_t walls = 2 * moving.state.packing.radius.size();
+    const std::vector<double>& m = tube.centre();
+    const Bounds weight(tube.weight());
+    for (std::size_t l = 0; l < moving.kept.size(); ++l) {
+        const Contact& c = moving.kept[l];
+        const auto i = at(c.i);
+        const auto j = at(c.j);
+        if (c.kind == ContactKind::held) {
+            force[i] = force[i] + weight * g[l];
+        } else if (c.kind == ContactKind::disk_disk) {
+            for (std::size_t a = 0; a < 2; ++a) {
+                const Bounds part = (Bounds(m[2 * i + a]) - m[2 * j + a]) * g[l];
+                force[2 * i + a] = force[2 * i + a] + part;
+                force[2 * j + a] = force[2 * j + a] - part;
+            }
+        } else {
+            const Bounds part = weight * g[l] * (c.kind == ContactKind::lower_wall ? 1.0 : -1.0);
+            force[2 * i + j] = force[2 * i + j] + part;
+            if (c.kind == ContactKind::upper_wall) {
+                force[walls + j] = force[walls + j] - part;
+            }
+        }
+    }
+    const auto row = at(tube.row());
+    force[row] = force[row] + weight * g.back();
+}
+
+/// The terms g_l D_l(p - m) . D_l p' of contacts of two disks, as a polynomial, and what the tube adds to them.
+class Bending {
+  public:
+    Bending(const Moving& moving, const Tube& tube, double h) : moving_(moving), tube_(tube), h_(h) {}
+
+    void add(const Contact& c, double g, std::vector<Bounds>& power) {
+        const auto& a = tube_.coefficients();
+        std::vector<std::array<Bounds, 2>> d(a.size() + 1);
+        double way = 0;
+        double rate = 0;
+        for (std::size_t k = a.size(); k > 0; --k) {
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                d[k][axis] = Bounds(a[k - 1][2 * at(c.i) + axis]) - a[k - 1][2 * at(c.j) + axis];
+            }
+            const double x = d[k][0].size();
+            const double y = d[k][1].size();
+            const double size = root_above(sum_above(product_above(x, x), product_above(y, y)));
+            way = product_above(sum_above(way, size), h_);
+            rate = sum_above(product_above(rate, h_), product_above(size, static_cast<double>(k)));
+        }
+        power.resize(std::max(power.size(), 2 * d.size()), Bounds(0));
+        for (std::size_t i = 1; i < d.size(); ++i) {
+            for (std::size_t j = 1; j < d.size(); ++j) {
+                power[i + j - 1] =
+                    power[i + j - 1] + (d[i][0] * d[j][0] + d[i][1] * d[j][1]) * (g * static_cast<double>(j));
+            }
+        }
+        const double size = std::abs(g);
+        const auto add_square = [size](double& sum, double x) {
+            const double y = product_above(size, x);
+            sum = sum_above(sum, product_above(y, y));
+        };
+        add_square(ways_, way);
+        add_square(rates_, rate);
+        largest_ = std::max(largest_, size);
+        if (moving_.loose[2 * at(c.i)] || moving_.loose[2 * at(c.j)]) {
+            const double fast = sum_above(rate, product_above(2, tube_.slope_error()));
+            at_rest_ = sum_above(at_rest_, product_above(product_above(size, 2 * moving_.rest), fast));
+        }
+    }
+    [[nodiscard]] double open() const {
+        const double degree = 2.0 * tube_.degree();
+        const double linear = sum_above(product_above(root_above(ways_), tube_.slope_error()),
+                                        product_above(root_above(rates_), tube_.radius()));
+        const double both =
+            product_above(product_above(largest_, degree), product_above(tube_.radius(), tube_.slope_error()));
+        return sum_above(sum_above(product_above(root_above(degree), linear), both), at_rest_);
+    }
+
+  private:
+    const Moving& moving_;
+    const Tube& tube_;
+    double h_;
+    double ways_ = 0, rates_ = 0, largest_ = 0, at_rest_ = 0;
+};
+
+} // namespace
+
+bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tube, double from, double to) {
+    const auto& a = tube.coefficients();
+    const std::size_t walls = 2 * moving.state.packing.radius.size();
+    const double h = std::max(std::abs(from), std::abs(to));
+    const double fast = sum_above(tube.speed(), tube.slope_error());
+    std::vector<Bounds> force(moving.moves.size(), Bounds(0));
+    for (const int k : moving.coordinates) {
+        force[at(k)] = load.fixed[at(k)];
+    }
+    std::vector<Bounds> power(1, Bounds(0));
+    double open = 0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const std::size_t own = walls + axis;
+        const std::size_t other = walls + 1 - axis;
+        const double stress = load.per_length[axis];
+        if (stress == 0 || !moving.moves[own]) {
+            continue;
+        }
+        force[own] = force[own] - Bounds(stress) * tube.centre()[other];
+        // What the length of the other axis gains, times the rate of this one.
+        power.resize(std::max(power.size(), 2 * a.size() + 2), Bounds(0));
+        double gain = moving.rest;
+        for (std::size_t i = 1; i <= a.size(); ++i) {
+            for (std::size_t j = 1; j <= a.size(); ++j) {
+                power[i + j - 1] =
+                    power[i + j - 1] - Bounds(a[i - 1][other]) * a[j - 1][own] * stress * static_cast<double>(j);
+            }
+        }
+        gain = sum_above(gain, product_above(h, fast));
+        open = sum_above(open, product_above(std::abs(stress),
+                                             sum_above(product_above(gain, tube.slope_error()),
+                                                       product_above(sum_above(tube.radius(), moving.rest), fast))));
+    }
+    std::vector<double> middle;
+    for (const Bounds& f : force) {
+        middle.push_back(f.middle());
+    }
+    const std::vector<double> g = tube.multipliers(middle);
+    add_rows(force, moving, tube, g);
+    power[0] = power[0] - Bounds(tube.weight()) * g.back() * static_cast<double>(tube.direction());
+    Bending bending(moving, tube, h);
+    for (std::size_t l = 0; l < moving.kept.size(); ++l) {
+        if (moving.kept[l].kind == ContactKind::disk_disk && g[l] != 0) {
+            bending.add(moving.kept[l], g[l], power);
+        }
+    }
+    double square = 0; // of what the multipliers do not balance
+    for (const int k : moving.coordinates) {
+        square = sum_above(square, product_above(force[at(k)].size(), force[at(k)].size()));
+    }
+    open = sum_above(sum_above(open, bending.open()), product_above(root_above(square), fast));
+    return exceeds(power, slope_of(power), open, from, to, 0);
+}
+
+} // namespace isostat::checker

@@ -1,0 +1,22 @@
+#pragma once
+/// \file
+/// The sign of the power of the load along a tube (proofs/checker.md, K20).
+
+#include "checker/tube.hpp"
+
+#include <array>
+#include <vector>
+
+namespace isostat::checker {
+
+/// The load while the arc is followed.
+struct Pushing {
+    std::vector<Bounds> fixed; ///< per coordinate
+    /// True stresses: the force on the upper wall of an axis is besides minus this times the length of the other axis.
+    std::array<double, 2> per_length{};
+};
+
+/// Whether F . q' is positive for all s in [from, to].
+bool power_is_positive(const Pushing& load, const Moving& moving, const Tube& tube, double from, double to);
+
+} // namespace isostat::checker

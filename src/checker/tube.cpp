@@ -1,0 +1,458 @@
+#include "checker/tube.hpp"
+
+#include "checker/inverse.hpp"
+#include "checker/solver.hpp"
+
+#include <array>
+
+namespace isostat::checker {
+
+namespace {
+
+constexpr std::size_t highest_order = 14;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double root_of_two = 1.4142135623730952; // above it
+
+/// Two components for a pair of disks, one for a wall.
+template <class Number> using Pair = std::array<Number, 2>;
+
+std::size_t at(int k) {
+    return static_cast<std::size_t>(k);
+}
+
+/// The difference of the two grains of a contact, exact but for the rounding of the subtraction.
+Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks) {
+    const auto i = at(c.i);
+    const auto j = at(c.j);
+    switch (c.kind) {
+    case ContactKind::disk_disk:
+        return {Bounds(x[2 * i]) - Bounds(x[2 * j]), Bounds(x[2 * i + 1]) - Bounds(x[2 * j + 1])};
+    case ContactKind::lower_wall: return {Bounds(x[2 * i + j]), Bounds(0)};
+    case ContactKind::upper_wall: return {Bounds(x[2 * disks + j]) - Bounds(x[2 * i + j]), Bounds(0)};
+    case ContactKind::held: break;
+    }
+    return {Bounds(0), Bounds(0)};
+}
+
+Bounds product(const Pair<Bounds>& a, const Pair<Bounds>& b) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+double length_above(const Pair<Bounds>& a) {
+    return root_above(sum_above(product_above(a[0].size(), a[0].size()), product_above(a[1].size(), a[1].size())));
+}
+
+/// sum_k c_k h^k from `first` on, times k when `slope` (then h^(k-1)).
+double series_above(const std::vector<double>& c, std::size_t first, double h, bool slope = false) {
+    double sum = 0;
+    for (std::size_t k = c.size(); k-- > first;) {
+        const double term = slope ? product_above(static_cast<double>(k), c[k]) : c[k];
+        sum = sum_above(product_above(sum, h), term);
+    }
+    for (std::size_t k = slope ? 1 : 0; k < first; ++k) {
+        sum = product_above(sum, h);
+    }
+    return sum;
+}
+
+double norm_above(const std::vector<double>& x) {
+    double square = 0;
+    for (const double c : x) {
+        square = sum_above(square, product_above(std::abs(c), std::abs(c)));
+    }
+    return root_above(square);
+}
+
+/// A number that no singular value is below; 0: not known.
+double least_singular_value(const Problem& problem, const Solver& solver) {
+    const InverseBound inverse = bound_inverse(problem, solver, CheckerArithmetic::automatic);
+    if (!inverse.found) {
+        return 0;
+    }
+    if (inverse.singular_value > 0) {
+        return rounded_down(inverse.singular_value);
+    }
+    if (inverse.residual_column >= 1) {
+        return 0;
+    }
+    // |A^-1|_2^2 <= |A^-1|_1 |A^-1|_inf.
+    const Rational rows = inverse.row_sum / (1 - inverse.residual_row);
+    const Rational columns = inverse.column_sum_max / (1 - inverse.residual_column);
+    const double largest = rounded_up(rows * columns);
+    return largest > 0 && largest < infinity ? next_below(next_below(1 / root_above(largest))) : 0;
+}
+
+} // namespace
+
+struct Tube::Linear {
+    explicit Linear(const State<2>& state) : problem(state, true), solver(problem) {}
+    Problem problem;
+    Solver solver;
+
+    /// A^-1 b: b per contact (the free row last), result on all coordinates.
+    [[nodiscard]] std::vector<double> solve(const std::vector<double>& b) const {
+        Eigen::MatrixXd right(static_cast<Eigen::Index>(b.size()), 1);
+        for (std::size_t l = 0; l < b.size(); ++l) {
+            right(static_cast<Eigen::Index>(l), 0) = b[l];
+        }
+        const Eigen::MatrixXd x = solver.solve(right);
+        std::vector<double> result(problem.stored.size(), 0.0);
+        for (int k = 0; k < problem.dofs(); ++k) {
+            result[at(problem.coordinate_of[at(k)])] = std::ldexp(x(k, 0), -solver.exponent());
+        }
+        return result;
+    }
+};
+
+std::unique_ptr<Tube> Tube::make(const Moving& moving, std::vector<double> centre, int row, int direction) {
+    State<2> state = moving.state;
+    state.packing.q = centre;
+    state.contacts = moving.kept;
+    for (const Contact& c : moving.kept) {
+        if (c.kind == ContactKind::held && (c.i == row || centre[at(c.i)] != moving.state.packing.q[at(c.i)])) {
+            return nullptr;
+        }
+    }
+    state.contacts.push_back({ContactKind::held, row, 0});
+    std::unique_ptr<Tube> tube(new Tube(moving, std::move(centre), row, direction));
+    tube->linear_ = std::make_shared<Linear>(state);
+    const Problem& problem = tube->linear_->problem;
+    if (!problem.unsupported.empty() || problem.contacts() != problem.dofs() || !tube->linear_->solver.usable()) {
+        return nullptr;
+    }
+    tube->weight_ = rounded_up(problem.length(problem.weight()));
+    tube->sigma_ = least_singular_value(problem, tube->linear_->solver);
+    if (!(tube->sigma_ > 0)) {
+        return nullptr;
+    }
+    tube->expand();
+    if (tube->a_.empty()) {
+        return nullptr;
+    }
+    tube->bound_residuals();
+    return tube;
+}
+
+/// The derivatives of the curve as double precision finds them; nothing of them is trusted.
+void Tube::expand() {
+    const std::size_t disks = moving_.state.packing.radius.size();
+    const std::size_t contacts = moving_.kept.size();
+    std::vector<unsigned> count(disks, 0);
+    for (const Contact& c : moving_.kept) {
+        if (c.kind == ContactKind::disk_disk) {
+            for (const int i : {c.i, c.j}) {
+                count[at(i)] += moving_.moves[2 * at(i)] ? 1 : 0;
+            }
+        }
+    }
+    degree_ = std::max(1U, *std::max_element(count.begin(), count.end()));
+    const double unit = moving_.state.packing.min_radius();
+    longest_ = 0.2 * unit;
+    std::vector<double> right(contacts + 1, 0.0);
+    right[contacts] = weight_ * direction_;
+    std::vector<std::vector<Pair<double>>> differences;
+    for (std::size_t k = 1; k <= highest_order; ++k) {
+        std::vector<double> a = linear_->solve(right);
+        for (const Contact& c : moving_.kept) {
+            if (c.kind == ContactKind::held) {
+                a[at(c.i)] = 0;
+            }
+        }
+        a[at(row_)] = k == 1 ? direction_ : 0;
+        double largest = 0;
+        for (const double x : a) {
+            largest = std::max(largest, std::abs(x));
+        }
+        if (!(largest < 1e100)) {
+            break;
+        }
+        auto& mine = differences.emplace_back(contacts);
+        for (std::size_t l = 0; l < contacts; ++l) {
+            const Pair<Bounds> d = difference(a, moving_.kept[l], disks);
+            mine[l] = {d[0].middle(), d[1].middle()};
+        }
+        a_.push_back(std::move(a));
+        if (k > 1 && largest * std::pow(longest_, static_cast<double>(k)) < 0x1p-58 * unit) {
+            break;
+        }
+        right[contacts] = 0;
+        for (std::size_t l = 0; l < contacts; ++l) {
+            double sum = 0;
+            for (std::size_t i = 0; i < k && moving_.kept[l].kind == ContactKind::disk_disk; ++i) {
+                sum += differences[i][l][0] * differences[k - 1 - i][l][0] +
+                       differences[i][l][1] * differences[k - 1 - i][l][1];
+            }
+            right[l] = -0.5 * sum;
+        }
+    }
+}
+
+/// Coefficients of every F_l along p, whatever the polynomial is.
+void Tube::bound_residuals() {
+    const Packing<2>& packing = moving_.state.packing;
+    const std::size_t disks = packing.radius.size();
+    const std::size_t order = a_.size();
+    for (const Contact& c : moving_.kept) {
+        std::vector<double>& stretch = stretch_.emplace_back(order + 1, 0.0);
+        std::vector<double>& residual = residual_.emplace_back(2 * order + 1, 0.0);
+        if (c.kind == ContactKind::held) {
+            continue; // the centre has the stored value, and a_k is 0 there
+        }
+        std::vector<Pair<Bounds>> d{difference(centre_, c, disks)};
+        for (std::size_t k = 1; k <= order; ++k) {
+            d.push_back(difference(a_[k - 1], c, disks));
+            stretch[k] = length_above(d[k]);
+        }
+        const auto i = at(c.i);
+        const auto j = at(c.j);
+        if (c.kind != ContactKind::disk_disk) {
+            residual[0] = ((d[0][0] - packing.radius[i]) * weight_).size();
+            for (std::size_t k = 1; k <= order; ++k) {
+                residual[k] = (d[k][0] * weight_).size();
+            }
+            if (c.kind == ContactKind::upper_wall && moving_.loose[2 * disks + j]) {
+                residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
+            }
+            if (moving_.loose[2 * i + j]) {
+                residual[0] = sum_above(residual[0], product_above(moving_.rest, weight_));
+            }
+            continue;
+        }
+        const Bounds sum = Bounds(packing.radius[i]) + packing.radius[j];
+        residual[0] = ((product(d[0], d[0]) - sum * sum) * 0.5).size();
+        for (std::size_t k = 1; k <= 2 * order; ++k) {
+            Bounds value(0);
+            for (std::size_t m = k > order ? k - order : 1; m <= std::min(order, k - 1); ++m) {
+                value = value + product(d[m], d[k - m]);
+            }
+            value = value * 0.5;
+            if (k <= order) {
+                value = value + product(d[0], d[k]);
+            }
+            residual[k] = value.size();
+        }
+        if (moving_.loose[2 * i] || moving_.loose[2 * j]) {
+            const double off = product_above(root_of_two, moving_.rest);
+            stretch[0] = off;
+            residual[0] = sum_above(residual[0], product_above(off, sum_above(length_above(d[0]), off)));
+            for (std::size_t k = 1; k <= order; ++k) {
+                residual[k] = sum_above(residual[k], product_above(off, stretch[k]));
+            }
+        }
+    }
+}
+
+/// Bound of |A(p(s)) - A(centre)|_2 for |s| <= h.
+double Tube::change_norm(double h) const {
+    const std::size_t disks = moving_.state.packing.radius.size();
+    std::vector<double> e(moving_.kept.size(), 0.0);
+    for (std::size_t l = 0; l < e.size(); ++l) {
+        if (moving_.kept[l].kind == ContactKind::disk_disk) {
+            e[l] = series_above(stretch_[l], 0, h);
+        }
+    }
+    std::vector<double> x(disks, 1.0);
+    double best = infinity;
+    for (int round = 0; round < 5; ++round) {
+        std::vector<double> z(disks, 0.0);
+        for (std::size_t l = 0; l < e.size(); ++l) {
+            if (e[l] == 0) {
+                continue;
+            }
+            double y = 0;
+            for (const int i : {moving_.kept[l].i, moving_.kept[l].j}) {
+                y = sum_above(y, moving_.moves[2 * at(i)] ? x[at(i)] : 0);
+            }
+            y = product_above(product_above(e[l], e[l]), y);
+            for (const int i : {moving_.kept[l].i, moving_.kept[l].j}) {
+                z[at(i)] = moving_.moves[2 * at(i)] ? sum_above(z[at(i)], y) : 0;
+            }
+        }
+        double ratio = 0;
+        double most = 0;
+        for (std::size_t i = 0; i < disks; ++i) {
+            ratio = std::max(ratio, quotient_above(z[i], x[i]));
+            most = std::max(most, z[i]);
+        }
+        best = std::min(best, ratio);
+        for (std::size_t i = 0; i < disks; ++i) {
+            x[i] = z[i] + 1e-3 * most + std::numeric_limits<double>::min();
+        }
+    }
+    return root_above(best);
+}
+
+bool Tube::holds(double h) {
+    const double left = next_below(sigma_ - change_norm(h)); // of the smallest singular value, at every p(s)
+    if (!(left > 0.1 * sigma_)) {
+        return false;
+    }
+    std::vector<double> values;
+    std::vector<double> rates;
+    double turn = 0;
+    for (std::size_t l = 0; l < residual_.size(); ++l) {
+        values.push_back(series_above(residual_[l], 0, h));
+        rates.push_back(series_above(residual_[l], 1, h, true));
+        if (moving_.kept[l].kind == ContactKind::disk_disk) {
+            turn = std::max(turn, series_above(stretch_[l], 1, h, true));
+        }
+    }
+    const double rho = norm_above(values);
+    const double curvature = product_above(2, root_above(degree_)); // Lipschitz constant of A
+    const double beta = quotient_above(1, left);
+    const double product = product_above(product_above(product_above(4, curvature), rho), product_above(beta, beta));
+    if (!(product <= 1)) {
+        return false;
+    }
+    radius_ = product_above(product_above(2, beta), rho);
+    unique_ = next_below(left / curvature);
+    const double at_curve = next_below(left - product_above(curvature, radius_));
+    const double apart = product_above(product_above(turn, root_above(2 * degree_)), radius_);
+    slope_error_ = quotient_above(sum_above(norm_above(rates), apart), at_curve);
+    speed_ = 0;
+    std::vector<double> sizes{0};
+    for (const auto& a : a_) {
+        sizes.push_back(norm_above(a));
+    }
+    speed_ = series_above(sizes, 1, h, true);
+    reach_ = h;
+    return at_curve > 0 && speed_ < infinity;
+}
+
+bool Tube::prove() {
+    double turning = change_norm(1e-6 * longest_) * 1e6 / longest_;
+    double h = std::min(longest_, turning > 0 ? 0.75 * sigma_ / turning : longest_);
+    // No further than the polynomial is about as good as the centre: a wide tube leaves gaps and power open.
+    const auto norm = [this](std::size_t first, double s) {
+        std::vector<double> values;
+        for (const std::vector<double>& residual : residual_) {
+            values.push_back(first > 0 ? series_above(residual, first, s) : residual[0]);
+        }
+        return norm_above(values);
+    };
+    const double at_centre = norm(0, 0);
+    const double least = 0.1 * h;
+    while (h > least && norm(1, h) > 4 * at_centre) {
+        h *= 0.85;
+    }
+    for (; h > 1e-10 * longest_; h *= 0.7) {
+        if (holds(h)) {
+            return true;
+        }
+    }
+    reach_ = 0;
+    return false;
+}
+
+std::optional<Bounds> Tube::locate(const std::vector<double>& x, double uncertainty) const {
+    const auto row = static_cast<std::size_t>(row_);
+    const Bounds s = (Bounds(x[row]) - centre_[row]) * static_cast<double>(direction_);
+    if (!(s.size() < reach_)) {
+        return std::nullopt;
+    }
+    double square = 0;
+    for (const int k : moving_.coordinates) {
+        Bounds p(0);
+        for (std::size_t order = a_.size(); order > 0; --order) {
+            p = (p + a_[order - 1][at(k)]) * s;
+        }
+        const double off = (p + centre_[at(k)] - x[at(k)]).size();
+        square = sum_above(square, product_above(off, off));
+    }
+    const double distance = sum_above(sum_above(root_above(square), uncertainty), product_above(speed_, uncertainty));
+    const Bounds place = s + Bounds::around(uncertainty);
+    if (!(place.size() < reach_) || !(distance < unique_)) {
+        return std::nullopt;
+    }
+    return place;
+}
+
+std::vector<double> Tube::point(double s, double& error) const {
+    std::vector<double> q = centre_;
+    double square = 0;
+    for (const int k : moving_.coordinates) {
+        Bounds p(0);
+        for (std::size_t order = a_.size(); order > 0; --order) {
+            p = (p + a_[order - 1][at(k)]) * s;
+        }
+        p = p + centre_[at(k)];
+        q[at(k)] = p.middle();
+        const double off = (p - q[at(k)]).size();
+        square = sum_above(square, product_above(off, off));
+    }
+    error = root_above(square);
+    return q;
+}
+
+Bounds Tube::slope(int coordinate, const Bounds& s) const {
+    Bounds v(0);
+    for (std::size_t order = a_.size(); order > 0; --order) {
+        v = v * s + Bounds(a_[order - 1][at(coordinate)]) * static_cast<double>(order);
+    }
+    return v + Bounds::around(slope_error_);
+}
+
+int Tube::fastest(double s) const {
+    int best = row_;
+    double speed = 0;
+    for (const int k : moving_.coordinates) {
+        double v = 0;
+        for (std::size_t order = a_.size(); order > 0; --order) {
+            v = v * s + static_cast<double>(order) * a_[order - 1][at(k)];
+        }
+        const bool held = std::any_of(moving_.kept.begin(), moving_.kept.end(),
+                                      [k](const Contact& c) { return c.kind == ContactKind::held && c.i == k; });
+        if (std::abs(v) > speed && !held) {
+            speed = std::abs(v);
+            best = k;
+        }
+    }
+    return best;
+}
+
+std::vector<double> Tube::multipliers(const std::vector<double>& force) const {
+    const Problem& problem = linear_->problem;
+    Eigen::MatrixXd right(problem.dofs(), 1);
+    for (int k = 0; k < problem.dofs(); ++k) {
+        right(k, 0) = -force[at(problem.coordinate_of[at(k)])];
+    }
+    const Eigen::MatrixXd g = linear_->solver.solve_transposed(right);
+    std::vector<double> result;
+    for (Eigen::Index l = 0; l < g.rows(); ++l) {
+        result.push_back(std::ldexp(g(l, 0), -linear_->solver.exponent()));
+    }
+    return result;
+}
+
+std::vector<double> Tube::corrected(double s) const {
+    double unused = 0;
+    std::vector<double> q = point(s, unused);
+    const Packing<2>& packing = moving_.state.packing;
+    const std::size_t disks = packing.radius.size();
+    for (int step = 0; step < 4; ++step) {
+        std::vector<double> right;
+        for (const Contact& c : moving_.kept) {
+            const Pair<Bounds> d = difference(q, c, disks);
+            const double sum = packing.radius[at(c.i < static_cast<int>(disks) ? c.i : 0)] +
+                               (c.kind == ContactKind::disk_disk ? packing.radius[at(c.j)] : 0);
+            right.push_back(c.kind == ContactKind::held        ? 0
+                            : c.kind == ContactKind::disk_disk ? -(product(d, d).middle() - sum * sum) / 2
+                                                               : -weight_ * (d[0].middle() - sum));
+        }
+        right.push_back(0);
+        const std::vector<double> change = linear_->solve(right);
+        for (const int k : moving_.coordinates) {
+            if (k != row_ && std::isfinite(change[at(k)])) {
+                q[at(k)] += change[at(k)];
+            }
+        }
+    }
+    for (const Contact& c : moving_.kept) {
+        if (c.kind == ContactKind::held) {
+            q[at(c.i)] = packing.q[at(c.i)];
+        }
+    }
+    return q;
+}
+
+} // namespace isostat::checker

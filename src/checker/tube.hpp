@@ -1,0 +1,86 @@
+#pragma once
+/// \file
+/// A stretch of the curve on which the kept contacts stay closed, enclosed around a polynomial (proofs/checker.md, K16
+/// to K18).
+
+#include "checker/bounds.hpp"
+#include "checker/problem.hpp"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace isostat::checker {
+
+/// What moves along one arc, and the equations: one less than the coordinates that move.
+struct Moving {
+    State<2> state;               ///< coordinates of the start; grains that do not move are marked as fixed
+    std::vector<Contact> kept;    ///< that a moving grain takes part in
+    std::vector<int> coordinates; ///< that move, in their order
+    std::vector<bool> moves;      ///< per coordinate
+    std::vector<bool> loose;      ///< per coordinate: at rest, but its true place is known to `rest` only
+    double rest = 0;
+};
+
+/// p(s) = centre + sum_k s^k a_k, with s = direction times (coordinate `row` less its value at the centre).
+class Tube {
+  public:
+    /// `centre`: all coordinates. Nothing when the derivative there is not proved regular.
+    static std::unique_ptr<Tube> make(const Moving& moving, std::vector<double> centre, int row, int direction);
+
+    /// The longest reach h for which K16 holds, up to a factor 0.7; false: none.
+    bool prove();
+    [[nodiscard]] double reach() const { return reach_; }
+    [[nodiscard]] double radius() const { return radius_; }           ///< 2-norm of q(s) - p(s)
+    [[nodiscard]] double slope_error() const { return slope_error_; } ///< 2-norm of q'(s) - p'(s)
+    [[nodiscard]] double speed() const { return speed_; }             ///< 2-norm of p'(s)
+
+    /// A true root of the kept equations within `uncertainty` (2-norm) of x (all coordinates) is q(s) for one s within
+    /// these bounds: proved, or nothing.
+    [[nodiscard]] std::optional<Bounds> locate(const std::vector<double>& x, double uncertainty) const;
+
+    /// p(s) on all coordinates, rounded; `error`: 2-norm of what that took.
+    [[nodiscard]] std::vector<double> point(double s, double& error) const;
+    /// q'(s) of one coordinate, s in these bounds.
+    [[nodiscard]] Bounds slope(int coordinate, const Bounds& s) const;
+    /// The coordinate that is fastest at s, as far as double precision tells.
+    [[nodiscard]] int fastest(double s) const;
+    /// A configuration near q(s), from a few Newton steps in double.
+    [[nodiscard]] std::vector<double> corrected(double s) const;
+
+    /// About -(A(centre)^T)^-1 force: one number per kept contact, that of the row last. `force` per coordinate.
+    [[nodiscard]] std::vector<double> multipliers(const std::vector<double>& force) const;
+    [[nodiscard]] double weight() const { return weight_; } ///< of the rows of walls and coordinates
+    [[nodiscard]] unsigned degree() const { return degree_; }
+
+    [[nodiscard]] const std::vector<double>& centre() const { return centre_; }
+    [[nodiscard]] int row() const { return row_; }
+    [[nodiscard]] int direction() const { return direction_; }
+    /// a_1 ... a_K, all coordinates.
+    [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
+
+  private:
+    Tube(const Moving& moving, std::vector<double> centre, int row, int direction)
+        : moving_(moving), centre_(std::move(centre)), row_(row), direction_(direction) {}
+    struct Linear;
+    void expand();
+    void bound_residuals();
+    bool holds(double h);
+    [[nodiscard]] double change_norm(double h) const;
+
+    const Moving& moving_;
+    std::vector<double> centre_;
+    int row_;
+    int direction_;
+    std::shared_ptr<Linear> linear_; ///< not trusted
+    double weight_ = 1;
+    double sigma_ = 0; ///< the derivative at the centre has no singular value below
+    double longest_ = 0;
+    unsigned degree_ = 1; ///< most kept contacts of two disks at one disk
+    std::vector<std::vector<double>> a_;
+    std::vector<std::vector<double>> stretch_;  ///< per kept contact: |D a_k|, k = 1 ...; [0]: of the grain at rest
+    std::vector<std::vector<double>> residual_; ///< per kept contact: bounds of the coefficients of F along p
+    double reach_ = 0, radius_ = 0, slope_error_ = 0, speed_ = 0, unique_ = 0;
+};
+
+} // namespace isostat::checker

@@ -1,0 +1,341 @@
+#include "checker/way.hpp"
+
+#include "checker/gap_course.hpp"
+#include "checker/power_course.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace isostat::checker {
+
+namespace {
+
+constexpr int most_pieces = 5000;
+/// Share of a piece next to a limit or a power turn on which the power may stay open.
+constexpr double open_share = 1e-2;
+
+std::size_t at(int k) {
+    return static_cast<std::size_t>(k);
+}
+
+Objections open(std::string why) {
+    return Objection{false, "the way is not proved: " + std::move(why)};
+}
+
+/// Whether a coordinate of the packing belongs to one of the grains.
+std::vector<bool> moving_coordinates(const State<2>& state, const Problem& problem, const Witness& witness) {
+    std::vector<bool> moves(state.packing.q.size(), false);
+    const std::set<int> grains =
+        witness.grains ? std::set<int>(witness.grains->begin(), witness.grains->end()) : std::set<int>();
+    const int disks = state.packing.disk_count();
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+        const int grain = static_cast<int>(k / 2) < disks ? static_cast<int>(k / 2) : static_cast<int>(k) - disks;
+        moves[k] = problem.dof_of[k] >= 0 && (!witness.grains || grains.contains(grain));
+    }
+    return moves;
+}
+
+class Follower {
+  public:
+    Follower(const Place& from, const Place& to, const Way& way) : from_(from), to_(to), way_(way) {}
+    Objections prove();
+
+  private:
+    [[nodiscard]] const Contact& opened() const { return from_.state->contacts[way_.opened]; }
+    [[nodiscard]] const Contact& closed() const { return to_.state->contacts[way_.opened]; }
+    Objections set_up();
+    void load();
+    [[nodiscard]] std::vector<double> widened(const std::vector<double>& q) const;
+    std::unique_ptr<Tube> start();
+    std::unique_ptr<Tube> tube_at(std::vector<double> centre, int row, int direction) const;
+    Objections chain();
+    Objections arrive(const Bounds& place);
+    bool join(std::unique_ptr<Tube> next, double s);
+    bool finish(double to, bool last);
+
+    const Place& from_;
+    const Place& to_;
+    const Way& way_;
+    Moving moving_;
+    Pushing pushing_;
+    double start_off_ = 0; ///< 2-norm of what the true start vertex is from the stored one, on what moves
+    double end_off_ = 0;
+    std::unique_ptr<GapCourses> gaps_;
+    std::unique_ptr<Tube> tube_;
+    Bounds here_; ///< where on the tube the curve was met
+    int pieces_ = 0;
+    std::string trouble_;
+};
+
+Objections Follower::set_up() {
+    const State<2>& start = *from_.state;
+    const Problem& problem = from_.evidence->problem;
+    const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
+    moving_.state = start;
+    moving_.moves = moves;
+    Packing<2>& packing = moving_.state.packing;
+    packing.fixed.assign(packing.radius.size(), 1);
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        packing.fixed[i] = moves[2 * i] ? 0 : 1;
+    }
+    const std::size_t walls = 2 * packing.radius.size();
+    for (std::size_t a = 0; a < 2; ++a) {
+        if (packing.walls.upper[a] == WallKind::movable && !moves[walls + a]) {
+            packing.walls.upper[a] = WallKind::fixed;
+        }
+    }
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+        moving_.loose.push_back(!moves[k] && problem.dof_of[k] >= 0);
+        if (moves[k]) {
+            moving_.coordinates.push_back(static_cast<int>(k));
+        }
+    }
+    const auto takes_part = [&](const Contact& c) {
+        return c.kind == ContactKind::held         ? moves[at(c.i)]
+               : c.kind == ContactKind::disk_disk  ? moves[2 * at(c.i)] || moves[2 * at(c.j)]
+               : c.kind == ContactKind::lower_wall ? moves[2 * at(c.i)]
+                                                   : moves[2 * at(c.i)] || moves[walls + at(c.j)];
+    };
+    for (std::size_t l = 0; l < start.contacts.size(); ++l) {
+        if (l != way_.opened && takes_part(start.contacts[l])) {
+            moving_.kept.push_back(start.contacts[l]);
+        }
+    }
+    if (moving_.kept.size() + 1 != moving_.coordinates.size() || !takes_part(opened()) || !takes_part(closed())) {
+        return open("the grains that are said to move do not hang together by their contacts");
+    }
+    // K18: grains at rest have the same true place at both ends, the only root of their own equations there.
+    const bool all = std::find(moving_.loose.begin(), moving_.loose.end(), true) == moving_.loose.end();
+    const Rational& a = from_.evidence->vertex.moved_most;
+    const Rational& b = to_.evidence->vertex.moved_most;
+    const auto& within = from_.evidence->inverse.regular_within;
+    if (!all && within && std::max<Rational>(a, b) >= *within) {
+        return open("grains at rest are not proved to be at the same place at both ends");
+    }
+    moving_.rest = all ? 0 : rounded_up(a);
+    const double coordinates = root_above(static_cast<double>(moving_.coordinates.size()));
+    start_off_ = product_above(rounded_up(a), coordinates);
+    end_off_ = product_above(rounded_up(b), coordinates);
+    for (const Gap& gap : smallest_gaps(problem, start, from_.evidence->vertex)) {
+        if (!gap.value.positive()) {
+            return open(fmt::format("the gap of {} is not proved positive at the start", to_string<2>(gap.pair)));
+        }
+    }
+    return {};
+}
+
+/// The load of the record: bounds of the exact products.
+void Follower::load() {
+    const Load<2>& load = from_.state->load;
+    const std::vector<double>& on_disks = way_.rattles ? load.infinitesimal : load.disk_force;
+    pushing_.fixed.assign(moving_.moves.size(), Bounds(0));
+    std::copy(on_disks.begin(), on_disks.end(), pushing_.fixed.begin());
+    const std::size_t walls = 2 * moving_.state.packing.radius.size();
+    for (std::size_t a = 0; a < 2 && !way_.rattles; ++a) {
+        const double stress = static_cast<int>(a) == load.loaded_axis ? way_.stress : load.stress[a];
+        if (load.kind == LoadKind::nominal) {
+            pushing_.fixed[walls + a] = pushing_.fixed[walls + a] - Bounds(stress) * load.reference_length[1 - a];
+        } else {
+            pushing_.per_length[a] = stress;
+        }
+    }
+}
+
+std::unique_ptr<Tube> Follower::tube_at(std::vector<double> centre, int row, int direction) const {
+    auto tube = Tube::make(moving_, std::move(centre), row, direction);
+    return tube && tube->prove() ? std::move(tube) : nullptr;
+}
+
+/// The fastest coordinate at the start and its direction are found with any row that serves.
+std::unique_ptr<Tube> Follower::start() {
+    State<2> state = moving_.state;
+    state.contacts = moving_.kept;
+    state.contacts.push_back(opened());
+    const Problem problem(state, true);
+    if (!problem.unsupported.empty() || problem.contacts() != problem.dofs()) {
+        return nullptr;
+    }
+    const Solver solver(problem);
+    if (!solver.usable()) {
+        return nullptr;
+    }
+    Eigen::MatrixXd b = Eigen::MatrixXd::Zero(problem.contacts(), 1);
+    b(problem.contacts() - 1, 0) = way_.direction;
+    const Eigen::MatrixXd v = solver.solve(b);
+    Eigen::Index fastest = -1;
+    for (Eigen::Index k = 0; k < v.rows(); ++k) {
+        const int coordinate = problem.coordinate_of[static_cast<std::size_t>(k)];
+        const bool held = std::any_of(moving_.kept.begin(), moving_.kept.end(), [&](const Contact& c) {
+            return c.kind == ContactKind::held && c.i == coordinate;
+        });
+        if (!held && (fastest < 0 || std::abs(v(k, 0)) > std::abs(v(fastest, 0)))) {
+            fastest = k;
+        }
+    }
+    return fastest < 0 ? nullptr
+                       : tube_at(from_.state->packing.q, problem.coordinate_of[static_cast<std::size_t>(fastest)],
+                                 v(fastest, 0) > 0 ? 1 : -1);
+}
+
+/// Gaps and power from `here_` to s.
+bool Follower::finish(double s, bool last) {
+    ++pieces_;
+    if (!gaps_->look(*tube_, here_.lower, s)) {
+        trouble_ = gaps_->trouble();
+        return false;
+    }
+    const double length = s - here_.lower;
+    const double begin = here_.lower + (pieces_ == 1 && way_.at_limit ? open_share * length : 0);
+    const double end = s - (last && closed().kind == ContactKind::held ? open_share * length : 0);
+    if (!power_is_positive(pushing_, moving_, *tube_, begin, end)) {
+        trouble_ = "the power of the load is not proved positive";
+        return false;
+    }
+    return true;
+}
+
+/// The curve, at s on the present tube, goes on along the next one.
+bool Follower::join(std::unique_ptr<Tube> next, double s) {
+    if (!next) {
+        return false;
+    }
+    double error = 0;
+    const std::vector<double> q = tube_->point(s, error);
+    const std::optional<Bounds> place = next->locate(q, sum_above(error, tube_->radius()));
+    const Bounds slope = tube_->slope(next->row(), s) * static_cast<double>(next->direction());
+    if (!place || !slope.positive() || !finish(s, false)) {
+        return false;
+    }
+    tube_ = std::move(next);
+    here_ = *place;
+    return true;
+}
+
+std::vector<double> Follower::widened(const std::vector<double>& q) const {
+    std::vector<double> all = moving_.state.packing.q;
+    for (std::size_t k = 0; k < q.size(); ++k) {
+        all[at(moving_.coordinates[k])] = q[k];
+    }
+    return all;
+}
+
+Objections Follower::arrive(const Bounds& place) {
+    if (!finish(place.upper, true)) {
+        return open(trouble_);
+    }
+    if (closed().kind != ContactKind::held && !gaps_->falls(closed())) {
+        return open(fmt::format("the gap of {} is not proved to fall to 0 at the end", to_string<2>(closed())));
+    }
+    return {};
+}
+
+Objections Follower::chain() {
+    tube_ = start();
+    if (!tube_) {
+        return open("no tube around the start");
+    }
+    const auto begin = tube_->locate(from_.state->packing.q, start_off_);
+    if (!begin) {
+        return open("the start is not proved to lie on the curve");
+    }
+    here_ = *begin;
+    if (opened().kind == ContactKind::held) { // released: it must move as its multiplier pushes it
+        const Bounds slope = tube_->slope(opened().i, here_) * static_cast<double>(way_.direction);
+        if (opened().i != tube_->row() ? !slope.positive() : tube_->direction() != way_.direction) {
+            return open("the coordinate that is released is not proved to move");
+        }
+    }
+    gaps_ = std::make_unique<GapCourses>(moving_, from_.state->contacts, opened());
+    const std::vector<Witness::Centre>& hints = way_.witness.centres;
+    std::size_t hint = 0;
+    for (int piece = 0; piece < most_pieces; ++piece) {
+        const auto end = tube_->locate(to_.state->packing.q, end_off_);
+        if (end && end->lower > here_.upper) {
+            return arrive(*end);
+        }
+        const double reach = tube_->reach() * (1 - 1e-9);
+        // The next place that the witness names: the end, last of all, with the row that is fastest here.
+        const bool last = hint >= hints.size();
+        const std::vector<double> q = last ? to_.state->packing.q : widened(hints[hint].q);
+        const auto row = at(tube_->row());
+        const double ahead = (q[row] - tube_->centre()[row]) * tube_->direction();
+        if (!last && ahead <= here_.upper) {
+            ++hint;
+            continue;
+        }
+        const double s = std::min(ahead, reach);
+        if (s > here_.upper) {
+            const int next = last ? tube_->fastest(s) : hints[hint].held;
+            const int direction = tube_->slope(next, s).middle() > 0 ? 1 : -1;
+            if (join(tube_at(q, next, direction), s)) {
+                ++hint;
+                continue;
+            }
+            if (!trouble_.empty()) {
+                return open(fmt::format("{} in piece {}", trouble_, pieces_));
+            }
+        }
+        // A place of our own, on the way there.
+        bool found = false;
+        for (double share = 0.9; share > 1e-3 && !found; share *= 0.5) {
+            const double on = here_.upper + share * (reach - here_.upper);
+            const int next = tube_->fastest(on);
+            found = on > here_.upper &&
+                    join(tube_at(tube_->corrected(on), next, tube_->slope(next, on).middle() > 0 ? 1 : -1), on);
+            if (!trouble_.empty()) {
+                return open(fmt::format("{} in piece {}", trouble_, pieces_));
+            }
+        }
+        if (!found) {
+            return open(fmt::format("no tube goes on after {} pieces", pieces_));
+        }
+    }
+    return open(fmt::format("more than {} pieces", most_pieces));
+}
+
+Objections Follower::prove() {
+    if (Objections objection = set_up()) {
+        return objection;
+    }
+    load();
+    return chain();
+}
+
+} // namespace
+
+Objections end_of(const Place& from, const Contact& closed, const Way& way, State<2>& end) {
+    const std::vector<bool> moves = moving_coordinates(*from.state, from.evidence->problem, way.witness);
+    end = *from.state;
+    end.contacts[way.opened] = closed;
+    end.load.stress[static_cast<std::size_t>(end.load.loaded_axis)] = way.stress;
+    std::size_t next = 0;
+    const auto count = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), true));
+    for (const Witness::Centre& centre : way.witness.centres) {
+        const bool row = centre.held >= 0 && at(centre.held) < moves.size() && moves[at(centre.held)];
+        if (!row || centre.q.size() != count) {
+            return open("the witness does not name the coordinates that move");
+        }
+    }
+    if (way.witness.end.size() != count) {
+        return open("the witness does not name the coordinates that move");
+    }
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+        if (moves[k]) {
+            end.packing.q[k] = way.witness.end[next++];
+        }
+    }
+    for (const Contact& c : from.state->contacts) {
+        if (c.kind == ContactKind::held && end.packing.q[at(c.i)] != from.state->packing.q[at(c.i)] &&
+            std::find(end.contacts.begin(), end.contacts.end(), c) != end.contacts.end()) {
+            return open(fmt::format("{} is at another place at the end", to_string<2>(c)));
+        }
+    }
+    return {};
+}
+
+Objections prove_way(const Place& from, const Place& to, const Way& way) {
+    return Follower(from, to, way).prove();
+}
+
+} // namespace isostat::checker

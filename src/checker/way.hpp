@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Proof that an arc leads from one vertex to the next past nothing else (proofs/checker.md, K16 to K20).
+
+#include "checker/replay.hpp"
+#include "checker/witness.hpp"
+
+namespace isostat::checker {
+
+/// One arc as its record and its witness tell it.
+struct Way {
+    std::size_t opened = 0; ///< position in the contact list
+    int direction = +1;     ///< -1: a held coordinate that falls
+    bool rattles = false;   ///< the power is that of the infinitesimal loads
+    bool at_limit = false;  ///< the power grows from 0
+    double stress = 0;      ///< on the loaded axis
+    const Witness& witness;
+};
+
+/// The state in which the witness says that the arc ends: its contacts are those of `from`, the opened one replaced.
+/// An objection when the witness does not fit the arc.
+Objections end_of(const Place& from, const Contact& closed, const Way& way, State<2>& end);
+
+/// Nothing: from the true vertex of `from` the kept contacts define one curve on the side on which the opened one
+/// opens; it reaches the true vertex of `to`; strictly between the two every other gap is positive, and so is the power
+/// of the load but for a hundredth of the first piece at a limit, and of the last one before a power turn. Otherwise
+/// what is not proved; it is never a refutation.
+Objections prove_way(const Place& from, const Place& to, const Way& way);
+
+} // namespace isostat::checker

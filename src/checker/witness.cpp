@@ -1,0 +1,78 @@
+#include "checker/witness.hpp"
+
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <fstream>
+
+namespace isostat::checker {
+
+namespace {
+
+using json::Field;
+
+std::vector<double> numbers(const Field& list) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+        values.push_back(list.at(k).number());
+    }
+    return values;
+}
+
+} // namespace
+
+Witnesses::Witnesses(std::filesystem::path file) : file_(std::move(file)) {
+    std::ifstream in(file_, std::ios::binary);
+    const std::string begin = "{\"step\":";
+    int line = 1;
+    long at = 0;
+    for (std::string text; std::getline(in, text); ++line) {
+        long step = 0;
+        const auto [stop, error] =
+            std::from_chars(text.data() + std::min(begin.size(), text.size()), text.data() + text.size(), step);
+        if (!text.starts_with(begin) || error != std::errc() || !begin_.insert({step, {at, line}}).second) {
+            throw Error(
+                ErrorKind::bad_input,
+                fmt::format("{}:{}: expected one object for each arc, with its step first", file_.string(), line));
+        }
+        at += static_cast<long>(text.size()) + 1;
+    }
+}
+
+std::optional<Witness> Witnesses::of(long step) const {
+    const auto found = begin_.find(step);
+    if (found == begin_.end()) {
+        return {};
+    }
+    std::ifstream in(file_, std::ios::binary);
+    in.seekg(found->second.first);
+    std::string text;
+    std::getline(in, text);
+    const std::string where = fmt::format("{}:{}", file_.string(), found->second.second);
+    const json::Json parsed = Field::parse(text, where);
+    const Field line(parsed, where);
+    if (!line.has("end")) {
+        return {};
+    }
+    Witness witness;
+    if (line.has("grains")) {
+        const Field list = line.at("grains");
+        witness.grains.emplace();
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            witness.grains->push_back(static_cast<int>(list.at(k).integer()));
+        }
+    }
+    const Field centres = line.at("centres");
+    for (std::size_t k = 0; k < centres.size(); ++k) {
+        const Field centre = centres.at(k);
+        witness.centres.push_back({static_cast<int>(centre.at("held").integer()), numbers(centre.at("q"))});
+    }
+    witness.end = numbers(line.at("end"));
+    return witness;
+}
+
+} // namespace isostat::checker

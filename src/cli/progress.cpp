@@ -86,7 +86,7 @@ double RunTable::remaining(double ratio) const {
 
 void RunTable::on_arc(const ArcRecord<2>& arc) {
     if (!quiet_) {
-        line_.show(fmt::format("after equilibrium {}: arc {} at sigma2 = {:.9g}, eps2 = {:.6g}", arc.equilibrium,
+        line_.show(fmt::format("towards equilibrium {}: arc {} at sigma2 = {:.9g}, eps2 = {:.6g}", arc.equilibrium,
                                arc.arc, arc.stress, arc.strain));
     }
 }

@@ -1,8 +1,8 @@
+#include "certificate/state_certifier.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
-#include "cli/state_certifier.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
@@ -84,6 +84,9 @@ class Player {
             first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
             made = point->segment_done ? 0 : point->made;
         }
+        if (counters_.states.refuted > 0) {
+            return {RunStatus::failed, "an equilibrium of this run was refuted by its certificate: it does not go on"};
+        }
         for (std::size_t s = first; s < scene_.programme.size(); ++s, made = 0) {
             const ProgrammeStep& step = scene_.programme[s];
             if (step.from && made == 0) {
@@ -120,8 +123,12 @@ class Player {
         RunOptions options = scene_.run;
         options.stop = &stop_flag();
         Both both(directory_, table_);
-        StateCertifier certifier(directory_.path(), options.certify >= CertifyLevel::states, counters_, both);
-        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, certifier);
+        std::optional<StateCertifier> certifier;
+        if (options.certify >= CertifyLevel::states) {
+            certifier.emplace(directory_.path(), program_name(), counters_, both);
+        }
+        RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
+        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, observer);
         table_.end();
         return outcome.completed ? Ending{} : ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
     }
@@ -175,6 +182,19 @@ void record_work(const std::filesystem::path& path) {
     object["version"] = 1;
     object["counts"] = counts;
     write_atomically(path, json::dumped(object, 2) + "\n");
+}
+
+/// What was asked for and neither proved nor refuted, in words; empty: nothing.
+std::string left_open(const RunCounters& counters) {
+    std::string words;
+    const auto add = [&words](long count, const char* what) {
+        if (count > 0) {
+            words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, what);
+        }
+    };
+    add(counters.states.undecided, "of the certificates of equilibria are undecided");
+    add(counters.arcs.undecided, "of the certificates of arcs are undecided");
+    return words;
 }
 
 void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
@@ -244,6 +264,10 @@ int run(const RunArguments& arguments) {
                    ending.reason.empty() ? "" : ": ", ending.reason, counters.steps, plain ? " (not certified)" : "",
                    counters.equilibria, clock_text(counters.seconds));
     }
+    const std::string open = left_open(counters);
+    if (!open.empty()) {
+        fmt::print(stderr, "isostat: {}: {}\n", arguments.output, open);
+    }
     if (ending.status != RunStatus::completed) {
         fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
     }
@@ -251,7 +275,7 @@ int run(const RunArguments& arguments) {
         draw(scene, directory, quiet);
     }
     record_work(directory.path() / "work.json");
-    return exit_status(ending.status);
+    return ending.status == RunStatus::completed && !open.empty() ? undecided : exit_status(ending.status);
 }
 
 } // namespace isostat::cli

@@ -12,6 +12,7 @@ const char* to_string(FailureKind kind) {
     case FailureKind::unbounded: return "unbounded";
     case FailureKind::not_converged: return "not converged";
     case FailureKind::cap_reached: return "cap reached";
+    case FailureKind::contradiction: return "contradiction";
     case FailureKind::interrupted: return "interrupted";
     }
     return "failure";

@@ -46,6 +46,26 @@ std::string header_text(const RunHeader& header, const std::string& status) {
     return json::dumped(object, 2) + "\n";
 }
 
+bool holds_only_a_lock(const fs::path& directory) {
+    return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(), [](const fs::directory_entry& e) {
+        return e.path().filename() == "lock" || (e.is_directory() && fs::is_empty(e.path()));
+    });
+}
+
+/// What is known of the way between the equilibria.
+std::string steering(const RunCounters& counters) {
+    if (counters.tally.plain > 0) {
+        return "not certified: double precision without stated bounds (level plain)";
+    }
+    const ArcTally& arcs = counters.arcs;
+    if (arcs.certified + arcs.undecided == 0) {
+        return "ends of arcs proved, way between them looked at";
+    }
+    return arcs.undecided == 0
+               ? "ends of arcs proved, way between them proved"
+               : fmt::format("ends of arcs proved, way between them proved but for {} arcs", arcs.undecided);
+}
+
 } // namespace
 
 const char* to_string(RunStatus status) {
@@ -66,6 +86,7 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
     : directory_(std::move(directory)), header_(std::move(header)), counters_(counters), resumed_(mode == Mode::resume),
       files_(std::make_unique<Files>()) {
     make_directory(directory_);
+    const bool begun = fs::exists(directory_ / "lock");
     files_->lock = Descriptor::open(directory_ / "lock", O_RDWR | O_CREAT);
     if (!files_->lock.try_lock()) {
         throw Error(ErrorKind::cannot_write,
@@ -79,7 +100,7 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
                                 directory_.string()));
     }
     if (mode == Mode::resume) {
-        open_for_resume();
+        open_for_resume(begun);
     } else if (holds_a_run) {
         for (const char* name : run_files) {
             fs::remove(directory_ / name);
@@ -112,8 +133,13 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
 
 RunDirectory::~RunDirectory() = default;
 
-void RunDirectory::open_for_resume() {
+void RunDirectory::open_for_resume(bool begun) {
     const fs::path run = directory_ / "run.json";
+    if (begun && !fs::exists(run) && holds_only_a_lock(directory_)) { // killed before it wrote anything
+        previous_status_ = "killed before it began";
+        resumed_ = false;
+        return;
+    }
     if (!fs::exists(run)) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no run to resume", run.string()));
     }
@@ -296,9 +322,7 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     object["segments"] = header_.programme.size();
     object["segment"] = segment_;
     object["last_equilibrium"] = last_.equilibrium;
-    object["steering"] = counters_.tally.plain > 0
-                             ? "not certified: double precision without stated bounds (level plain)"
-                             : "every comparison proved";
+    object["steering"] = steering(counters_);
     object["counters"] = counters_json(counters_);
     if (!last_.packing.radius.empty()) {
         const auto loaded = static_cast<std::size_t>(last_.load.loaded_axis);

@@ -72,8 +72,8 @@ void add_solvers(Plan& plan, const Scene& scene) {
                                       : "rattlers rest on two contacts each; those of the start file");
     plan.add("solver", "descent of W", runs && nominal,
              !runs     ? "no trajectory"
-             : nominal ? "wall forces are constant: W must decrease along every arc, and it is checked"
-                       : "true stresses on a box that changes shape have no potential");
+             : nominal ? "wall forces are constant: W is proved to be smaller at the end of every arc"
+                       : "true stresses: the sum of sigma ln L takes the place of W");
     plan.add("solver", "random choice of the contact that opens", runs && random,
              random ? "rule = \"random\"" : "the rule is deterministic: rule_seed is not used");
     const CertifyLevel level = scene.run.certify;
@@ -88,7 +88,8 @@ void add_solvers(Plan& plan, const Scene& scene) {
              runs && level < CertifyLevel::decisions
                  ? asked(CertifyLevel::decisions) + "; the way from equilibrium to equilibrium is not certified: it is "
                                                     "steered by double precision without stated bounds"
-                 : "every comparison that steers has a bound on both sides; its cost is that of the run");
+                 : "every comparison that steers has a bound on both sides; ends of arcs proved, the way between "
+                   "them looked at; its cost is that of the run");
     plan.add("proof", "states", runs && level >= CertifyLevel::states,
              asked(CertifyLevel::states) +
                  "; the certificate of each equilibrium in certificates/; some 5 factorisations each");

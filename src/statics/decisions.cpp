@@ -234,8 +234,7 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender>& negative, Ex
 /// One stage of the lexicographic decision: all contacts with `finite` (or without) a finite force.
 template <int Dim, class Value, class Expression>
 Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, Expression force_of, OpeningRule rule,
-                              std::span<const ContactId> zero_holds, std::uint64_t random_bits,
-                              PerturbedStatics<Dim>* perturbed) {
+                              const ZeroHolds& idle, std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
     const auto expression = [&](ContactId l) {
         ForceExpression e = force_of(l);
         e.minus_magnitude = is_held(statics, l);
@@ -243,10 +242,7 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
     };
     ZeroHolds zero; // they tie no strut
     if (finite) {
-        if (!zero_holds.empty()) {
-            zero.fresh = zero_holds[0];
-            zero.others.assign(zero_holds.begin() + 1, zero_holds.end());
-        }
+        zero = idle;
         for (std::size_t l = 0; l < statics.structure().contacts().size(); ++l) {
             if (is_held(statics, ContactId(l)) && statics.is_structural_zero(ContactId(l)) && !zero.has(ContactId(l))) {
                 zero.others.push_back(ContactId(l));
@@ -257,31 +253,30 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
     if (zero.fresh) {
         turn.emplace(statics, zero);
     }
+    // As far as it is known on the present rung: a held coordinate competes with minus its magnitude.
+    const auto contender = [&](ContactId l) {
+        const Enclosure f = value(l);
+        const Enclosure competes{is_held(statics, l) ? -std::abs(f.value) : f.value, f.radius};
+        return Contender{l, competes, competes, competes.margin(), f.value};
+    };
     bool without_force = false; // contacts whose force is 0 at the turn itself
     std::vector<Contender> negative;
     double margin = infinity;
     std::vector<Contender> doubtful; // forces whose signs the enclosures do not prove
     for (std::size_t index = 0; index < statics.structure().contacts().size(); ++index) {
         const ContactId l(index);
-        if (statics.is_structural_zero(l) == finite ||
-            std::find(zero_holds.begin(), zero_holds.end(), l) != zero_holds.end()) {
+        if (statics.is_structural_zero(l) == finite || idle.has(l)) {
             continue;
         }
         if (turn && turn->carries_nothing(l)) {
             without_force = true;
             continue;
         }
-        Enclosure f = value(l);
-        const double multiplier = f.value;
-        if (is_held(statics, l)) {
-            f.value = -std::abs(f.value);
-        }
-        if (f.positive()) {
-            margin = std::min(margin, f.margin());
-        } else if (f.negative()) {
-            negative.push_back({l, f, f, f.margin(), multiplier});
+        const Contender c = contender(l);
+        if (c.force.positive()) {
+            margin = std::min(margin, c.margin);
         } else {
-            doubtful.push_back({l, f, f, 0, multiplier});
+            (c.force.negative() ? negative : doubtful).push_back(c);
         }
     }
     // A doubtful sign matters when no force is negative, when the rule needs the whole list, or when it could be the
@@ -314,7 +309,8 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
                 {"force", contact, f1, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
             decision.perturbed = true;
             if (f1.negative()) {
-                negative.push_back({d.contact, value(d.contact), {}, f1.margin(), 0});
+                negative.push_back(contender(d.contact));
+                negative.back().margin = f1.margin();
             } else {
                 margin = std::min(margin, f1.margin());
                 decision.zeros.push_back(d.contact);
@@ -330,7 +326,8 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
                                        value(d.contact).value, value(d.contact).radius)};
         }
         if (order.sign < 0) {
-            negative.push_back({d.contact, value(d.contact), {}, order.margin, d.multiplier});
+            negative.push_back(contender(d.contact));
+            negative.back().margin = order.margin;
         } else if (order.sign > 0) {
             margin = std::min(margin, order.margin);
         } else if (is_held(statics, d.contact)) {
@@ -368,7 +365,13 @@ Result<OpeningDecision> stage(Statics<Dim>& statics, bool finite, Value value, E
     opening.infinitesimal = !finite;
     if (is_held(statics, opening.contact)) {
         opening.force = value(opening.contact);
-        opening.direction = opening.force.value < 0 ? +1 : -1;
+        const Order push = opening.force.decided() ? Order{true, opening.force.positive() ? 1 : -1}
+                                                   : statics.sign(force_of(opening.contact));
+        if (!push.decided || push.sign == 0) {
+            return Failure{FailureKind::undecided, fmt::format("which way the held coordinate {} pushes is not decided",
+                                                               name(statics, opening.contact))};
+        }
+        opening.direction = push.sign < 0 ? +1 : -1;
     }
     opening.perturbed = opening.perturbed || decision.perturbed;
     decision.perturbed = opening.perturbed;
@@ -547,18 +550,17 @@ Result<Rivals> look_at_rivals(Statics<Dim>& statics, double sigma, int direction
 } // namespace
 
 template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
-                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits,
-                                       PerturbedStatics<Dim>* perturbed) {
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
+                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
     auto finite = stage(
         statics, true, [&](ContactId l) { return statics.force(l, sigma); },
-        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, zero_holds, random_bits, perturbed);
+        [&](ContactId l) { return statics.force_expression(l, sigma); }, rule, zero, random_bits, perturbed);
     if (!finite.ok() || finite.value().opening) {
         return finite;
     }
     auto infinitesimal = stage(
         statics, false, [&](ContactId l) { return statics.infinitesimal(l); },
-        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, zero_holds, random_bits,
+        [&](ContactId l) { return statics.infinitesimal_expression(l); }, rule, zero, random_bits,
         static_cast<PerturbedStatics<Dim>*>(nullptr)); // the loads are smaller than every power of eps
     if (infinitesimal.ok()) {
         infinitesimal.value().perturbed = finite.value().perturbed;
@@ -566,14 +568,6 @@ Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, Open
         infinitesimal.value().margin = std::min(infinitesimal.value().margin, finite.value().margin);
     }
     return infinitesimal;
-}
-
-template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
-                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed) {
-    return decide_opening(statics, sigma, rule,
-                          std::span<const ContactId>(&fresh_hold, fresh_hold.valid() ? std::size_t{1} : std::size_t{0}),
-                          random_bits, perturbed);
 }
 
 template <int Dim>
@@ -680,10 +674,8 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
     return Failure{FailureKind::undecided, "the comparisons of the limit loads contradict each other"};
 }
 
-template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t,
+template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, const ZeroHolds&, std::uint64_t,
                                                    PerturbedStatics<2>*);
-template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
-                                                   std::uint64_t, PerturbedStatics<2>*);
 template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

@@ -2,11 +2,9 @@
 // Contacts that carry the same force at a power turn because the disks between them stand in a straight line
 // (statement S4, proofs/stability.md).
 
-#include <isostat/statics/statics.hpp>
+#include <isostat/statics/decisions.hpp>
 
-#include <algorithm>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace isostat {
@@ -15,16 +13,6 @@ namespace isostat {
 struct StrutMate {
     ContactId contact;
     Enclosure excess; ///< of its force over that of the other one, per unit of the infinitesimal loads
-};
-
-/// Held coordinates that carry no finite force.
-struct ZeroHolds {
-    std::optional<ContactId> fresh; ///< the one held at the turn: its multiplier is 0 there, infinitesimal part too
-    std::vector<ContactId> others;  ///< the force of the finite loads is 0, that of the infinitesimal ones may not be
-
-    [[nodiscard]] bool has(ContactId l) const {
-        return fresh == l || std::find(others.begin(), others.end(), l) != others.end();
-    }
 };
 
 /// A vertex where coordinates are held without a finite force. Uses the graph of the contacts and their normals, no

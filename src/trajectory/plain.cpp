@@ -1,5 +1,6 @@
 #include "trajectory/plain.hpp"
 
+#include "trajectory/descent.hpp"
 #include "trajectory/plain_vertex.hpp"
 #include "trajectory/record.hpp"
 
@@ -8,23 +9,6 @@
 #include <cmath>
 
 namespace isostat {
-
-namespace {
-
-/// Decrease of W along an arc; the second is what rounding may have changed.
-template <int Dim>
-std::pair<double, double> work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to) {
-    const std::vector<double> force = load.external_force(from);
-    double work = 0;
-    double size = 0;
-    for (std::size_t k = 0; k < force.size(); ++k) {
-        work += force[k] * (to.q[k] - from.q[k]);
-        size += std::abs(force[k] * to.q[k]);
-    }
-    return {work, 1e-12 * size};
-}
-
-} // namespace
 
 template <int Dim>
 PlainSteering<Dim>::PlainSteering(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
@@ -88,14 +72,14 @@ template <int Dim> std::optional<Result<PlainEnd<Dim>>> PlainSteering<Dim>::step
         record.force = here_->better_force(opening_.contact.index(), path.opening);
     }
     record_path(record, path);
-    const auto [work, unknown] = work_of(load_, *packing_, path.end);
-    record.work = work;
+    const WorkOfArc work = work_of(load_, *packing_, path.end);
+    record.work = work.value;
     const auto names = [&] {
         return fmt::format("the arc that opens {} and closes {}", to_string<Dim>(record.opened),
                            to_string<Dim>(record.closed));
     };
-    if (load_.kind == LoadKind::nominal && work < -unknown) {
-        return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} along {}", -work, names())};
+    if (load_.kind == LoadKind::nominal && work.value < -1e-12 * work.size) {
+        return Failure{FailureKind::undecided, fmt::format("W increased by {:.6g} along {}", -work.value, names())};
     }
     std::optional<ForeseenVertex<Dim>> foreseen;
     if (expected && expected->closes == path.closed) {

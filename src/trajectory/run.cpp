@@ -1,4 +1,5 @@
 #include "trajectory/behind.hpp"
+#include "trajectory/descent.hpp"
 #include "trajectory/plain.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/ties.hpp"
@@ -17,7 +18,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <span>
 
 namespace isostat {
 
@@ -359,28 +359,18 @@ template <int Dim>
 std::optional<Failure> Run<Dim>::check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
                                            const Load<Dim>& load, ArcRecord<Dim>& record, bool& descends,
                                            const Tell& tell) const {
-    const std::vector<double> force = load.external_force(from.packing);
-    double work = 0;
-    double size = 0;
-    double terms = 2;
-    double force_norm = 0;
-    for (std::size_t k = 0; k < force.size(); ++k) {
-        const double part = force[k] * (to.packing.q[k] - from.packing.q[k]);
-        work += part;
-        size += std::abs(part);
-        terms += part != 0 ? 1 : 0;
-        force_norm += force[k] * force[k];
-    }
-    record.work = work;
-    force_norm = std::sqrt(force_norm);
-    // The stored ends are that far from the true ones: so much of the work is not known.
-    const double unknown =
-        (force_norm * (from.enclosure.distance() + to.enclosure.distance()) + terms * 0x1p-52 * size) * (1 + 1e-10);
-    descends = work > unknown;
-    if (load.kind == LoadKind::nominal && work < -unknown) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("W increased by {:.6g} (known to {:.3g}) along the arc that opens {} and closes {}",
-                                   -work, unknown, to_string<Dim>(record.opened), to_string<Dim>(record.closed))};
+    const Enclosure decrease = potential_decrease(from, to, load, opening.infinitesimal);
+    record.work = work_of(load, from.packing, to.packing).value;
+    descends = decrease.positive();
+    // A way of length O(eps) ends where it began: first-order terms decide there.
+    const bool at_once = from.perturbed && from.packing.q == to.packing.q;
+    const bool has_potential = std::isfinite(decrease.radius);
+    if (has_potential && !descends && !at_once) {
+        return Failure{
+            FailureKind::undecided,
+            fmt::format("the potential is not proved to decrease along the arc that opens {} and closes {}: by "
+                        "{:.6g}, known to {:.3g}",
+                        to_string<Dim>(record.opened), to_string<Dim>(record.closed), decrease.value, decrease.radius)};
     }
     if (record.power_turn) {
         return std::nullopt;
@@ -893,11 +883,11 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             resting.push_back(way.opening.contact);
             --counters_.steps;
             --way.arcs;
-            std::vector<ContactId> zero = resting;
+            ZeroHolds zero{std::nullopt, resting};
             if (way.last_hold.valid()) {
-                zero.insert(zero.begin(), way.last_hold);
+                zero.fresh = way.last_hold;
             }
-            auto again = decide_opening(way.here->statics, stress, options_.rule, std::span<const ContactId>(zero),
+            auto again = decide_opening(way.here->statics, stress, options_.rule, zero,
                                         bits_for(options_.rule_seed, counters_.steps), first_order(*way.here));
             if (!again.ok()) {
                 return located(again.failure(), where);
@@ -1248,7 +1238,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     store_first_order();
     counters_.seconds = elapsed();
     observer_.on_equilibrium(record, state_, finite_forces(*vertex_, state_.load));
-    return std::nullopt;
+    return observer_.objection();
 }
 
 template <int Dim> std::optional<Failure> Run<Dim>::start() {
@@ -1291,6 +1281,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         if (!described.ok()) {
             return located(described.failure(), "start");
         }
+        described.value().record.min_gap = record_.min_gap;
+        described.value().record.min_gap_contact = record_.min_gap_contact;
         record_ = described.value().record;
         limits_ = described.value().limit;
         return std::nullopt;

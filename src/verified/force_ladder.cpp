@@ -198,7 +198,6 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::extend() {
     extended = extended_contact_matrix(*packing, *structure, at.correction);
     count_work(Work::double_double);
     rung = Rung::double_double;
-    count_work(Work::double_double);
     bits = 106;
     return true;
 }
@@ -230,7 +229,6 @@ template <int Dim> bool ForceLadder<Dim>::Implementation::refine(int next) {
                    uncertainty, next);
     count_work(Work::multiprecision);
     rung = Rung::multiprecision;
-    count_work(Work::multiprecision);
     bits = next;
     return true;
 }

@@ -238,4 +238,23 @@ BOOST_AUTO_TEST_CASE(a_killed_run_has_no_summary_and_says_running) {
     BOOST_TEST(scratch::read(folder / "run/run.json").find("\"status\": \"running\"") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_resume) {
+    const scratch::Folder folder;
+    scratch::write(folder / "lock", "");
+    const RunCounters counters;
+    {
+        const RunDirectory directory(folder.path(), header(), RunDirectory::Mode::resume, counters);
+        BOOST_TEST(directory.previous_status() == "killed before it began");
+        BOOST_TEST(!directory.checkpoint().has_value());
+        BOOST_TEST(!directory.start().has_value());
+        BOOST_TEST(fs::exists(folder / "run.json"));
+    }
+    const scratch::Folder other;
+    scratch::write(other / "lock", "");
+    scratch::write(other / "notes.txt", "mine");
+    BOOST_CHECK_THROW(RunDirectory(other.path(), header(), RunDirectory::Mode::resume, counters), Error);
+    const scratch::Folder empty;
+    BOOST_CHECK_THROW(RunDirectory(empty.path(), header(), RunDirectory::Mode::resume, counters), Error);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -20,6 +20,7 @@ enum class FailureKind {
     unbounded,     ///< a motion finds no new contact, or a linear programme is unbounded
     not_converged, ///< an iteration stopped short
     cap_reached,   ///< a cap on arcs or strain: the sample fails at this load
+    contradiction, ///< what was proved in one way is refuted in another: a defect of the program
     interrupted    ///< stopped by the user
 };
 

@@ -6,9 +6,9 @@
 #include <isostat/statics/perturbed.hpp>
 #include <isostat/statics/statics.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace isostat {
@@ -41,9 +41,21 @@ struct OpeningDecision {
     std::vector<ContactId> zeros; ///< finite forces that vanish in the base, and are positive at first order
 };
 
-/// Applies the rule at the loaded stress `sigma`. `fresh_hold` is a coordinate held just now at a power turn: its
-/// multiplier is 0 by construction and does not compete. The two ends of a strut that such a turn leaves straight carry
-/// exactly the same force there (S4): by the rules that compare forces they are ordered by the infinitesimal loads.
+/// Held coordinates that carry no finite force: they do not compete.
+struct ZeroHolds {
+    std::optional<ContactId> fresh; ///< held just now at a power turn: 0 by construction, infinitesimal part too
+    /// Held earlier: the force of the finite loads is 0, as far as their turns are located, that of the infinitesimal
+    /// ones may not be.
+    std::vector<ContactId> others;
+
+    [[nodiscard]] bool has(ContactId l) const {
+        return fresh == l || std::find(others.begin(), others.end(), l) != others.end();
+    }
+};
+
+/// Applies the rule at the loaded stress `sigma`. The two ends of a strut that a power turn (`zero.fresh`) leaves
+/// straight carry exactly the same force there (S4): by the rules that compare forces they are ordered by the
+/// infinitesimal loads.
 /// Contacts that carry nothing at such a turn (S4 (c)) do not compete; `undecided` when nothing else is negative.
 /// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
@@ -51,8 +63,16 @@ struct OpeningDecision {
 /// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
 /// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`.
 template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
                                        std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr);
+
+/// The same with `fresh_hold` only, or without any when it is not valid.
+template <int Dim>
+Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, ContactId fresh_hold,
+                                       std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr) {
+    return decide_opening(statics, sigma, rule, fresh_hold.valid() ? ZeroHolds{fresh_hold, {}} : ZeroHolds{},
+                          random_bits, perturbed);
+}
 
 /// End of the supported interval in one direction of sigma.
 struct LoadLimit {
@@ -74,15 +94,7 @@ template <int Dim>
 Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
                              PerturbedStatics<Dim>* perturbed = nullptr);
 
-/// The same with several held coordinates whose multipliers are 0.
-template <int Dim>
-Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule,
-                                       std::span<const ContactId> zero_holds, std::uint64_t random_bits,
-                                       PerturbedStatics<Dim>* perturbed = nullptr);
-
-extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, ContactId, std::uint64_t,
-                                                          PerturbedStatics<2>*);
-extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, std::span<const ContactId>,
+extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, const ZeroHolds&,
                                                           std::uint64_t, PerturbedStatics<2>*);
 extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 

@@ -3,6 +3,7 @@
 /// What a run reports: one record per arc and one per equilibrium, and the interface that receives them.
 
 #include <isostat/contact/state.hpp>
+#include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/motion/arc_certificate.hpp>
 #include <isostat/statics/perturbed.hpp>
@@ -18,7 +19,7 @@ namespace isostat {
 /// One arc: a contact opened, the mechanism followed, a contact (or a power turn) met.
 template <int Dim> struct ArcRecord {
     long step = 0;       ///< number of the arc in the run, from 1
-    int equilibrium = 0; ///< number of the equilibrium it started after
+    int equilibrium = 0; ///< number of the equilibrium that its rearrangement leads to, if it leads to one
     int arc = 0;         ///< number within the rearrangement, from 1
     std::string kind;    ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
     Contact opened;      ///< contact opened (or held coordinate released)
@@ -159,13 +160,15 @@ struct Tally {
 };
 
 /// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written
-/// everything that it had found.
+/// everything that it had found. After each equilibrium the run asks for an objection, and ends with it.
 template <int Dim> class RunObserver {
   public:
     virtual ~RunObserver() = default;
     virtual void on_arc(const ArcRecord<Dim>& /*arc*/) {}
     virtual void on_equilibrium(const EquilibriumRecord<Dim>& /*record*/, const State<Dim>& /*state*/,
                                 const std::vector<double>& /*forces, one per contact of the state*/) {}
+    /// Why the run must not go on after the equilibrium that it has just received: none.
+    [[nodiscard]] virtual std::optional<Failure> objection() const { return std::nullopt; }
 };
 
 } // namespace isostat

@@ -6,24 +6,28 @@
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
-namespace isostat::cli {
+namespace isostat {
 
 /// Writes certificates/eq_000012.json for every equilibrium, then hands the record, with its verdict, to the next
-/// observer: when that one has written its checkpoint, the certificate is there. A certificate that is not proved does
-/// not end the run: it is counted.
+/// observer: when that one has written its checkpoint, the certificate is there. A certificate that refutes its
+/// equilibrium ends the run; one that is undecided is counted.
 class StateCertifier final : public RunObserver<2> {
   public:
-    StateCertifier(const std::filesystem::path& run, bool asked, RunCounters& counters, RunObserver<2>& next);
+    StateCertifier(const std::filesystem::path& run, std::string program, RunCounters& counters, RunObserver<2>& next);
     void on_arc(const ArcRecord<2>& arc) override { next_.on_arc(arc); }
     void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                         const std::vector<double>& forces) override;
+    [[nodiscard]] std::optional<Failure> objection() const override { return objection_; }
 
   private:
     std::filesystem::path folder_;
-    bool asked_;
+    std::string program_;
     RunCounters& counters_;
     RunObserver<2>& next_;
+    std::optional<Failure> objection_;
 };
 
-} // namespace isostat::cli
+} // namespace isostat

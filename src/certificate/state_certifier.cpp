@@ -1,39 +1,32 @@
-#include "cli/state_certifier.hpp"
-
-#include "cli/commands.hpp"
+#include "certificate/state_certifier.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 
-namespace isostat::cli {
+namespace isostat {
 
-StateCertifier::StateCertifier(const std::filesystem::path& run, bool asked, RunCounters& counters,
+StateCertifier::StateCertifier(const std::filesystem::path& run, std::string program, RunCounters& counters,
                                RunObserver<2>& next)
-    : folder_(run / "certificates"), asked_(asked), counters_(counters), next_(next) {
-    if (asked) {
-        make_directory(folder_);
-    }
+    : folder_(run / "certificates"), program_(std::move(program)), counters_(counters), next_(next) {
+    make_directory(folder_);
 }
 
 void StateCertifier::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                                     const std::vector<double>& forces) {
-    if (!asked_) {
-        next_.on_equilibrium(record, state, forces);
-        return;
-    }
     const auto begin = std::chrono::steady_clock::now();
     Certificate certificate;
     certificate.input = fmt::format("equilibrium {}", record.number);
-    certificate.program = program_name();
+    certificate.program = program_;
     certificate.state = state;
     certificate.state.provenance.clear();
     certificate.input_hash = sha256(state_text<2>(certificate.state));
-    const Certification result = isostat::certify(certificate.state);
+    const Certification result = certify(certificate.state);
     certificate.claims = result.claims;
     write_certificate(folder_ / fmt::format("eq_{:06}.json", record.number), certificate);
     StateTally& tally = counters_.states;
@@ -43,7 +36,12 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord<2>& record, const St
     tally.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     EquilibriumRecord<2> certified = record;
     certified.certified = result.verdict;
+    if (result.verdict == Verdict::refuted) {
+        certified.verdict = Verdict::refuted;
+        objection_ = Failure{FailureKind::contradiction, fmt::format("equilibrium {} is refuted by its certificate: {}",
+                                                                     record.number, fmt::join(result.refuted, "; "))};
+    }
     next_.on_equilibrium(certified, state, forces);
 }
 
-} // namespace isostat::cli
+} // namespace isostat

@@ -1,0 +1,157 @@
+#include "trajectory/descent.hpp"
+
+#include <qd/dd_real.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double dd_unit = 0x1p-98; // granted to one operation in double-double (proofs/bounds.md)
+constexpr double above = 1 + 1e-10; // of sums of at most 10^6 bounds
+
+/// A true vertex as far as it is known: within `radius` (2-norm) of packing.q + correction.
+template <int Dim> struct Place {
+    const std::vector<double>& q;
+    const std::vector<double>& correction; ///< empty: none
+    double radius;
+
+    [[nodiscard]] dd_real operator[](std::size_t k) const {
+        return correction.empty() ? dd_real(q[k]) : dd_real::add(q[k], correction[k]);
+    }
+};
+
+struct Sum {
+    dd_real value = 0.0;
+    double size = 0;   ///< of the terms
+    double square = 0; ///< of the forces
+    void add(const dd_real& force, const dd_real& way) {
+        const dd_real term = force * way;
+        value += term;
+        size += std::abs(term.x[0]);
+        square += force.x[0] * force.x[0];
+    }
+};
+
+/// Force of a nominal stress on the upper wall of an axis, exact.
+template <int Dim> dd_real wall_force(const Load<Dim>& load, std::size_t axis) {
+    static_assert(Dim == 2);
+    return -dd_real::mul(load.stress[axis], load.reference_length[1 - axis]);
+}
+
+/// F . (to - from).
+template <int Dim>
+Enclosure work(const Vertex<Dim>& start, const Place<Dim>& from, const Place<Dim>& to, const Load<Dim>& load,
+               bool infinitesimal) {
+    Sum sum;
+    const std::vector<double>& on_disks = infinitesimal ? load.infinitesimal : load.disk_force;
+    double terms = 4;
+    for (std::size_t k = 0; k < on_disks.size(); ++k) {
+        if (on_disks[k] != 0 && start.structure.dofs().dof_of(k) >= 0) {
+            sum.add(on_disks[k], to[k] - from[k]);
+            ++terms;
+        }
+    }
+    for (std::size_t a = 0; a < Dim && !infinitesimal; ++a) {
+        const std::size_t k = Dim * start.packing.radius.size() + a;
+        if (start.structure.dofs().dof_of(k) >= 0) {
+            sum.add(wall_force(load, a), to[k] - from[k]);
+            ++terms;
+        }
+    }
+    const double radius =
+        (std::sqrt(sum.square) * (from.radius + to.radius) + (terms + 8) * dd_unit * sum.size) * above;
+    return {sum.value.x[0], radius + 0x1p-52 * std::abs(sum.value.x[0])};
+}
+
+/// ln(b / a) = 2 artanh(t), t = (b - a) / (b + a), by its series: no function whose error is only known by hearsay.
+/// `error`: of the sum.
+dd_real log_of_ratio(const dd_real& a, const dd_real& b, double& error) {
+    const dd_real t = (b - a) / (b + a);
+    const dd_real square = t * t;
+    dd_real power = t;
+    dd_real sum = t;
+    int terms = 1;
+    for (int k = 3; k < 2000 && std::abs(power.x[0]) > 0x1p-110 * std::abs(t.x[0]); k += 2) {
+        power *= square;
+        sum += power / static_cast<double>(k);
+        ++terms;
+    }
+    const double rest = square.x[0] < 0.999 ? std::abs(power.x[0]) / (1 - square.x[0]) // of the geometric series beyond
+                                            : std::numeric_limits<double>::infinity();
+    error = 2 * (rest + (4.0 * terms + 8) * dd_unit * std::abs(sum.x[0])) * above;
+    return 2 * sum;
+}
+
+/// Phi(from) - Phi(to).
+template <int Dim>
+Enclosure decrease_of_phi(const Vertex<Dim>& start, const Place<Dim>& from, const Place<Dim>& to,
+                          const Load<Dim>& load) {
+    dd_real value = 0.0;
+    double radius = 0;
+    double size = 0;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        const std::size_t k = Dim * start.packing.radius.size() + a;
+        if (start.structure.dofs().dof_of(k) < 0) {
+            continue;
+        }
+        double error = 0;
+        const dd_real term = load.stress[a] * log_of_ratio(to[k], from[k], error);
+        value += term;
+        size += std::abs(term.x[0]);
+        // |ln x - ln y| <= |x - y| / min(x, y).
+        const auto moved = [&](const Place<Dim>& at) { return at.radius / (at[k].x[0] - at.radius); };
+        radius += std::abs(load.stress[a]) * (error + (moved(from) + moved(to)) * above);
+    }
+    const double bound = (radius + 8 * dd_unit * size) * above + 0x1p-52 * std::abs(value.x[0]);
+    return {value.x[0], bound >= 0 ? bound : std::numeric_limits<double>::infinity()};
+}
+
+} // namespace
+
+template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to) {
+    const std::vector<double> force = load.external_force(from);
+    WorkOfArc work;
+    for (std::size_t k = 0; k < force.size(); ++k) {
+        work.value += force[k] * (to.q[k] - from.q[k]);
+        work.size += std::abs(force[k] * to.q[k]);
+    }
+    return work;
+}
+
+template <int Dim>
+Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
+                             bool infinitesimal) {
+    const auto loaded = [](double f) { return f != 0; };
+    const bool phi = load.kind == LoadKind::true_stress && !infinitesimal;
+    if (phi && std::any_of(load.disk_force.begin(), load.disk_force.end(), loaded)) {
+        return {0, std::numeric_limits<double>::infinity()};
+    }
+    const auto between = [&](const Place<Dim>& a, const Place<Dim>& b) {
+        return phi ? decrease_of_phi(from, a, b, load) : work(from, a, b, load, infinitesimal);
+    };
+    static const std::vector<double> none;
+    const Enclosure rough = between(Place<Dim>{from.packing.q, none, from.enclosure.distance()},
+                                    Place<Dim>{to.packing.q, none, to.enclosure.distance()});
+    if (rough.decided()) {
+        return rough;
+    }
+    const auto nearer = [](const Vertex<Dim>& v) {
+        return enclose_vertex_double_double(v.packing, v.structure, v.factorisation, v.inverse);
+    };
+    const VertexEnclosure a = nearer(from);
+    const VertexEnclosure b = nearer(to);
+    if (a.verdict != Verdict::proved || b.verdict != Verdict::proved) {
+        return rough;
+    }
+    return between(Place<Dim>{from.packing.q, a.correction, a.radius},
+                   Place<Dim>{to.packing.q, b.correction, b.radius});
+}
+
+template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
+template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);
+
+} // namespace isostat

@@ -1,0 +1,27 @@
+#pragma once
+// What the potential loses from one true vertex to the next (statements T10, S5, proofs/stability.md).
+
+#include "trajectory/vertex.hpp"
+
+namespace isostat {
+
+/// Of dead loads W(from) - W(to), W = -F.q; of true stresses Phi(from) - Phi(to), Phi = sum sigma_a ln L_a over the
+/// movable walls; when `infinitesimal` (only rattlers moved) -g.q in place of W, whatever the finite load. `value` is
+/// the decrease between the two true vertices, to within `radius`. Climbs to double-double while the sign is open.
+/// True stresses with forces on disks have no potential: radius infinite. \pre both enclosures proved.
+/// Cost: O(n); in double-double two solves at each end.
+template <int Dim>
+Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal);
+
+/// F(from) . (to - from) as records show it, in double: of dead loads the decrease of W. `size`: of the terms. No
+/// bound.
+struct WorkOfArc {
+    double value = 0;
+    double size = 0;
+};
+template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to);
+
+extern template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
+extern template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);
+
+} // namespace isostat

@@ -1,0 +1,148 @@
+// The potential falls along every arc, and a run ends when somebody objects to an equilibrium.
+#include "support/crafted.hpp"
+#include "trajectory/descent.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+#include <boost/multiprecision/mpfr.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+using Wide = boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<80>>;
+
+std::unique_ptr<Vertex<2>> vertex_of(const State<2>& state) {
+    static InverseBoundCache cache;
+    auto made = Vertex<2>::make(state.packing, state.contacts, state.load, cache);
+    BOOST_REQUIRE(made.ok());
+    return std::move(made.value());
+}
+
+/// A disk in its corner under two walls, at rest: its true place is stored. The second one has other lengths.
+State<2> corner(double radius) {
+    State<2> state = one_disk(1, 1);
+    state.packing.radius[0] = radius;
+    state.packing.q = {radius, radius, 2 * radius, 2 * radius};
+    return state;
+}
+
+struct Objector : Recorder {
+    int at;
+    explicit Objector(int number) : at(number) {}
+    [[nodiscard]] std::optional<Failure> objection() const override {
+        return static_cast<int>(equilibria.size()) > at
+                   ? std::optional(Failure{FailureKind::contradiction, "somebody objects"})
+                   : std::nullopt;
+    }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_AUTO_TEST_CASE(the_decrease_of_the_potential_is_enclosed_for_dead_loads_and_true_stresses) {
+    for (const double shrink : {0.5, 0x1p-20, 0x1p-46, -0x1p-30}) {
+        const auto from = vertex_of(corner(1));
+        const auto to = vertex_of(corner(1 - shrink));
+        Load<2> load = corner(1).load;
+        load.stress = {0.75, 1.5};
+        load.reference_length = {3, 0.1};
+        const Enclosure dead = potential_decrease(*from, *to, load, false);
+        const Wide force = Wide(0.75) * Wide(0.1) + Wide(1.5) * 3;
+        BOOST_TEST(abs(Wide(dead.value) - force * 2 * Wide(shrink)) <= Wide(dead.radius));
+        BOOST_TEST((shrink > 0 ? dead.positive() : dead.negative()));
+        load.kind = LoadKind::true_stress;
+        const Enclosure phi = potential_decrease(*from, *to, load, false);
+        const Wide exact = -(Wide(0.75) + Wide(1.5)) * log(1 - Wide(shrink));
+        BOOST_TEST(abs(Wide(phi.value) - exact) <= Wide(phi.radius), phi.value << " +- " << phi.radius);
+        BOOST_TEST((shrink > 0 ? phi.positive() : phi.negative()));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_claimed_where_nothing_moves_or_no_potential_exists) {
+    const auto from = vertex_of(corner(1));
+    Load<2> load = corner(1).load;
+    BOOST_TEST(!potential_decrease(*from, *from, load, false).decided());
+    load.kind = LoadKind::true_stress;
+    load.disk_force = {0, 1};
+    const auto to = vertex_of(corner(0.5));
+    BOOST_TEST(std::isinf(potential_decrease(*from, *to, load, false).radius));
+}
+
+BOOST_AUTO_TEST_CASE(walls_that_move_against_each_other_are_judged_by_the_sum_of_the_logarithms) {
+    // sigma_1 ln L1 + sigma_2 ln L2 with L1 -> L1 (1 + t), L2 -> L2 (1 - t): the first order cancels.
+    for (const double t : {0x1p-4, 0x1p-12, 0x1p-22}) {
+        const auto box = [&](double lx, double ly) {
+            State<2> state = one_disk(1, 1);
+            state.packing.radius = {0.25, 0.25};
+            state.packing.q = {0.25, 0.25, lx - 0.25, ly - 0.25, lx, ly};
+            state.load.infinitesimal.assign(4, 0.0);
+            const double d = std::hypot(lx - 0.5, ly - 0.5);
+            state.packing.radius[1] = 0.25;
+            state.contacts = {
+                left(0), bottom(0), right(1), top(1), {ContactKind::held, 2, 0}, {ContactKind::held, 3, 0}};
+            BOOST_REQUIRE(d > 0.5);
+            return state;
+        };
+        const auto from = vertex_of(box(1, 1));
+        const auto to = vertex_of(box(1 + t, 1 - t));
+        Load<2> load = box(1, 1).load;
+        load.kind = LoadKind::true_stress;
+        load.stress = {1, 1};
+        const Enclosure phi = potential_decrease(*from, *to, load, false);
+        BOOST_TEST(phi.positive(), t << ": " << phi.value << " +- " << phi.radius);
+        BOOST_TEST(abs(Wide(phi.value) + log(1 - Wide(t) * Wide(t))) <= Wide(phi.radius));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(held_coordinates_compete_by_magnitude_on_every_rung) {
+    // Two states whose forces differ by a factor 2^33: the multiplier of one is settled by double, of the other higher
+    // up.
+    std::vector<Contact> opened;
+    for (const char* name : {"held_big.json", "held_small.json"}) {
+        const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/contradictions/" + name).state;
+        const Played played = play(state, +1, 1);
+        BOOST_REQUIRE(!played.records.arcs.empty());
+        opened.push_back(played.records.arcs[0].opened);
+    }
+    BOOST_TEST((opened[0] == opened[1]));
+}
+
+BOOST_AUTO_TEST_CASE(a_run_ends_with_the_objection_of_its_observer) {
+    State<2> state = two_disks(1, 2, 1, 1);
+    Objector objector(0);
+    RunCounters counters;
+    Segment segment;
+    segment.direction = -1;
+    segment.equilibria = 5;
+    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, {}, counters, objector);
+    BOOST_REQUIRE(outcome.failure.has_value());
+    BOOST_TEST((outcome.failure->kind == FailureKind::contradiction));
+    BOOST_TEST(objector.equilibria.size() == 1U);
+}
+
+BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_its_configuration) {
+    State<2> state = two_disks(1, 2, 1, 1);
+    Recorder records;
+    RunCounters counters;
+    Segment up;
+    up.to_stress = 2;
+    BOOST_REQUIRE((run_segment<2>(state, up, 0, {}, counters, records).completed));
+    Segment down;
+    down.direction = -1;
+    down.to_stress = 1.5;
+    BOOST_REQUIRE((run_segment<2>(state, down, 1, {}, counters, records).completed));
+    BOOST_REQUIRE(records.equilibria.size() == 3U);
+    for (const auto& record : records.equilibria) {
+        BOOST_TEST(record.min_gap == records.equilibria[0].min_gap);
+        BOOST_TEST((record.min_gap_contact == records.equilibria[0].min_gap_contact));
+    }
+    BOOST_TEST(records.equilibria[0].min_gap > 0);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -41,6 +41,16 @@ template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& sta
     return std::nullopt;
 }
 
+/// Largest coordinate or radius.
+template <int Dim> double largest_length(const Packing<Dim>& packing) {
+    double largest = packing.max_radius();
+    for (std::size_t k = 0; k < packing.q.size(); ++k) {
+        const bool exists = k < Dim * packing.radius.size() || packing.walls.upper[k % Dim] != WallKind::absent;
+        largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
+    }
+    return largest;
+}
+
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
 template <int Dim> class Prover {
   public:
@@ -291,10 +301,11 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
     do {
         // Pairs that are not listed: their gap changes by at most sqrt(2) times the distance to the true vertex.
         GapsClaim claim{(pairs.reach - 1.4143 * vertex_->distance()) * (1 - 0x1p-50), {}, vertex_->rung()};
-        double nearest = infinity;
+        Interval nearest{infinity, infinity};
+        std::vector<Interval> gaps;
         doubtful.clear();
         for (const Contact& pair : pairs.near) {
-            const Interval h = vertex_->gap(pair);
+            const Interval h = gaps.emplace_back(vertex_->gap(pair));
             if (h.upper < 0) {
                 refute("gaps", fmt::format("{} overlap: the gap is in {}", to_string<Dim>(pair), shown(h)));
                 return false;
@@ -303,10 +314,18 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
                 doubtful = fmt::format("the gap of {} is in {}", to_string<Dim>(pair), shown(h));
             }
             claim.smallest = std::min(claim.smallest, h.lower);
-            if (h.upper < nearest) {
-                nearest = h.upper;
+            if (h.upper < nearest.upper) {
+                nearest = h;
                 claim.where = pair;
             }
+        }
+        // Another pair may be nearer than the one named, by more than the claim leaves open.
+        const double room = 0x1p-47 * largest_length(state_.packing);
+        const bool unclear = std::any_of(gaps.begin(), gaps.end(), [&](const Interval& h) {
+            return h != nearest && h.lower < nearest.upper - room;
+        });
+        if (doubtful.empty() && unclear) {
+            doubtful = "which pair comes nearest is not known";
         }
         if (doubtful.empty() && claim.smallest > 0) {
             result_.claims.gaps = claim;

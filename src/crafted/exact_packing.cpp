@@ -109,9 +109,10 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
             for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
                 const bool lower = kind == ContactKind::lower_wall;
                 const WallKind wall = lower ? packing.walls.lower[a] : packing.walls.upper[a];
-                if (wall == WallKind::absent || (wall == WallKind::fixed && packing.is_fixed(disk))) {
+                if (wall == WallKind::absent) {
                     continue;
                 }
+                const bool moves = wall == WallKind::movable || !packing.is_fixed(disk);
                 const Number& c = packing.centre[i][a];
                 const Number gap = (lower ? c : packing.length[a] - c) - packing.radius[i];
                 const Contact contact{kind, disk, axis};
@@ -119,7 +120,7 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
                     return Failure{FailureKind::overlap, describe(packing, disk) + " overlaps the wall of contact " +
                                                              to_string<2>(contact) + ": gap = " + gap.text()};
                 }
-                if (gap.is_zero()) {
+                if (gap.is_zero() && moves) {
                     out.push_back(contact);
                 }
             }
@@ -136,15 +137,16 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
             const std::size_t j = std::max(order[s], order[t]);
             const int a = static_cast<int>(i);
             const int b = static_cast<int>(j);
-            if ((packing.is_fixed(a) && packing.is_fixed(b)) || sweep.apart(i, j)) {
+            if (sweep.apart(i, j)) {
                 continue;
             }
+            const bool moves = !packing.is_fixed(a) || !packing.is_fixed(b);
             const Number defect = sweep.defect(i, j);
             if (defect.sign() < 0) {
                 return Failure{FailureKind::overlap, describe(packing, a) + " and " + describe(packing, b) +
                                                          " overlap: distance^2 - (sum of radii)^2 = " + defect.text()};
             }
-            if (defect.is_zero()) {
+            if (defect.is_zero() && moves) {
                 out.push_back({ContactKind::disk_disk, a, b});
             }
         }

@@ -44,8 +44,9 @@ Packing<2> approximate(const ExactPacking& packing);
 
 /// Every pair at gap exactly 0, sorted. The sign of each gap is decided: that of |x_j - x_i|^2 - (R_i + R_j)^2, by
 /// double enclosures where they exclude 0 and in the field otherwise. Pairs without a degree of freedom (two fixed
-/// disks, a fixed disk and a fixed wall) are not looked at. `overlap` names the first overlapping pair with its
-/// squared-distance defect. Cost: sweep along x, O(n sqrt n) pairs for a compact packing.
+/// disks, a fixed disk and a fixed wall) may touch without being contacts, but not overlap (proofs/definition.md).
+/// `overlap` names the first overlapping pair with its squared-distance defect. Cost: sweep along x, O(n sqrt n) pairs
+/// for a compact packing.
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
 
 /// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres

@@ -52,7 +52,8 @@ struct ForcesClaim {
 };
 
 /// Every pair of grains that is not a contact (and can move relative to each other) has a gap >= `smallest` > 0 at the
-/// true vertex; `where` is the pair that comes nearest. Without any such pair `smallest` is infinite and `where` is not
+/// true vertex; `where` is the pair that comes nearest, or one whose gap is as small up to
+/// 2^-46 of the largest coordinate or radius. Without any such pair `smallest` is infinite and `where` is not
 /// written.
 struct GapsClaim {
     double smallest = 0;

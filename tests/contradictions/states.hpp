@@ -1,0 +1,340 @@
+#pragma once
+// States that lie at the thresholds of the program's decisions, class by class.
+
+#include "contradictions/piles.hpp"
+
+#include <functional>
+
+namespace contradictions {
+
+struct StateClass {
+    const char* name;
+    std::function<std::optional<State<2>>(Random&)> make;
+};
+
+namespace detail {
+
+inline double ulps(double x, int count) {
+    for (int k = 0; k < std::abs(count); ++k) {
+        x = std::nextafter(x, count > 0 ? HUGE_VAL : -HUGE_VAL);
+    }
+    return x;
+}
+inline int few(Random& random) {
+    return random.integer(7) - 3;
+}
+
+/// 0, or so small that a rounding decides its sign.
+inline double hardly_a_force(Random& random) {
+    return random.integer(4) == 0 ? 0.0 : few(random) * std::ldexp(1.0, -50 - random.integer(14));
+}
+
+inline void infinitesimal_loads(State<2>& state, Random& random) {
+    for (double& g : state.load.infinitesimal) {
+        g = random.integer(6) == 0 ? 0.0 : random.real(-1, 0.3);
+    }
+}
+
+/// A pile at its vertex, with random infinitesimal loads and no finite ones yet.
+inline std::optional<State<2>> pile(const PileOptions& options, Random& random) {
+    const auto made = make_pile(options, random);
+    if (!made) {
+        return {};
+    }
+    State<2> state = state_of(*made, options);
+    if (!polish(state)) {
+        return {};
+    }
+    infinitesimal_loads(state, random);
+    return state;
+}
+
+inline PileOptions small(Random& random, double same = 0) {
+    PileOptions options;
+    options.disks = 1 + random.integer(5);
+    options.same = same;
+    return options;
+}
+
+/// Loads for forces from 0.1 to 2; `weak` of them hardly different from 0.
+inline std::optional<State<2>> load(std::optional<State<2>> state, Random& random, int weak) {
+    if (!state) {
+        return {};
+    }
+    for (double& length : state->load.reference_length) {
+        length = random.integer(2) == 0 ? 1.0 : random.real(0.5, 3);
+    }
+    const Truth truth(*state);
+    if (!truth.known) {
+        return {};
+    }
+    std::vector<double> forces;
+    for (std::size_t l = 0; l < state->contacts.size(); ++l) {
+        forces.push_back(random.real(0.1, 2));
+    }
+    for (int k = 0; k < weak; ++k) {
+        forces[static_cast<std::size_t>(random.integer(static_cast<int>(forces.size())))] = hardly_a_force(random);
+    }
+    load_for(*state, truth, forces);
+    return state;
+}
+
+/// One disk in the corner; its load on the right wall balances a product of two stored numbers up to a few ulps.
+inline std::optional<State<2>> product(Random& random) {
+    State<2> state;
+    const double r = random.real(0.5, 1.5);
+    state.packing.radius = {r};
+    state.packing.q = {r, r, 2 * r, 2 * r};
+    state.packing.walls = isostat::Walls<2>::box();
+    for (int a = 0; a < 2; ++a) {
+        state.contacts.push_back({ContactKind::lower_wall, 0, a});
+        state.contacts.push_back({ContactKind::upper_wall, 0, a});
+    }
+    state.load.infinitesimal = {random.real(-1, 1), random.real(-1, 1)};
+    for (std::size_t a = 0; a < 2; ++a) {
+        state.load.stress[a] = random.real(0.1, 2);
+        state.load.reference_length[a] = random.real(0.5, 3);
+    }
+    const bool nominal = random.integer(3) != 0;
+    state.load.kind = nominal ? isostat::LoadKind::nominal : isostat::LoadKind::true_stress;
+    state.load.disk_force = {0, 0};
+    for (std::size_t a = 0; a < 2; ++a) {
+        const double length = nominal ? state.load.reference_length[1 - a] : 2 * r;
+        // Force on the lower wall: stress x length - disk force.
+        state.load.disk_force[a] = a == 0 || random.integer(2) == 0
+                                       ? ulps(state.load.stress[a] * length, random.integer(3) - 1)
+                                       : random.real(-1, 0.05);
+    }
+    return state;
+}
+
+/// Coordinates that differ by less than 1e-9 become equal as stored; radii of a wall row differ by a little.
+inline std::optional<State<2>> equal_as_stored(Random& random) {
+    PileOptions options = small(random, 0.8);
+    options.disks = 2 + random.integer(3);
+    auto state = load(pile(options, random), random, random.integer(3));
+    if (!state) {
+        return {};
+    }
+    auto& q = state->packing.q;
+    for (double& x : q) {
+        if (random.integer(3) == 0) {
+            x += std::ldexp(random.real(-1, 1), -30 - random.integer(20));
+        }
+    }
+    const std::size_t disks = state->packing.radius.size();
+    for (std::size_t i = 0; i < 2 * disks; ++i) {
+        for (std::size_t j = i % 2; j < i; j += 2) {
+            if (std::abs(q[i] - q[j]) < 1e-3 && random.integer(4) != 0) {
+                q[i] = std::abs(q[i] - q[j]) < 1e-9 ? q[j] : q[i];
+            }
+        }
+    }
+    return state;
+}
+
+/// Fixed disks, some of them overlapping each other or just touching, with or without walls; q of absent walls is
+/// anything.
+inline std::optional<State<2>> with_fixed(Random& random, bool overlapping) {
+    PileOptions options = small(random, 0.3);
+    options.disks = 1 + random.integer(3);
+    options.fixed = 2 + random.integer(2);
+    options.lower_walls = random.integer(2) == 0;
+    options.upper_walls = options.lower_walls && random.integer(2) == 0;
+    auto state = load(pile(options, random), random, random.integer(2));
+    if (!state) {
+        return {};
+    }
+    if (!options.upper_walls) {
+        const std::size_t walls = 2 * state->packing.radius.size();
+        for (std::size_t a = 0; a < 2; ++a) {
+            state->packing.q[walls + a] = random.integer(2) == 0 ? 0 : std::ldexp(1.0, random.integer(60));
+        }
+    }
+    if (overlapping) { // one more fixed disk, at the threshold of an overlap with another fixed one, to the left
+        const double r = random.real(0.1, 0.3);
+        auto& packing = state->packing;
+        const std::size_t n = packing.radius.size();
+        const double x = packing.q[0] - (packing.radius[0] + r) + (random.integer(3) == 0 ? 1e-3 : 0.0);
+        const std::array<double, 2> at{ulps(x, few(random)), packing.q[1]};
+        packing.q.insert(packing.q.begin() + static_cast<std::ptrdiff_t>(2 * n), at.begin(), at.end());
+        packing.radius.push_back(r);
+        packing.fixed.push_back(1);
+        if (!state->load.disk_force.empty()) {
+            state->load.disk_force.insert(state->load.disk_force.end(), {0, 0});
+        }
+        state->load.infinitesimal.insert(state->load.infinitesimal.end(), {0, 0});
+    }
+    return state;
+}
+
+/// A disk between two fixed ones, off the straight line by 1e-1 to 1e-12, loaded across it.
+inline std::optional<State<2>> strut(Random& random) {
+    State<2> state;
+    const double delta = std::pow(10.0, -random.real(1, 9)) * (random.integer(2) == 0 ? 1 : -1);
+    const std::array<double, 3> r{random.real(0.5, 1), random.real(0.5, 1), random.real(0.5, 1)};
+    state.packing.radius = {r[0], r[1], r[2]};
+    state.packing.fixed = {1, 1, 0};
+    state.packing.walls = isostat::Walls<2>::none();
+    const double left = r[0] + r[2];
+    const double right = r[1] + r[2];
+    const double c1 = std::sqrt(1 - delta * delta);
+    const double s2 = delta * left / right;
+    state.packing.q = {0, 0, left * c1 + right * std::sqrt(1 - s2 * s2), 0, left * c1, left * delta, 0, 0};
+    state.contacts = {{ContactKind::disk_disk, 0, 2}, {ContactKind::disk_disk, 1, 2}};
+    state.load.infinitesimal = {0, 0, 0, 0, random.real(-1, 1), random.real(-1, 1)};
+    state.load.stress = {1, 1};
+    state.load.reference_length = {1, 1};
+    if (!polish(state)) {
+        return {};
+    }
+    return load(state, random, random.integer(2));
+}
+
+/// The loaded stress at an end of the supported interval, or a few ulps beside it.
+inline std::optional<State<2>> at_the_end(Random& random) {
+    auto state = load(pile(small(random, 0.2), random), random, 0);
+    if (!state) {
+        return {};
+    }
+    const Truth truth(*state);
+    const End& end = random.integer(2) == 0 ? truth.low : truth.high;
+    if (!truth.known || end.unbounded || abs(end.stress) < 1e-30) { // the truth has 200 digits, not 300
+        return {};
+    }
+    auto& stress = state->load.stress[static_cast<std::size_t>(state->load.loaded_axis)];
+    stress = ulps(static_cast<double>(end.stress), few(random));
+    return state;
+}
+
+/// One more fixed disk that a disk of the pile nearly touches, or overlaps by as little.
+inline std::optional<State<2>> nearly_touching(Random& random) {
+    PileOptions options = small(random, 0.2);
+    options.fixed = 1;
+    auto state = load(pile(options, random), random, 0);
+    if (!state) {
+        return {};
+    }
+    auto& packing = state->packing;
+    const std::size_t n = packing.radius.size();
+    const auto i = 1 + static_cast<std::size_t>(random.integer(static_cast<int>(n) - 1));
+    const double r = random.real(0.05, 0.2);
+    const double angle = random.real(0, 6.28);
+    const double gap = random.integer(3) == 0 ? std::ldexp(few(random), -52)
+                                              : std::ldexp(random.real(-1, 1), -20 - random.integer(34));
+    const double d = packing.radius[i] + r + gap;
+    const std::array<double, 2> at{packing.q[2 * i] + d * std::cos(angle), packing.q[2 * i + 1] + d * std::sin(angle)};
+    packing.q.insert(packing.q.begin() + static_cast<std::ptrdiff_t>(2 * n), at.begin(), at.end());
+    packing.radius.push_back(r);
+    packing.fixed.push_back(1);
+    state->load.disk_force.insert(state->load.disk_force.end(), {0, 0});
+    state->load.infinitesimal.insert(state->load.infinitesimal.end(), {0, 0});
+    return state;
+}
+
+/// Disks without finite load: the infinitesimal loads decide, some of which are 0 or act along a contact.
+inline std::optional<State<2>> infinitesimal_decides(Random& random) {
+    PileOptions options = small(random, 0.6);
+    auto state = pile(options, random);
+    if (!state) {
+        return {};
+    }
+    for (std::size_t a = 0; a < 2; ++a) {
+        state->load.stress[a] = random.integer(3) == 0 ? 0.0 : random.real(0.1, 2);
+    }
+    for (double& g : state->load.infinitesimal) {
+        g = random.integer(3) == 0 ? 0.0 : random.integer(3) == 0 ? -1.0 : random.real(-1, 0.2);
+    }
+    return state;
+}
+
+inline std::optional<State<2>> moved_by_ulps(std::optional<State<2>> state, Random& random) {
+    if (state) {
+        for (double& x : state->packing.q) {
+            x = ulps(x, few(random));
+        }
+    }
+    return state;
+}
+
+inline std::optional<State<2>> true_stresses(Random& random) {
+    auto state = pile(small(random, 0.3), random);
+    if (state) {
+        state->load.kind = isostat::LoadKind::true_stress;
+        for (std::size_t a = 0; a < 2; ++a) {
+            state->load.stress[a] = random.real(-0.1, 2);
+            state->load.reference_length[a] = random.real(0.5, 3);
+        }
+        if (random.integer(3) == 0) {
+            const Truth truth(*state);
+            const End& end = random.integer(2) == 0 ? truth.low : truth.high;
+            if (truth.known && !end.unbounded && abs(end.stress) > 1e-30) {
+                state->load.stress[1] = ulps(static_cast<double>(end.stress), few(random));
+            }
+        }
+    }
+    return state;
+}
+
+/// Small integers and Pythagorean triples: exact as doubles, so that crafted inspection may speak of them.
+inline std::optional<State<2>> exact_lattice(Random& random) {
+    State<2> state;
+    // Disk 0 in the corner, disk 1 up to the right of it at (3, 4), (4, 3), (5, 12), ... times a power of two.
+    constexpr std::array<std::array<int, 3>, 4> triples{{{3, 4, 5}, {4, 3, 5}, {5, 12, 13}, {8, 15, 17}}};
+    const auto& t = triples[static_cast<std::size_t>(random.integer(4))];
+    const double r0 = 1 + random.integer(t[2] - 1);
+    const double r1 = t[2] - r0;
+    const double x = r0 + t[0];
+    const double y = r0 + t[1];
+    if (x < r1 || y < r1) {
+        return {};
+    }
+    state.packing.radius = {r0, r1};
+    state.packing.q = {r0, r0, x, y, x + r1, y + r1};
+    state.packing.walls = isostat::Walls<2>::box();
+    state.contacts = {{ContactKind::disk_disk, 0, 1},
+                      {ContactKind::lower_wall, 0, 0},
+                      {ContactKind::lower_wall, 0, 1},
+                      {ContactKind::upper_wall, 1, 0},
+                      {ContactKind::upper_wall, 1, 1}};
+    const bool on_wall = x == r1 || y == r1;
+    if (on_wall || random.integer(2) == 0) { // the sixth contact
+        if (!on_wall) {
+            return {};
+        }
+        state.contacts.push_back({ContactKind::lower_wall, 1, x == r1 ? 0 : 1});
+    } else {
+        return {};
+    }
+    state.load.reference_length = {1, 1};
+    state.load.stress = {static_cast<double>(random.integer(5)), static_cast<double>(random.integer(5))};
+    state.load.infinitesimal = {-1.0, -1.0, 0.25, -1.0};
+    state.load.disk_force = {0, 0, 0, 0};
+    for (double& f : state.load.disk_force) {
+        f = random.integer(2) == 0 ? 0.0 : random.integer(7) - 3.0;
+    }
+    return state;
+}
+
+} // namespace detail
+
+inline std::vector<StateClass> state_classes() {
+    using namespace detail;
+    return {
+        {"forces of 0 +- k ulp", [](Random& r) { return load(pile(small(r), r), r, 1 + r.integer(2)); }},
+        {"loads whose product rounds", product},
+        {"coordinates equal as stored", equal_as_stored},
+        {"radii that differ in the last bit", [](Random& r) { return load(pile(small(r, 0.9), r), r, r.integer(2)); }},
+        {"fixed disks", [](Random& r) { return with_fixed(r, false); }},
+        {"fixed disks that touch or overlap", [](Random& r) { return with_fixed(r, true); }},
+        {"straight struts", strut},
+        {"moved by ulps", [](Random& r) { return moved_by_ulps(load(pile(small(r, 0.5), r), r, r.integer(2)), r); }},
+        {"at the end of the interval", at_the_end},
+        {"gaps at the threshold", nearly_touching},
+        {"infinitesimal loads decide", infinitesimal_decides},
+        {"true stresses", true_stresses},
+        {"exact numbers", exact_lattice},
+    };
+}
+
+} // namespace contradictions

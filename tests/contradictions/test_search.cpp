@@ -1,0 +1,283 @@
+// Every pair of answers about one state: inspect, certify, verify, a run, crafted inspection, and the truth to 200
+// digits. ISOSTAT_LONG=1: a million states; ISOSTAT_STATES=N: as many as one likes.
+#include "contradictions/states.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/certificate/inspect.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <chrono>
+#include <cstdlib>
+#include <iomanip>
+#include <iostream>
+#include <map>
+#include <sstream>
+
+using namespace isostat;
+using namespace contradictions;
+
+namespace {
+
+/// One defect, in words.
+using Objections = std::vector<std::string>;
+
+/// The answer of one command about "isostatic equilibrium without overlap".
+struct Answers {
+    Verdict inspect = Verdict::undecided;
+    Verdict certify = Verdict::undecided;
+    Verdict verify = Verdict::undecided;
+    Verdict run = Verdict::undecided;
+    Verdict crafted = Verdict::undecided;
+};
+
+/// Up to what 200 digits leave open of a number of that scale.
+bool inside(const Interval& i, const Real& x, const Real& scale = 1) {
+    const Real room = negligible * scale;
+    return Real(i.lower) <= x + room && x - room <= Real(i.upper);
+}
+
+std::string text(const Real& x) {
+    std::ostringstream stream;
+    stream << std::setprecision(20) << x;
+    return stream.str();
+}
+
+void check_verdict(const char* who, Verdict verdict, int truth, Objections& wrong) {
+    if (verdict == Verdict::proved && truth <= 0) {
+        wrong.push_back(std::string(who) + " proves what is false");
+    }
+    if (verdict == Verdict::refuted && truth > 0) {
+        wrong.push_back(std::string(who) + " refutes what is true");
+    }
+}
+
+void check_claims(const CertificateClaims& claims, const State<2>& state, const Truth& truth, Objections& wrong) {
+    if (claims.vertex && Real(claims.vertex->radius) < truth.moved) {
+        wrong.push_back("the true vertex is " + text(truth.moved) + " away, claimed " +
+                        std::to_string(claims.vertex->radius));
+    }
+    if (claims.forces) {
+        for (std::size_t l = 0; l < claims.forces->finite.size(); ++l) {
+            if (!inside(claims.forces->finite[l], truth.force[l], truth.force_scale)) {
+                wrong.push_back("force of " + to_string<2>(state.contacts[l]) + " is " + text(truth.force[l]));
+            }
+        }
+        for (std::size_t k = 0; k < claims.forces->structural_zeros.size(); ++k) {
+            const auto l = static_cast<std::size_t>(claims.forces->structural_zeros[k]);
+            if (sign_of(truth.force[l], truth.force_scale) != 0) {
+                wrong.push_back("force of " + to_string<2>(state.contacts[l]) + " is no zero: " + text(truth.force[l]));
+            }
+            if (!inside(claims.forces->infinitesimal[k], truth.infinitesimal[l])) {
+                wrong.push_back("infinitesimal force of " + to_string<2>(state.contacts[l]) + " is " +
+                                text(truth.infinitesimal[l]));
+            }
+        }
+    }
+    if (const OtherPair* nearest = truth.nearest(); claims.gaps && nearest != nullptr) {
+        if (Real(claims.gaps->smallest) > nearest->gap) {
+            wrong.push_back("smallest gap is " + text(nearest->gap) + ", claimed at least " +
+                            std::to_string(claims.gaps->smallest));
+        }
+    }
+    if (claims.load_interval) {
+        const auto end = [&](const LoadEndClaim& claim, const End& real, const char* name) {
+            if (claim.unbounded != real.unbounded) {
+                wrong.push_back(std::string(name) + " end of the interval: bounded or not");
+                return;
+            }
+            if (claim.unbounded) {
+                return;
+            }
+            if (!inside(claim.stress, real.stress)) {
+                wrong.push_back(std::string(name) + " end of the interval is " + text(real.stress));
+            }
+            const bool opens = std::any_of(real.opens.begin(), real.opens.end(), [&](int l) {
+                return state.contacts[static_cast<std::size_t>(l)] == claim.opens;
+            });
+            if (!opens) {
+                wrong.push_back(std::string(name) + " end opens another contact than " + to_string<2>(claim.opens));
+            }
+        };
+        end(claims.load_interval->low, truth.low, "lower");
+        end(claims.load_interval->high, truth.high, "upper");
+    }
+}
+
+/// A short run: what it says of its start.
+Verdict run_from(const State<2>& state) {
+    if (!(state.load.stress[0] > 0 && state.load.stress[1] > 0)) {
+        return Verdict::undecided;
+    }
+    try {
+        check_start<2>(state, "state");
+    } catch (const Error&) {
+        return Verdict::refuted; // a run takes no such start
+    }
+    RunOptions options;
+    options.max_arcs = 1; // whether the start is an equilibrium is what is asked
+    const ::crafted::Played played = ::crafted::play(state, +1, 1, {}, options);
+    if (!played.records.arcs.empty() && played.records.arcs.front().equilibrium == 0) {
+        return Verdict::refuted; // rearranged before it was one
+    }
+    return played.records.equilibria.empty() ? Verdict::undecided : played.records.equilibria.front().verdict;
+}
+
+/// The same doubles as exact numbers, where they touch exactly.
+Verdict crafted_verdict(const State<2>& state) {
+    if (state.load.kind != LoadKind::nominal) {
+        return Verdict::undecided;
+    }
+    isostat::crafted::ExactPacking packing = isostat::crafted::exact_copy(state.packing);
+    const auto contacts = isostat::crafted::exact_contacts(packing);
+    if (!contacts.ok() || contacts.value() != state.contacts) {
+        return Verdict::undecided;
+    }
+    isostat::crafted::ExactLoad load;
+    for (std::size_t a = 0; a < 2; ++a) {
+        load.wall[a] = exact::Number::from_double(state.load.stress[a]) *
+                       exact::Number::from_double(state.load.reference_length[1 - a]);
+    }
+    for (const double f : state.load.disk_force) {
+        load.disk.push_back(exact::Number::from_double(f));
+    }
+    packing.load = load;
+    const isostat::crafted::Inspection inspection = isostat::crafted::inspect_contacts(packing, contacts.value());
+    return inspection.stable;
+}
+
+struct Count {
+    long tried = 0, true_equilibria = 0, contradictions = 0;
+    std::array<long, 5> undecided{};
+};
+
+std::string file_of(const State<2>& state) {
+    return state_text<2>(state);
+}
+
+Objections ask(const State<2>& state, const Truth& truth, bool run, Count& tally) {
+    Objections wrong;
+    const int equilibrium = truth.equilibrium();
+    Answers answers;
+    const Result<Inspection<2>> inspection = inspect_vertex(state);
+    if (inspection.ok()) {
+        answers.inspect = inspection.value().record.verdict;
+        const EquilibriumRecord<2>& record = inspection.value().record;
+        if (inspection.value().equilibrium != (record.verdict == Verdict::proved)) {
+            wrong.emplace_back("inspect: equilibrium and verdict differ");
+        }
+        if (inspection.value().stable == Verdict::proved && equilibrium <= 0) {
+            wrong.emplace_back("inspect proves a stability that is not there");
+        }
+    } else if (inspection.failure().kind == FailureKind::not_isostatic) {
+        answers.inspect = Verdict::refuted;
+    }
+    Certificate certificate;
+    certificate.state = state;
+    const Certification certified = certify(state);
+    certificate.claims = certified.claims;
+    answers.certify = certified.verdict;
+    check_claims(certified.claims, state, truth, wrong);
+    const Verification verified = verify(certificate);
+    answers.verify = verified.verdict;
+    for (const ClaimCheck& check : verified.checks) {
+        if (check.claimed && check.verdict == Verdict::refuted) {
+            wrong.push_back("verify refutes a claim of certify, " + check.claim + ": " + check.detail);
+        }
+    }
+    if (run) {
+        answers.run = run_from(state);
+    }
+    answers.crafted = crafted_verdict(state);
+    check_verdict("inspect", answers.inspect, equilibrium, wrong);
+    check_verdict("certify", answers.certify, equilibrium, wrong);
+    check_verdict("verify", answers.verify, equilibrium, wrong);
+    if (answers.run == Verdict::proved) {
+        check_verdict("run", answers.run, equilibrium, wrong);
+    }
+    // Crafted inspection speaks of stability under the finite load: where a force is 0 it may differ.
+    const bool all_finite = std::all_of(truth.force.begin(), truth.force.end(),
+                                        [&](const Real& f) { return sign_of(f, truth.force_scale) > 0; });
+    if (all_finite) {
+        check_verdict("crafted", answers.crafted, equilibrium, wrong);
+    }
+    int k = 0;
+    for (const Verdict v : {answers.inspect, answers.certify, answers.verify, answers.run, answers.crafted}) {
+        tally.undecided[static_cast<std::size_t>(k++)] += v == Verdict::undecided ? 1 : 0;
+    }
+    return wrong;
+}
+
+long states_asked() {
+    if (const char* count = std::getenv("ISOSTAT_STATES")) {
+        return std::atol(count);
+    }
+    return std::getenv("ISOSTAT_LONG") != nullptr ? 1'000'000 : 20'000;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(contradictions_of_states)
+
+BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
+    const auto begin = std::chrono::steady_clock::now();
+    constexpr std::uint64_t seed = 21;
+    const std::vector<StateClass> classes = state_classes();
+    const long each = states_asked() / static_cast<long>(classes.size()) + 1;
+    int shown = 0;
+    std::cout << "seed " << seed << ", " << each << " states of each class\n"
+              << "| class | states | equilibria | contradictions | undecided: inspect | certify | verify | run |\n"
+              << "|---|---|---|---|---|---|---|---|\n";
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+        Count tally;
+        long runs = 0;
+        for (long k = 0, tries = 0; k < each && tries < 400 * each; ++tries) {
+            oracle::Random random(seed + 1000 * c + 1'000'003ULL * static_cast<std::uint64_t>(tries));
+            const auto state = classes[c].make(random);
+            if (!state) {
+                continue;
+            }
+            const Truth truth(*state);
+            if (!truth.known) {
+                continue;
+            }
+            ++k;
+            ++tally.tried;
+            tally.true_equilibria += truth.equilibrium() > 0 ? 1 : 0;
+            const bool run = k % 10 == 0;
+            runs += run ? 1 : 0;
+            const Objections wrong = ask(*state, truth, run, tally);
+            if (!wrong.empty()) {
+                ++tally.contradictions;
+                if (shown++ < 20) {
+                    std::string all;
+                    for (const std::string& w : wrong) {
+                        all += "\n  " + w;
+                    }
+                    BOOST_ERROR(classes[c].name << ", try " << tries << ":" << all << "\n" << file_of(*state));
+                }
+            }
+        }
+        const auto share = [&](std::size_t who, long of) {
+            return of == 0 ? 0.0 : 100.0 * static_cast<double>(tally.undecided[who]) / static_cast<double>(of);
+        };
+        std::cout << std::setprecision(3) << "| " << classes[c].name << " | " << tally.tried << " | "
+                  << tally.true_equilibria << " | " << tally.contradictions << " | " << share(0, tally.tried) << " % | "
+                  << share(1, tally.tried) << " % | " << share(2, tally.tried) << " % | "
+                  << (runs == 0 ? 0.0
+                                : 100.0 * static_cast<double>(tally.undecided[3] - (tally.tried - runs)) /
+                                      static_cast<double>(runs))
+                  << " % of " << runs << " |\n";
+        BOOST_TEST(tally.contradictions == 0, classes[c].name << ": " << tally.contradictions << " contradictions");
+        BOOST_TEST(tally.tried == each, classes[c].name << ": only " << tally.tried << " states were made");
+        BOOST_TEST(tally.true_equilibria > 0);
+        BOOST_TEST(tally.true_equilibria < tally.tried);
+    }
+    std::cout << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s\n";
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,399 @@
+#pragma once
+// What is true of a state, to some 200 digits: Newton to the vertex, dense elimination, brute force over all pairs.
+// Nothing of the library is used but its data structures. A number below 1e-150 of its scale is taken for 0: the states
+// here have condition numbers far below 1e40.
+
+#include <isostat/contact/state.hpp>
+
+#include <boost/multiprecision/mpfr.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace contradictions {
+
+using isostat::Contact;
+using isostat::ContactKind;
+using isostat::State;
+using isostat::WallKind;
+
+/// 200 digits: 668 bits.
+using Real =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<200, boost::multiprecision::allocate_stack>,
+                                  boost::multiprecision::et_off>;
+using Vector = std::vector<Real>;
+
+inline const Real negligible = pow(Real(10), -150);
+
+/// -1, 0, +1.
+inline int sign_of(const Real& x, const Real& scale) {
+    return abs(x) <= negligible * scale ? 0 : x > 0 ? 1 : -1;
+}
+
+/// Square, row by row, with LU factors made by partial pivoting.
+class Dense {
+  public:
+    explicit Dense(std::size_t n) : n_(n), entry_(n * n, Real(0)), order_(n) {}
+    Real& operator()(std::size_t i, std::size_t j) { return entry_[i * n_ + j]; }
+    const Real& operator()(std::size_t i, std::size_t j) const { return entry_[i * n_ + j]; }
+    [[nodiscard]] std::size_t size() const { return n_; }
+
+    /// False: singular to 40 digits.
+    bool factorise() {
+        for (std::size_t k = 0; k < n_; ++k) {
+            order_[k] = k;
+        }
+        for (std::size_t k = 0; k < n_; ++k) {
+            std::size_t pivot = k;
+            for (std::size_t i = k + 1; i < n_; ++i) {
+                pivot = abs((*this)(i, k)) > abs((*this)(pivot, k)) ? i : pivot;
+            }
+            if (abs((*this)(pivot, k)) < Real("1e-40")) {
+                return false;
+            }
+            if (pivot != k) {
+                std::swap_ranges(entry_.begin() + static_cast<std::ptrdiff_t>(k * n_),
+                                 entry_.begin() + static_cast<std::ptrdiff_t>((k + 1) * n_),
+                                 entry_.begin() + static_cast<std::ptrdiff_t>(pivot * n_));
+                std::swap(order_[k], order_[pivot]);
+            }
+            for (std::size_t i = k + 1; i < n_; ++i) {
+                if ((*this)(i, k) == 0) {
+                    continue;
+                }
+                const Real factor = (*this)(i, k) /= (*this)(k, k);
+                for (std::size_t j = k + 1; j < n_; ++j) {
+                    if ((*this)(k, j) != 0) {
+                        (*this)(i, j) -= factor * (*this)(k, j);
+                    }
+                }
+            }
+        }
+        return true;
+    }
+    [[nodiscard]] Vector solve(const Vector& right) const {
+        Vector x(n_);
+        for (std::size_t i = 0; i < n_; ++i) {
+            x[i] = right[order_[i]];
+            for (std::size_t j = 0; j < i; ++j) {
+                x[i] -= (*this)(i, j) * x[j];
+            }
+        }
+        for (std::size_t i = n_; i-- > 0;) {
+            for (std::size_t j = i + 1; j < n_; ++j) {
+                x[i] -= (*this)(i, j) * x[j];
+            }
+            x[i] /= (*this)(i, i);
+        }
+        return x;
+    }
+
+  private:
+    std::size_t n_;
+    Vector entry_;
+    std::vector<std::size_t> order_;
+};
+
+/// One end of the interval of the loaded stress in which no finite force is negative.
+struct End {
+    bool unbounded = true;
+    Real stress = 0;
+    std::vector<int> opens; ///< contacts whose force vanishes there and decreases beyond
+};
+
+/// A pair that is not a contact of the list.
+struct OtherPair {
+    Contact pair;
+    Real gap;
+    bool can_move = false; ///< relative to each other
+};
+
+/// Everything below is of the true vertex; \pre `known`.
+class Truth {
+  public:
+    explicit Truth(const State<2>& state);
+
+    bool known = false; ///< Newton converged nearby, and the matrix is regular there
+    std::string why;    ///< when not
+    Vector q;
+    Real moved = 0;     ///< largest difference of a coordinate from the stored one
+    Vector force, rate; ///< at the stored load, and per unit of the loaded stress
+    Vector infinitesimal;
+    Real force_scale = 0;
+    std::vector<OtherPair> others; ///< by increasing gap
+    End low, high;                 ///< of an equilibrium
+
+    /// +1: positive in the lexicographic order of (finite, infinitesimal); -1: negative; 0: both are 0.
+    [[nodiscard]] int sign(std::size_t contact) const;
+    /// Smallest gap of a pair that can move relative to each other.
+    [[nodiscard]] const OtherPair* nearest() const;
+    /// +1: every force positive, every other gap positive; -1: a force is negative or a pair overlaps; 0: neither.
+    [[nodiscard]] int equilibrium() const;
+    [[nodiscard]] Real gap(const Contact& c) const;
+    /// H, one column per contact.
+    [[nodiscard]] Dense contact_matrix() const;
+
+  private:
+    [[nodiscard]] const Real& at(int coordinate) const { return q[static_cast<std::size_t>(coordinate)]; }
+    [[nodiscard]] Real radius(int i) const { return Real(state_->packing.radius[static_cast<std::size_t>(i)]); }
+    [[nodiscard]] std::size_t wall(int axis) const {
+        return 2 * state_->packing.radius.size() + static_cast<std::size_t>(axis);
+    }
+    void find_dofs();
+    bool newton();
+    void find_forces();
+    void find_other_pairs();
+    void find_interval();
+    /// Contact gradient entries: visit(dof, value).
+    template <class Visit> void gradient(const Contact& c, Visit visit) const;
+
+    const State<2>* state_;
+    std::vector<int> dof_;        ///< per coordinate, or -1
+    std::vector<int> coordinate_; ///< per degree of freedom
+};
+
+template <class Visit> void Truth::gradient(const Contact& c, Visit visit) const {
+    const auto put = [&](std::size_t coordinate, const Real& value) {
+        if (dof_[coordinate] >= 0) {
+            visit(static_cast<std::size_t>(dof_[coordinate]), value);
+        }
+    };
+    const auto i = static_cast<std::size_t>(c.i);
+    const auto j = static_cast<std::size_t>(c.j);
+    switch (c.kind) {
+    case ContactKind::disk_disk: {
+        const Real dx = q[2 * j] - q[2 * i];
+        const Real dy = q[2 * j + 1] - q[2 * i + 1];
+        const Real d = sqrt(dx * dx + dy * dy);
+        put(2 * i, -dx / d);
+        put(2 * i + 1, -dy / d);
+        put(2 * j, dx / d);
+        put(2 * j + 1, dy / d);
+        break;
+    }
+    case ContactKind::lower_wall: put(2 * i + j, Real(1)); break;
+    case ContactKind::upper_wall:
+        put(2 * i + j, Real(-1));
+        put(wall(c.j), Real(1));
+        break;
+    case ContactKind::held: put(i, Real(1)); break;
+    }
+}
+
+inline Real Truth::gap(const Contact& c) const {
+    const auto i = static_cast<std::size_t>(c.i);
+    const auto j = static_cast<std::size_t>(c.j);
+    switch (c.kind) {
+    case ContactKind::disk_disk: {
+        const Real dx = q[2 * j] - q[2 * i];
+        const Real dy = q[2 * j + 1] - q[2 * i + 1];
+        return sqrt(dx * dx + dy * dy) - (radius(c.i) + radius(c.j));
+    }
+    case ContactKind::lower_wall: return q[2 * i + j] - radius(c.i);
+    case ContactKind::upper_wall: return q[wall(c.j)] - q[2 * i + j] - radius(c.i);
+    case ContactKind::held: break;
+    }
+    return q[i] - Real(state_->packing.q[i]);
+}
+
+inline void Truth::find_dofs() {
+    const auto& p = state_->packing;
+    for (std::size_t k = 0; k < p.q.size(); ++k) {
+        const std::size_t disk = k / 2;
+        const bool moves =
+            disk < p.radius.size() ? p.fixed.empty() || p.fixed[disk] == 0 : p.walls.upper[k % 2] == WallKind::movable;
+        dof_.push_back(moves ? static_cast<int>(coordinate_.size()) : -1);
+        if (moves) {
+            coordinate_.push_back(static_cast<int>(k));
+        }
+    }
+}
+
+inline Dense Truth::contact_matrix() const {
+    Dense h(coordinate_.size());
+    for (std::size_t l = 0; l < state_->contacts.size(); ++l) {
+        gradient(state_->contacts[l], [&](std::size_t dof, const Real& value) { h(dof, l) = -value; });
+    }
+    return h;
+}
+
+inline bool Truth::newton() {
+    const std::size_t n = coordinate_.size();
+    const Real unit = state_->packing.min_radius();
+    for (int iteration = 0; iteration < 14; ++iteration) {
+        Vector residual(n);
+        Real worst = 0;
+        Dense rows(n);
+        for (std::size_t l = 0; l < n; ++l) {
+            residual[l] = gap(state_->contacts[l]);
+            worst = std::max(worst, Real(abs(residual[l])));
+            gradient(state_->contacts[l], [&](std::size_t dof, const Real& value) { rows(l, dof) = value; });
+        }
+        if (worst < unit * pow(Real(10), -185)) {
+            return true;
+        }
+        if (!(worst < unit) || !rows.factorise()) {
+            why = "no Newton step";
+            return false;
+        }
+        const Vector step = rows.solve(residual);
+        for (std::size_t mu = 0; mu < n; ++mu) {
+            q[static_cast<std::size_t>(coordinate_[mu])] -= step[mu];
+        }
+    }
+    why = "Newton does not converge";
+    return false;
+}
+
+inline void Truth::find_forces() {
+    const auto& load = state_->load;
+    const std::size_t n = coordinate_.size();
+    Dense h = contact_matrix();
+    if (!h.factorise()) {
+        known = false;
+        why = "singular";
+        return;
+    }
+    Vector finite(n, Real(0)), unit(n, Real(0)), small(n, Real(0));
+    const auto add = [this](Vector& to, std::size_t coordinate, const Real& value) {
+        if (dof_[coordinate] >= 0) {
+            to[static_cast<std::size_t>(dof_[coordinate])] += value;
+        }
+    };
+    for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
+        add(finite, k, Real(load.disk_force[k]));
+    }
+    for (std::size_t k = 0; k < load.infinitesimal.size(); ++k) {
+        add(small, k, Real(load.infinitesimal[k]));
+    }
+    for (int a = 0; a < 2; ++a) {
+        const auto other = static_cast<std::size_t>(1 - a);
+        const Real length =
+            load.kind == isostat::LoadKind::nominal ? Real(load.reference_length[other]) : q[wall(1 - a)];
+        add(finite, wall(a), -Real(load.stress[static_cast<std::size_t>(a)]) * length);
+        if (a == load.loaded_axis) {
+            add(unit, wall(a), -length);
+        }
+    }
+    force = h.solve(finite);
+    rate = h.solve(unit);
+    infinitesimal = h.solve(small);
+    for (const Vector* x : {&finite, &force}) {
+        for (const Real& f : *x) {
+            force_scale = std::max(force_scale, Real(abs(f)));
+        }
+    }
+}
+
+inline void Truth::find_other_pairs() {
+    const auto& p = state_->packing;
+    const auto listed = [this](const Contact& c) {
+        return std::find(state_->contacts.begin(), state_->contacts.end(), c) != state_->contacts.end();
+    };
+    const auto add = [&](const Contact& c, bool can_move) {
+        if (!listed(c)) {
+            others.push_back({c, gap(c), can_move});
+        }
+    };
+    const auto moves = [&p](int i) { return p.fixed.empty() || p.fixed[static_cast<std::size_t>(i)] == 0; };
+    for (int i = 0; i < p.disk_count(); ++i) {
+        for (int j = i + 1; j < p.disk_count(); ++j) {
+            add({ContactKind::disk_disk, i, j}, moves(i) || moves(j));
+        }
+        for (int a = 0; a < 2; ++a) {
+            const auto axis = static_cast<std::size_t>(a);
+            if (p.walls.lower[axis] != WallKind::absent) {
+                add({ContactKind::lower_wall, i, a}, moves(i));
+            }
+            if (p.walls.upper[axis] != WallKind::absent) {
+                add({ContactKind::upper_wall, i, a}, moves(i) || p.walls.upper[axis] == WallKind::movable);
+            }
+        }
+    }
+    std::sort(others.begin(), others.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
+}
+
+inline int Truth::sign(std::size_t contact) const {
+    const int finite = sign_of(force[contact], force_scale);
+    return finite != 0 ? finite : sign_of(infinitesimal[contact], Real(1));
+}
+
+inline const OtherPair* Truth::nearest() const {
+    for (const OtherPair& other : others) {
+        if (other.can_move) {
+            return &other;
+        }
+    }
+    return nullptr;
+}
+
+inline int Truth::equilibrium() const {
+    bool all_positive = true;
+    for (std::size_t l = 0; l < force.size(); ++l) {
+        if (sign(l) < 0) {
+            return -1;
+        }
+        all_positive = all_positive && sign(l) > 0;
+    }
+    for (const OtherPair& other : others) {
+        const int s = sign_of(other.gap, Real(state_->packing.min_radius()));
+        if (s < 0) {
+            return -1;
+        }
+        all_positive = all_positive && (s > 0 || !other.can_move);
+    }
+    return all_positive ? 1 : 0;
+}
+
+inline void Truth::find_interval() {
+    const Real sigma = state_->load.stress[static_cast<std::size_t>(state_->load.loaded_axis)];
+    Real rates = 0;
+    for (const Real& r : rate) {
+        rates = std::max(rates, Real(abs(r)));
+    }
+    for (const int direction : {-1, 1}) {
+        End& end = direction < 0 ? low : high;
+        Real nearest_distance = 0;
+        for (std::size_t l = 0; l < force.size(); ++l) {
+            if (sign_of(rate[l] * direction, rates) >= 0) {
+                continue;
+            }
+            const Real distance = force[l] / abs(rate[l]);
+            const Real scale = abs(sigma) + abs(distance);
+            if (end.unbounded || distance < nearest_distance - negligible * scale) {
+                end.opens.clear();
+                nearest_distance = distance;
+            }
+            if (end.unbounded || distance <= nearest_distance + negligible * scale) {
+                end.opens.push_back(static_cast<int>(l));
+            }
+            end.unbounded = false;
+        }
+        end.stress = sigma + direction * nearest_distance;
+    }
+}
+
+inline Truth::Truth(const State<2>& state) : state_(&state) {
+    find_dofs();
+    for (const double x : state.packing.q) {
+        q.emplace_back(x);
+    }
+    if (coordinate_.size() != state.contacts.size() || coordinate_.empty()) {
+        why = "N is not N_f";
+        return;
+    }
+    known = newton();
+    if (known) {
+        find_forces();
+    }
+    if (!known) {
+        return;
+    }
+    for (std::size_t k = 0; k < q.size(); ++k) {
+        moved = std::max(moved, Real(abs(q[k] - Real(state.packing.q[k]))));
+    }
+    find_other_pairs();
+    find_interval();
+}
+
+} // namespace contradictions

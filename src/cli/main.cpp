@@ -281,9 +281,11 @@ struct Program {
             ->type_name("CERT.json|DIR");
         command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
             ->type_name("FILE");
-        add_common(command, a.common, false);
+        add_threads(command, a.common);
+        add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return verify(a); };
         });
     }
@@ -334,9 +336,11 @@ struct Program {
             ->check(CLI::NonNegativeNumber);
         command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
         command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
+        add_threads(command, a.common);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return genericity(a); };
         });
     }

@@ -1,6 +1,7 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
+#include <isostat/core/threads.hpp>
 #include <isostat/crafted/genericity.hpp>
 #include <isostat/preparation/preparation.hpp>
 
@@ -85,6 +86,33 @@ void fill(GenericitySample& sample, const State<2>& state, const Certification& 
     sample.rung = std::max({claims.vertex->rung, claims.forces->rung, claims.gaps->rung});
 }
 
+/// One sample, with the contacts of the unperturbed packing sorted.
+GenericitySample sampled(const Packing<2>& packing, const std::vector<Contact>& original,
+                         const GenericityOptions& options, std::uint64_t seed) {
+    GenericitySample sample;
+    sample.seed = seed;
+    Packing<2> start = packing;
+    start.radius = perturbed(packing.radius, options, seed);
+    PreparationOptions preparation;
+    preparation.seed = seed;
+    preparation.stress = options.stress;
+    PreparationReport<2> report;
+    const auto found = find_vertex<2>(start, preparation, report);
+    if (!found.ok() && !report.candidate) {
+        sample.failure = found.failure();
+        return sample;
+    }
+    const State<2>& state = found.ok() ? found.value() : *report.candidate;
+    fill(sample, state, certify(state));
+    if (!sample.failure) {
+        sample.within_original =
+            std::all_of(sample.carrying.begin(), sample.carrying.end(), [&](const Contact& contact) {
+                return std::binary_search(original.begin(), original.end(), contact);
+            });
+    }
+    return sample;
+}
+
 } // namespace
 
 Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& original,
@@ -94,29 +122,10 @@ Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& ori
     Genericity out;
     std::vector<Contact> sorted = original;
     std::sort(sorted.begin(), sorted.end());
-    for (int s = 0; s < options.samples; ++s) {
-        GenericitySample& sample = out.samples.emplace_back();
-        sample.seed = options.seed + static_cast<std::uint64_t>(s);
-        Packing<2> start = packing;
-        start.radius = perturbed(packing.radius, options, sample.seed);
-        PreparationOptions preparation;
-        preparation.seed = sample.seed;
-        preparation.stress = options.stress;
-        PreparationReport<2> report;
-        const auto found = find_vertex<2>(start, preparation, report);
-        if (found.ok() || report.candidate) {
-            const State<2>& state = found.ok() ? found.value() : *report.candidate;
-            const Certification certified = certify(state);
-            fill(sample, state, certified);
-            if (!sample.failure) {
-                sample.within_original =
-                    std::all_of(sample.carrying.begin(), sample.carrying.end(), [&](const Contact& contact) {
-                        return std::binary_search(sorted.begin(), sorted.end(), contact);
-                    });
-            }
-        } else {
-            sample.failure = found.failure();
-        }
+    out.samples.resize(static_cast<std::size_t>(options.samples));
+    parallel_pieces(out.samples.size(),
+                    [&](std::size_t s) { out.samples[s] = sampled(packing, sorted, options, options.seed + s); });
+    for (const GenericitySample& sample : out.samples) {
         if (sample.failure) {
             ++(sample.failure->kind == FailureKind::tie         ? out.ties
                : sample.failure->kind == FailureKind::undecided ? out.undecided

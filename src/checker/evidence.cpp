@@ -69,19 +69,20 @@ Evidence::Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool h
     }
 }
 
-const std::vector<Range>& Evidence::kept(std::optional<std::vector<Range>>& place, const Forces& load) const {
-    if (!place) {
-        place = vertex.found ? contact_forces(problem, *solver, inverse, vertex, load) : std::vector<Range>();
-    }
-    return *place;
-}
-
 const std::vector<Range>& Evidence::slopes() const {
-    return kept(slopes_, unit_load);
+    if (!slopes_) {
+        slopes_ = vertex.found ? contact_forces(problem, *solver, inverse, vertex, unit_load) : std::vector<Range>();
+    }
+    return *slopes_;
 }
 
 const std::vector<Range>& Evidence::infinitesimal() const {
-    return kept(infinitesimal_, infinitesimal_load(problem, state));
+    if (!infinitesimal_) {
+        infinitesimal_ = vertex.found
+                             ? contact_forces(problem, *solver, inverse, vertex, infinitesimal_load(problem, state))
+                             : std::vector<Range>();
+    }
+    return *infinitesimal_;
 }
 
 std::string Evidence::why_no_inverse() const {

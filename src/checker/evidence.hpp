@@ -38,7 +38,6 @@ struct Evidence {
     [[nodiscard]] std::string why_no_vertex() const;
 
   private:
-    const std::vector<Range>& kept(std::optional<std::vector<Range>>& place, const Forces& load) const;
     mutable std::optional<std::vector<Range>> slopes_;
     mutable std::optional<std::vector<Range>> infinitesimal_;
 };

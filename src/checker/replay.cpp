@@ -46,6 +46,13 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
 
 } // namespace
 
+const std::vector<Gap>& Place::gaps() const {
+    if (!gaps_) {
+        gaps_ = smallest_gaps(evidence->problem, *state, evidence->vertex);
+    }
+    return *gaps_;
+}
+
 Range Place::coordinate(std::size_t k) const {
     const bool moves = evidence->problem.dof_of[k] >= 0;
     return Range::around(evidence->problem.length(evidence->vertex.middle[k]),
@@ -92,7 +99,7 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
             }
         }
         std::erase_if(place.zeros, [&](int l) { return contains(place.ties, static_cast<std::size_t>(l)); });
-        for (const Gap& gap : smallest_gaps(e.problem, *place.state, e.vertex)) {
+        for (const Gap& gap : place.gaps()) {
             if (gap.value.has_zero()) {
                 place.touching.push_back({gap.pair, place.first->gap(gap.pair)});
             }

@@ -50,8 +50,13 @@ struct Place {
     [[nodiscard]] double stress() const {
         return state->load.stress[static_cast<std::size_t>(state->load.loaded_axis)];
     }
+    /// The nearest pairs (K9); swept for when first asked for, by one thread.
+    [[nodiscard]] const std::vector<Gap>& gaps() const;
     [[nodiscard]] Range coordinate(std::size_t k) const;
     [[nodiscard]] Range length(int axis) const;
+
+  private:
+    mutable std::optional<std::vector<Gap>> gaps_;
 };
 
 /// The vertex near a configuration; an objection when none is proved there, or a force is neither told from 0 nor a

@@ -72,7 +72,7 @@ int rattlers(const Place& place) {
 }
 
 Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
-    const std::vector<Gap> near = smallest_gaps(place.evidence->problem, *place.state, place.evidence->vertex);
+    const std::vector<Gap>& near = place.gaps();
     const auto pair = contact_of_columns(line.at("min_gap_i"), line.at("min_gap_j"), place.state->packing);
     const bool none = !pair && line.at("min_gap_i") == line.at("min_gap_j");
     if (none && std::isinf(line.at("min_gap"))) {
@@ -158,7 +158,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     if (Objections wrong = compare("eps2", event.strain, strain, strain_size)) {
         return wrong;
     }
-    for (const Gap& gap : smallest_gaps(to.evidence->problem, *to.state, to.evidence->vertex)) {
+    for (const Gap& gap : to.gaps()) {
         if (gap.value.has_zero() && to.first) {
             const Range first = to.first->gap(gap.pair);
             if (!first.positive()) {

@@ -1,4 +1,4 @@
-#include "checker/follow.hpp"
+#include "checker/foresight.hpp"
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"
 #include "checker/way.hpp"
@@ -19,12 +19,13 @@ using namespace checker;
 class Replay {
   public:
     Replay(const RunRecords& records, RunVerification& result)
-        : records_(records), result_(result), witnesses_(records.directory / witness_records) {
+        : records_(records), result_(result), witnesses_(records.directory / witness_records), foresight_(records) {
         result.arcs = static_cast<int>(records.events.size());
         result.equilibria = static_cast<int>(records.equilibria.size());
     }
 
-    void run(const std::function<void(int)>& progress) {
+    void run(const std::function<void(const VerificationProgress&)>& progress) {
+        progress_ = progress;
         for (std::size_t k = 0; k < records_.equilibria.size(); ++k) {
             const EquilibriumLine& line = records_.equilibria[k];
             if (!expect(line.integer("number") == static_cast<int>(k), line.where,
@@ -35,9 +36,7 @@ class Replay {
             if (stopped()) {
                 return;
             }
-            if (progress) {
-                progress(static_cast<int>(k));
-            }
+            report(static_cast<int>(k), static_cast<int>(k) + 1, true);
         }
         if (event_ < records_.events.size()) {
             leave(records_.events[event_].where, "arcs after the last equilibrium are not checked");
@@ -55,6 +54,16 @@ class Replay {
     }
     void leave(const std::string& where, const std::string& why) { result_.undecided.push_back(where + ": " + why); }
 
+    void report(int equilibrium, int equilibria, bool closed) {
+        if (progress_) {
+            progress_({equilibrium, closed, arcs_here_, arcs_before_ + arcs_here_, result_.arcs, equilibria,
+                       result_.equilibria, static_cast<int>(result_.undecided.size())});
+        }
+        if (closed) {
+            arcs_before_ += std::exchange(arcs_here_, 0);
+        }
+    }
+
     /// True: proved. False: left undecided and noted, or wrong and stopped.
     bool judged(const Objections& objection, const std::string& where) {
         if (objection && !objection->wrong) {
@@ -67,6 +76,7 @@ class Replay {
     void go_to(State<2> state, const std::string& where, const ExactLoad& load) {
         Place place;
         here_ = {};
+        foresight_.forget();
         if (judged(make_place(std::move(state), place, load), where)) {
             here_ = std::move(place);
         }
@@ -126,6 +136,8 @@ class Replay {
             if (here_.state && !stopped() && !arc(*event)) {
                 here_ = {};
             }
+            ++arcs_here_;
+            report(line.integer("number"), line.integer("number"), false);
         }
         if (here_.state && events.empty() && !stopped()) {
             reload(line);
@@ -138,8 +150,13 @@ class Replay {
         }
     }
 
+    [[nodiscard]] std::size_t index_of(const EventRecord& event) const {
+        return static_cast<std::size_t>(&event - records_.events.data());
+    }
+
     /// One arc from `here_`, which becomes its end. False: undecided, or wrong.
     bool arc(const EventRecord& event) {
+        foresight_.look_ahead(here_, index_of(event));
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
         const std::vector<Contact>& contacts = here_.state->contacts;
@@ -177,67 +194,49 @@ class Replay {
             return false;
         }
         const int fresh = event.power_turn ? static_cast<int>(position) : -1;
-        State<2> state = *here_.state;
-        std::shared_ptr<const Solver> factors;
         Place next;
-        bool proved = false;
+        bool proved = false; // the way, and with it the end
         const bool stays =
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
         if (!stays && records_.certified_arcs) {
             const std::optional<Witness> witness = witnesses_.of(event.step);
-            Objections open = Objection{false, "the way is not proved: there is no witness"};
+            Objections missing = Objection{false, "the way is not proved: there is no witness"};
             if (witness) {
                 const Way way{position, direction, rattles, event.kind == "limit", event.stress, *witness};
-                open = end_of(here_, *closed, way, state);
-                open = open ? open : make_place(state, next, load, fresh);
-                open = open ? open : prove_way(here_, next, way);
+                State<2> state = *here_.state;
+                missing = end_of(here_, *closed, way, state);
+                missing = missing ? missing : make_place(state, next, load, fresh);
+                missing = missing ? missing : prove_way(here_, next, way);
             }
-            proved = !open;
-            if (open) {
-                leave(event.where, open->text);
-                state = *here_.state;
+            proved = !missing;
+            if (missing) {
+                leave(event.where, missing->text);
+                next = Place();
             }
+            foresight_.forget();
         }
-        if (!stays && !proved) {
-            Motion motion;
-            motion.opened = position;
-            motion.direction = direction;
-            motion.closed = *closed;
-            motion.held_at = event.held_at.value_or(0);
-            motion.displacement = event.displacement;
-            motion.solver = evidence.solver;
-            Load<2> under = here_.state->load;
-            under.stress[static_cast<std::size_t>(under.loaded_axis)] = event.stress;
-            motion.power_load = [&, at = here_.state->packing](const std::vector<double>& q) mutable {
-                at.q = q;
-                std::vector<double> pushing = rattles ? under.infinitesimal : under.external_force(at);
-                pushing.resize(q.size(), 0.0);
-                return pushing;
-            };
-            for (const Gap& gap : here_.touching) {
-                motion.touching.push_back(gap.pair);
+        Objections open;
+        if (stays) {
+            State<2> state = *here_.state;
+            state.contacts[position] = *closed;
+            state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
+            open = make_place(std::move(state), next, load, fresh);
+        } else if (!proved) {
+            Arrival arrival = foresight_.arrive(here_, index_of(event), {position, direction, rattles}, load);
+            if (!arrival.followed.wrong.empty()) {
+                return judged(Objection{false, arrival.followed.wrong + ", as far as steps in double tell"},
+                              event.where);
             }
-            Followed followed = follow(*here_.state, motion);
-            if (!followed.end) {
-                motion.step /= 16;
-                followed = follow(*here_.state, motion);
-            }
-            if (!followed.wrong.empty()) {
-                return judged(Objection{false, followed.wrong + ", as far as steps in double tell"}, event.where);
-            }
-            if (!followed.end) {
+            if (!arrival.followed.end) {
                 return judged(
                     Objection{false, fmt::format("the motion that opens {} was not found to {} {}", event.opened,
                                                  event.power_turn ? "turn with" : "close", event.closed)},
                     event.where);
             }
-            state.packing.q = *followed.end;
-            factors = followed.solver;
+            open = std::move(arrival.open);
+            next = std::move(arrival.place);
         }
-        state.contacts[position] = *closed;
-        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
-        if ((!proved && !judged(make_place(std::move(state), next, load, fresh, std::move(factors)), event.where)) ||
-            !judged(check_end(here_, next, event, rattles), event.where) ||
+        if (!judged(open, event.where) || !judged(check_end(here_, next, event, rattles), event.where) ||
             (event.power_turn && !judged(check_turn(next, event, rattles), event.where)) ||
             (next.first && !judged(check_ties(here_, next, event, position, direction), event.where)) ||
             !expect(next.first != nullptr || event.ties.empty(), event.where,
@@ -309,6 +308,10 @@ class Replay {
     const RunRecords& records_;
     RunVerification& result_;
     Witnesses witnesses_;
+    std::function<void(const VerificationProgress&)> progress_;
+    int arcs_before_ = 0; ///< of the equilibria that are done
+    int arcs_here_ = 0;
+    Foresight foresight_;
     Place here_; ///< empty: lost
     int here_number_ = -1;
     std::size_t event_ = 0;
@@ -318,7 +321,8 @@ class Replay {
 
 } // namespace
 
-RunVerification verify_run(const std::filesystem::path& directory, const std::function<void(int)>& progress) {
+RunVerification verify_run(const std::filesystem::path& directory,
+                           const std::function<void(const VerificationProgress&)>& progress) {
     require_floating_point();
     RunVerification result;
     if (is_running(directory)) {

@@ -10,6 +10,10 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
 namespace isostat::cli {
 
 namespace {
@@ -52,13 +56,45 @@ Json json_of(const ClaimCheck& check) {
     return object;
 }
 
+/// One row per equilibrium, as `run` prints them, and a line for the arcs on the way.
+class VerifyTable {
+  public:
+    explicit VerifyTable(bool quiet) : quiet_(quiet), line_(quiet) {}
+    void show(const VerificationProgress& at) {
+        if (quiet_) {
+            return;
+        }
+        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+        const int done = at.arcs + at.equilibria;
+        const double rest = done == 0 ? NAN : elapsed / done * (at.all_arcs + at.all_equilibria - done);
+        if (!at.closed) {
+            line_.show(fmt::format("equilibrium {} of {}: arc {} of {}, {} left", at.equilibrium, at.all_equilibria - 1,
+                                   at.arcs, at.all_arcs, clock_text(rest)));
+            return;
+        }
+        line_.clear();
+        if (at.equilibria == 1) {
+            fmt::print("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", "equil", "arcs", "all arcs", "undecided", "elapsed",
+                       "rest");
+        }
+        fmt::print("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", at.equilibrium, at.arcs_here,
+                   fmt::format("{}/{}", at.arcs, at.all_arcs), at.undecided, clock_text(elapsed), clock_text(rest));
+        std::fflush(stdout);
+    }
+    void end() { line_.clear(); }
+
+  private:
+    bool quiet_;
+    StatusLine line_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
 /// A finished run from its records alone.
 int verify_folder(const VerifyArguments& arguments) {
-    StatusLine line(arguments.common.json);
-    const RunVerification run = verify_run(arguments.certificate, [&line](int equilibrium) {
-        line.show(fmt::format("verify: equilibrium {}", equilibrium));
-    });
-    line.clear();
+    VerifyTable table(arguments.common.json || arguments.common.quiet);
+    const RunVerification run =
+        verify_run(arguments.certificate, [&table](const VerificationProgress& at) { table.show(at); });
+    table.end();
     if (arguments.common.json) {
         Json object;
         object["folder"] = arguments.certificate;

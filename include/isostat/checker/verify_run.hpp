@@ -31,14 +31,27 @@ struct RunVerification {
     int equilibria_proved = 0; ///< all forces, gaps, ends of the load interval and the rank proved to be as recorded
 };
 
+/// How far a verification is.
+struct VerificationProgress {
+    int equilibrium = 0;        ///< the number of the row that is being replayed, or was
+    bool closed = false;        ///< its row was checked; false: an arc towards it was
+    int arcs_here = 0;          ///< towards it, so far
+    int arcs = 0, all_arcs = 0; ///< gone through, and of the run
+    int equilibria = 0, all_equilibria = 0;
+    int undecided = 0; ///< remarks so far
+};
+
 /// First whether the run is finished and its records undamaged (checkpoint.json, states/last.json, summary.json). Then
 /// replays events.jsonl and equilibria.csv from states/eq_000000.json. An arc that cannot be followed (a
 /// Newton iteration that goes elsewhere, a record of an older version that does not say where a coordinate is held) is
 /// undecided, and the replay goes on at the next stored state
-/// (`states_every = 1` stores all). `progress` is called after each record with the number of the equilibrium. Throws
-/// `Error(bad_input)` when a file is missing, cannot be read, or has unknown or missing columns. Cost: one certificate
-/// check per arc.
-RunVerification verify_run(const std::filesystem::path& directory, const std::function<void(int)>& progress = {});
+/// (`states_every = 1` stores all). `progress` is called after each arc and each row, by the calling thread. Uses the
+/// threads of `set_threads`: the next arcs are followed while the ends of others are proved; the result is the same for
+/// any number of them. Throws `Error(bad_input)` when a file is missing, cannot be read, or has unknown or missing
+/// columns. Cost: per arc two sparse factorisations, the exact residual of one of them, and some dozens of back
+/// substitutions; where a vertex is badly conditioned, a certificate check.
+RunVerification verify_run(const std::filesystem::path& directory,
+                           const std::function<void(const VerificationProgress&)>& progress = {});
 
 /// The answer in words: "refuted", "undecided", "not finished"; "proved" when the way of every arc is proved too, else
 /// "ends proved, way looked at".

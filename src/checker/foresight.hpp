@@ -1,0 +1,68 @@
+#pragma once
+/// \file
+/// The ends of arcs, followed in double and then proved. With several threads the next arcs are followed before their
+/// turn, and other threads prove their ends.
+
+#include "checker/follow.hpp"
+#include "checker/replay.hpp"
+
+#include <isostat/core/threads.hpp>
+
+#include <deque>
+
+namespace isostat::checker {
+
+/// How an arc leaves a vertex.
+struct Opening {
+    std::size_t contact = 0; ///< position in the contact list
+    int direction = +1;      ///< -1: a held coordinate that falls
+    bool rattles = false;    ///< under the infinitesimal loads
+    bool operator==(const Opening&) const = default;
+};
+
+/// Where an arc leads to.
+struct Arrival {
+    Followed followed;
+    Objections open; ///< to the vertex there; with followed.end only
+    Place place;
+};
+
+class Foresight {
+  public:
+    /// The records must outlive it.
+    explicit Foresight(const RunRecords& records) : records_(records) {}
+
+    /// Follows arcs that come after a vertex, `event` the first of them, as if every record were right. What is wrong
+    /// or unusual is left to its turn.
+    void look_ahead(const Place& from, std::size_t event);
+    /// The arc of a record. What was foreseen is taken if it began in the same way and from the same vertex.
+    Arrival arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
+    /// The replay goes on elsewhere.
+    void forget() { ahead_.clear(); }
+
+  private:
+    struct Proved {
+        Objections open;
+        Place place;
+    };
+    struct Arc {
+        std::size_t event = 0;
+        Opening opening;
+        Followed followed;
+        State<2> end;
+        Promised<Proved> proof;
+    };
+    struct Start {
+        const State<2>& state;
+        std::shared_ptr<const Solver> solver;
+        std::vector<Contact> touching{};
+        ExactLoad load{};
+    };
+    [[nodiscard]] Arc arc_of(const Start& from, std::size_t event, const Opening& opening) const;
+    [[nodiscard]] bool in_order(std::size_t event) const;
+
+    const RunRecords& records_;
+    std::deque<Arc> ahead_;
+};
+
+} // namespace isostat::checker

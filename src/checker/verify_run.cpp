@@ -156,7 +156,9 @@ class Replay {
 
     /// One arc from `here_`, which becomes its end. False: undecided, or wrong.
     bool arc(const EventRecord& event) {
-        foresight_.look_ahead(here_, index_of(event));
+        if (!records_.certified_arcs) { // arcs with a witness are proved from it
+            foresight_.look_ahead(here_, index_of(event));
+        }
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
         const std::vector<Contact>& contacts = here_.state->contacts;
@@ -213,7 +215,6 @@ class Replay {
                 leave(event.where, missing->text);
                 next = Place();
             }
-            foresight_.forget();
         }
         Objections open;
         if (stays) {

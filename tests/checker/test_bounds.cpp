@@ -1,5 +1,6 @@
 // The bounds of the inverse against a dense inverse in long double: never below it, and not much above.
 #include "checker/dense.hpp"
+#include "checker/first_order.hpp"
 #include "checker/forces.hpp"
 #include "checker/gaps.hpp"
 #include "checker/inverse.hpp"
@@ -107,6 +108,40 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
             const checker::Rational middle = (enclosed[l].lower + enclosed[l].upper) / 2;
             const checker::Rational way = abs(there[l].lower - middle) / (enclosed[l].upper - middle);
             farthest = std::max(farthest, way);
+        }
+    }
+    BOOST_TEST(farthest.get_d() > 0.01);
+}
+
+// The same for motions (K12).
+BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
+    namespace checker = isostat::checker;
+    const State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
+    checker::Evidence wide(state, CheckerArithmetic::fixed64);
+    checker::Evidence point(state, CheckerArithmetic::fixed64);
+    BOOST_REQUIRE(wide.vertex.found);
+    const checker::Rational radius = checker::power_of_two(-12);
+    wide.vertex.radius = radius;
+    wide.vertex.moved_most += radius;
+    wide.vertex.row_residual += checker::row_curvature * wide.inverse.quadratic_sum * radius;
+    const std::vector<checker::Integer> middle = point.vertex.middle;
+    checker::Rational farthest = 0; // of the way to an end
+    std::mt19937_64 random(2);
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const checker::Velocities::Solution enclosed = checker::Velocities(wide).opening(l, 1);
+        for (int sample = 0; sample < 20; ++sample) {
+            for (const int k : point.problem.coordinate_of) {
+                const auto c = static_cast<std::size_t>(k);
+                const int sign = random() % 2 == 0 ? 1 : -1;
+                point.vertex.middle[c] = middle[c] + sign * checker::floor_of(radius, -point.problem.fine);
+            }
+            point.vertex.row_residual = wide.vertex.row_residual;
+            const checker::Velocities::Solution there = checker::Velocities(point).opening(l, 1);
+            for (std::size_t c = 0; c < middle.size(); ++c) {
+                const checker::Rational way = abs(there.middle[c] - enclosed.middle[c]) + there.radius;
+                BOOST_REQUIRE((way <= enclosed.radius));
+                farthest = std::max<checker::Rational>(farthest, way / enclosed.radius);
+            }
         }
     }
     BOOST_TEST(farthest.get_d() > 0.01);

@@ -8,6 +8,7 @@
 
 #include <isostat/checker/verify_run.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/core/threads.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -74,6 +75,20 @@ Alteration scaled(const std::string& events, int line, const std::string& name, 
     return {"events.jsonl", line, "\"" + name + "\":" + old, "\"" + name + "\":" + changed.str(), ""};
 }
 
+/// The answer of one thread, and of more.
+void same_with_threads(const std::filesystem::path& folder, const RunVerification& one) {
+    set_threads(3);
+    const RunVerification three = verify_run(folder);
+    set_threads(1);
+    BOOST_TEST((three.verdict == one.verdict));
+    BOOST_TEST(three.wrong == one.wrong);
+    BOOST_TEST(three.undecided == one.undecided, boost::test_tools::per_element());
+    BOOST_TEST(three.arcs_proved == one.arcs_proved);
+    BOOST_TEST(three.equilibria_proved == one.equilibria_proved);
+    BOOST_TEST(three.turns_checked == one.turns_checked);
+    BOOST_TEST(three.ties_checked == one.ties_checked);
+}
+
 void finds(const std::filesystem::path& folder, const Alteration& alteration) {
     BOOST_TEST_CONTEXT(alteration.file << ":" << alteration.line << " " << alteration.from << " -> " << alteration.to) {
         const std::string original = scratch::read(folder / alteration.file);
@@ -83,6 +98,7 @@ void finds(const std::filesystem::path& folder, const Alteration& alteration) {
         scratch::write(folder / alteration.file, scratch::replaced(original, line, changed));
         forger::seal(folder);
         const RunVerification run = verify_run(folder);
+        same_with_threads(folder, run);
         BOOST_TEST((run.verdict == Verdict::refuted));
         BOOST_TEST((run.wrong.find(alteration.said) != std::string::npos), run.wrong);
         if (alteration.file == "events.jsonl") {
@@ -110,6 +126,26 @@ Alteration in_row(const std::string& csv, int line, const std::string& column, c
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
+    const scratch::Folder folder;
+    Segment up;
+    up.equilibria = 2;
+    play(read_state<2>(scratch::data("vertex100.txt")).state, {up}, folder / "run");
+    int arcs = 0;
+    int equilibria = 0;
+    VerificationProgress last;
+    const RunVerification run = verify_run(folder / "run", [&](const VerificationProgress& at) {
+        (at.closed ? equilibria : arcs) += 1;
+        BOOST_TEST(at.arcs == arcs);
+        BOOST_TEST(at.equilibria == equilibria);
+        last = at;
+    });
+    BOOST_TEST(equilibria == run.equilibria);
+    BOOST_TEST(arcs == run.arcs);
+    BOOST_TEST(last.all_arcs == run.arcs);
+    BOOST_TEST(last.all_equilibria == run.equilibria);
+}
 
 // Case 2: bottom of disk 1 opens at F2/F1 = t, disk 1 rolls over disk 0.
 BOOST_AUTO_TEST_CASE(the_rolling_disk_is_replayed) {
@@ -161,7 +197,7 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_strut_that_a_grain_without_force_hangs_on_is_r
 
 // Many power turns, and at many of them grains whose forces are but the rounding of the turn: the weakest traction is
 // never one of theirs.
-BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete) {
+BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete, *boost::unit_test::label("threads")) {
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 4;
@@ -171,6 +207,7 @@ BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete)
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
     BOOST_TEST((run.verdict == Verdict::proved));
     BOOST_TEST(run.turns_checked > 20);
+    same_with_threads(folder / "run", run); // coordinates let go in either direction too
 }
 
 // Under true stresses the power can turn and come back within one step of an arc (0, 1.2e-3, 7e-5, -1.3e-3, 2e-4, 9e-3

@@ -82,6 +82,7 @@ std::string event_line(const ArcRecord<2>& arc) {
     }
     line["sigma2"] = json::or_null(arc.stress);
     line["eps2"] = json::or_null(arc.strain);
+    line["eps2_bound"] = json::or_null(arc.strain_bound);
     line["force"] = json::or_null(arc.force);
     line["power"] = json::or_null(arc.power);
     line["work"] = json::or_null(arc.work);
@@ -160,7 +161,15 @@ const std::vector<std::string>& equilibria_columns() {
                                                   "decided_by",
                                                   "proved",
                                                   "certified",
-                                                  "seconds"};
+                                                  "seconds",
+                                                  "eps1_bound",
+                                                  "eps2_bound",
+                                                  "L1_bound",
+                                                  "L2_bound",
+                                                  "sigma2_low_bound",
+                                                  "sigma2_high_bound",
+                                                  "potential_bound",
+                                                  "min_gap_bound"};
     return columns;
 }
 
@@ -184,8 +193,11 @@ std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& 
     row += fmt::format(",{},{},{},{},{}", record.force_bound, record.sigma_min_bound, record.balance,
                        record.virtual_power, record.gap_residual);
     const int certified = !record.certified ? -1 : *record.certified == Verdict::proved ? 1 : 0;
-    row += fmt::format(",{},{},{},{},{:.3f}\n", record.margin, static_cast<int>(record.decided_by),
+    row += fmt::format(",{},{},{},{},{:.3f}", record.margin, static_cast<int>(record.decided_by),
                        record.verdict == Verdict::proved ? 1 : 0, certified, record.seconds);
+    row += fmt::format(",{},{},{},{},{},{},{},{}\n", record.strain_bound[other], record.strain_bound[loaded],
+                       record.length_bound[other], record.length_bound[loaded], record.stress_low_bound,
+                       record.stress_high_bound, record.potential_bound, record.min_gap_bound);
     return row;
 }
 

@@ -170,6 +170,9 @@ void RunDirectory::open_for_resume(bool begun) {
     point.counters = counters_from(file.at("counters"));
     StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path);
     point.state = state.state;
+    for (std::size_t a = 0; a < 2; ++a) {
+        last_strain_.push_back(file.at("strain").at(a).number());
+    }
     segment_ = point.segment;
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);
@@ -238,6 +241,7 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     last_.provenance = provenance_;
     last_forces_ = forces;
     last_record_ = record;
+    last_strain_ = record.strain;
     const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
     const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
     if (first || every || kept || segment_done()) {
@@ -282,6 +286,7 @@ void RunDirectory::write_checkpoint() {
     object["version"] = 1;
     object["segment"] = pending_->segment;
     object["made"] = pending_->made;
+    object["strain"] = last_strain_;
     object["segment_done"] = pending_->segment_done;
     object["counters"] = counters_json(pending_->counters);
     object["bytes"] = {{"events.jsonl", pending_->events_bytes}, {"equilibria.csv", pending_->equilibria_bytes}};
@@ -326,14 +331,10 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     object["counters"] = counters_json(counters_);
     if (!last_.packing.radius.empty()) {
         const auto loaded = static_cast<std::size_t>(last_.load.loaded_axis);
-        const auto strain = [&](std::size_t axis) {
-            const double reference = last_.load.reference_length[axis];
-            return (reference - last_.packing.length(static_cast<int>(axis))) / reference;
-        };
         object["disks"] = last_.packing.disk_count();
         object["ratio"] = json::or_null(last_.load.stress[loaded] / last_.load.stress[1 - loaded]);
-        object["eps1"] = json::or_null(strain(1 - loaded));
-        object["eps2"] = json::or_null(strain(loaded));
+        object["eps1"] = json::or_null(last_strain_[1 - loaded]);
+        object["eps2"] = json::or_null(last_strain_[loaded]);
         object["solid_fraction"] = json::or_null(last_.packing.solid_fraction());
     }
     summary_ = json::dumped(object, 2) + "\n";

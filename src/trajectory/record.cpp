@@ -1,6 +1,7 @@
 #include "trajectory/record.hpp"
 
 #include <fmt/format.h>
+#include <qd/dd_real.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,6 +43,81 @@ template <int Dim> double virtual_power_error(const Vertex<Dim>& vertex, double 
     return size > 0 ? std::abs(inner - outer) / size : std::abs(inner);
 }
 
+/// Relative error of a few operations in double-double, several times what it is.
+constexpr double dd_rounding = 0x1p-96;
+constexpr double above = 1 + 0x1p-40; ///< covers the rounding of a bound
+
+/// As near to the true vertex as is known.
+template <int Dim> VertexEnclosure at_true_vertex(const Vertex<Dim>& vertex) {
+    VertexEnclosure at = vertex.enclosure;
+    if (at.correction.empty() && !at.step.empty() && at.step_radius < at.radius) {
+        at.correction.assign(vertex.packing.q.size(), 0.0);
+        for (std::size_t mu = 0; mu < at.step.size(); ++mu) {
+            const int coordinate = vertex.structure.dofs().coordinate_of(static_cast<int>(mu));
+            at.correction[static_cast<std::size_t>(coordinate)] = at.step[mu];
+        }
+        at.radius = at.step_radius;
+    }
+    return at;
+}
+
+/// What is left out when `value` is shown as one double is part of the bound.
+Enclosure shown(const dd_real& value, double error) {
+    return {value.x[0], (error + std::abs(value.x[1])) * above};
+}
+
+/// Coordinates of a true vertex in double-double.
+template <int Dim> struct TrueCoordinates {
+    const Vertex<Dim>& vertex;
+    const VertexEnclosure& at;
+
+    [[nodiscard]] dd_real operator[](std::size_t k) const {
+        return dd_real(vertex.packing.q[k]) + (at.correction.empty() ? 0.0 : at.correction[k]);
+    }
+    [[nodiscard]] double error(std::size_t k) const {
+        const bool moves = vertex.structure.dofs().dof_of(k) >= 0;
+        return (moves ? at.radius : 0) + dd_rounding * std::abs(vertex.packing.q[k]);
+    }
+};
+
+template <int Dim> Enclosure length_of(const TrueCoordinates<Dim>& q, std::size_t axis) {
+    const std::size_t k = Dim * q.vertex.packing.radius.size() + axis;
+    return shown(q[k], q.error(k));
+}
+
+template <int Dim> Enclosure strain_of(const TrueCoordinates<Dim>& q, const Load<Dim>& load, std::size_t axis) {
+    const std::size_t k = Dim * q.vertex.packing.radius.size() + axis;
+    const double reference = load.reference_length[axis];
+    if (!(reference > 0)) {
+        return {0, 0};
+    }
+    const double rounding = dd_rounding * (std::abs(q.vertex.packing.q[k]) + reference);
+    return shown((reference - q[k]) / reference, (q.error(k) + rounding) / reference);
+}
+
+/// Of dead loads; true stresses have none: an infinite bound.
+template <int Dim>
+void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>& q, const Load<Dim>& load) {
+    dd_real sum = 0.0;
+    double error = load.kind == LoadKind::nominal ? 0 : std::numeric_limits<double>::infinity();
+    const auto add = [&](const dd_real& force, std::size_t k) {
+        const dd_real term = force * q[k];
+        sum -= term;
+        error += std::abs(force.x[0]) * q.error(k) * above + dd_rounding * (std::abs(term.x[0]) + std::abs(sum.x[0]));
+    };
+    for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
+        if (load.disk_force[k] != 0) {
+            add(load.disk_force[k], k);
+        }
+    }
+    for (const WallForce& wall : load.wall_forces(q.vertex.packing)) {
+        add(-dd_real::mul(wall.stress, wall.length), static_cast<std::size_t>(wall.coordinate));
+    }
+    const Enclosure potential = shown(sum, error * above);
+    record.potential = potential.value;
+    record.potential_bound = potential.radius;
+}
+
 } // namespace
 
 template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex) {
@@ -81,12 +157,17 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     const double sigma = loaded_stress(load);
     record.stress = sigma;
     record.sigma1 = load.stress[load.loaded_axis == 0 && Dim > 1 ? 1 : 0];
-    for (int a = 0; a < Dim; ++a) {
-        const double reference = load.reference_length[static_cast<std::size_t>(a)];
-        record.length.push_back(vertex.packing.length(a));
-        record.strain.push_back(reference > 0 ? (reference - vertex.packing.length(a)) / reference : 0.0);
+    description.vertex = at_true_vertex(vertex);
+    const TrueCoordinates<Dim> q{vertex, description.vertex};
+    for (std::size_t a = 0; a < Dim; ++a) {
+        const Enclosure length = length_of(q, a);
+        const Enclosure strain = strain_of(q, load, a);
+        record.length.push_back(length.value);
+        record.length_bound.push_back(length.radius);
+        record.strain.push_back(strain.value);
+        record.strain_bound.push_back(strain.radius);
     }
-    record.potential = potential(vertex.packing, load);
+    record_potential(record, q, load);
     const auto& contacts = vertex.structure.contacts();
     record.dof_count = vertex.structure.size();
     record.contact_count = static_cast<int>(contacts.size());
@@ -117,6 +198,7 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
         const LoadLimit& end = limit.value();
         const Contact none{ContactKind::disk_disk, -1, -1};
         (direction > 0 ? record.stress_high : record.stress_low) = end.stress;
+        (direction > 0 ? record.stress_high_bound : record.stress_low_bound) = end.unbounded ? 0 : end.stress_error;
         (direction > 0 ? record.opens_high : record.opens_low) = end.unbounded ? none : contacts[end.opens.index()];
         record.margin = std::min(record.margin, end.margin);
         record.decided_by = std::max(record.decided_by, end.rung);
@@ -141,6 +223,24 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     return description;
 }
 
+template <int Dim>
+void record_smallest_gap(Description<Dim>& description, const Packing<Dim>& packing, const Contact& where,
+                         double about) {
+    EquilibriumRecord<Dim>& record = description.record;
+    const bool known = about > 0 && std::isfinite(about); // else a tie, or no pair at all
+    const Enclosure gap = known ? gap_at_vertex(packing, description.vertex, where) : Enclosure{about, 0};
+    record.min_gap = gap.value;
+    record.min_gap_bound = gap.radius;
+    record.min_gap_contact = where;
+}
+
+template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load) {
+    const VertexEnclosure at = at_true_vertex(end);
+    const Enclosure strain = strain_of(TrueCoordinates<Dim>{end, at}, load, static_cast<std::size_t>(load.loaded_axis));
+    record.strain = strain.value;
+    record.strain_bound = strain.radius;
+}
+
 template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path) {
     record.closed = path.closed;
     record.power_turn = path.kind == ArcEnd::power_turn;
@@ -150,6 +250,8 @@ template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path
     record.steps = path.steps;
 }
 
+template void record_smallest_gap<2>(Description<2>&, const Packing<2>&, const Contact&, double);
+template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
 template std::vector<int> rattlers<2>(const Vertex<2>&);

@@ -661,8 +661,7 @@ std::optional<typename Run<Dim>::ProvedArc> Run<Dim>::prove_arc(const Vertex<Dim
     if (unproved || (record.power_turn && record.closed == record.opened)) {
         return std::nullopt;
     }
-    const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
-    record.strain = reference > 0 ? (reference - arc.vertex->packing.length(load.loaded_axis)) / reference : 0;
+    record_strain(record, *arc.vertex, load);
     auto decision =
         decide_opening(arc.vertex->statics, record.stress, options_.rule,
                        record.power_turn ? opening.contact : ContactId(), bits_for(options_.rule_seed, record.step));
@@ -910,9 +909,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
             const double seconds = certify(*from, *next, way.opening, at_limit, load, record);
             tally(*record.certificate, seconds);
         }
-        const auto axis = static_cast<std::size_t>(load.loaded_axis);
-        const double reference = load.reference_length[axis];
-        record.strain = reference > 0 ? (reference - next->packing.length(load.loaded_axis)) / reference : 0;
+        record_strain(record, *next, load);
         const ContactId fresh_hold = record.power_turn ? way.opening.contact : ContactId();
         auto decision = decide_opening(next->statics, stress, options_.rule, fresh_hold,
                                        bits_for(options_.rule_seed, counters_.steps), first_order(*next));
@@ -1213,8 +1210,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
                        fmt::format("equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),
                                    to_string<Dim>(admissible.worst), admissible.worst_gap)};
     }
-    record.min_gap = record_.min_gap;
-    record.min_gap_contact = record_.min_gap_contact;
+    record_smallest_gap(described.value(), vertex_->packing, record_.min_gap_contact, record_.min_gap);
     count(DecisionKind::equilibrium, record.margin, record.decided_by);
     record.margin = margin_;
     record.decided_by = rung_;

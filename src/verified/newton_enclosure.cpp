@@ -165,6 +165,9 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
         }
+        // The exact step is `rest` away, and the vertex at most eta * product from where that leads.
+        vertex.step_radius =
+            product <= 0.25 ? (rest + eta * product) * (1 + 8 * u) / scale : std::numeric_limits<double>::infinity();
         constexpr double enough = 2; // more passes would at most divide the radius by 3
         if (!(rest > enough * length) || pass == max_passes) {
             break;
@@ -174,6 +177,10 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             step[l] += r[l];
         }
     }
+    for (double& s : step) {
+        s /= scale; // a power of two
+    }
+    vertex.step = std::move(step);
     return vertex.verdict == Verdict::proved ? vertex : enclose_vertex(packing, structure, inverse);
 }
 

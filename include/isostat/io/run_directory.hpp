@@ -139,13 +139,14 @@ class RunDirectory final : public RunObserver<2> {
     State<2> last_;
     std::vector<double> last_forces_;
     EquilibriumRecord<2> last_record_;
+    std::vector<double> last_strain_; ///< also after a resume that went no further
 };
 
 /// Names of the columns of equilibria.csv, in order. Contacts are two columns, i and j: disks from 0; j = -1 left, -2
 /// bottom, -3 right, -4 top wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double, 3 mpfr, 4 exact.
 /// `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was asked for. An
-/// unbounded interval ends at inf or -inf. `previous` is the equilibrium that this one follows on its path (-1: the
-/// start).
+/// unbounded interval ends at inf or -inf. `x_bound`: of the error of `x` at the true vertex, rounding included.
+/// `previous` is the equilibrium that this one follows on its path (-1: the start).
 const std::vector<std::string>& equilibria_columns();
 
 /// One equilibrium as equilibria.csv gives it back.

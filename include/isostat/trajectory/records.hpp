@@ -9,6 +9,7 @@
 #include <isostat/statics/perturbed.hpp>
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,9 +26,10 @@ template <int Dim> struct ArcRecord {
     Contact opened;      ///< contact opened (or held coordinate released)
     Contact closed;      ///< contact met, or the coordinate held at a power turn
     double held_at = 0;  ///< power turns: the value of the coordinate held
-    bool power_turn = false;      ///< true: the arc ended where the power of the load vanished
-    double stress = 0;            ///< sigma_2
-    double strain = 0;            ///< eps_2 at the end of the arc
+    bool power_turn = false; ///< true: the arc ended where the power of the load vanished
+    double stress = 0;       ///< sigma_2
+    double strain = 0;       ///< eps_2 at the end of the arc
+    double strain_bound = std::numeric_limits<double>::quiet_NaN(); ///< of its error; NaN at level `plain`
     double force = 0;             ///< force f0 in the opened contact (0 for limit and rattler arcs)
     double power = 0;             ///< -dW/dh at the end, h the gap that closes: the force of the new contact
     double work = 0;              ///< decrease of W along the arc
@@ -46,24 +48,31 @@ template <int Dim> struct EquilibriumRecord {
     double stress = 0;     ///< sigma_2 at which it was reached
     double stress_low = 0; ///< supported interval of sigma_2: [stress_low, stress_high]
     double stress_high = 0;
+    double stress_low_bound = 0; ///< of the error; 0 where the interval is unbounded
+    double stress_high_bound = 0;
     Contact opens_low; ///< contact whose force vanishes at stress_low (i = -1: none, the interval is unbounded)
     Contact opens_high;
     double sigma1 = 0;
+    /// Of the true vertex, with bounds of the errors, rounding included.
     std::vector<double> strain; ///< (L_a^0 - L_a) / L_a^0, one per axis: positive in compression
+    std::vector<double> strain_bound;
     std::vector<double> length; ///< L_a
-    double potential = 0;       ///< W
-    int arcs = 0;               ///< arcs of the rearrangement that led here
-    int dof_count = 0;          ///< N_f
-    int contact_count = 0;      ///< N
-    int rank = 0;               ///< proved rank of H
-    int hyperstaticity = 0;     ///< h = N - rank
-    int mechanisms = 0;         ///< k = N_f - rank
+    std::vector<double> length_bound;
+    double potential = 0; ///< W
+    double potential_bound = 0;
+    int arcs = 0;           ///< arcs of the rearrangement that led here
+    int dof_count = 0;      ///< N_f
+    int contact_count = 0;  ///< N
+    int rank = 0;           ///< proved rank of H
+    int hyperstaticity = 0; ///< h = N - rank
+    int mechanisms = 0;     ///< k = N_f - rank
     int rattlers = 0;
     int backbone = 0;     ///< contacts whose force is not a structural zero
     int held = 0;         ///< held coordinates (0 in an ordinary equilibrium)
     double min_force = 0; ///< smallest backbone force
     Contact min_force_contact;
-    double min_gap = 0; ///< smallest gap of a pair that is not a contact
+    double min_gap = 0; ///< smallest gap of a pair that is not a contact, at the true vertex
+    double min_gap_bound = 0;
     Contact min_gap_contact;
     double force_bound = 0;     ///< proved bound on the error of every force
     double sigma_min_bound = 0; ///< proved lower bound of the smallest singular value of H

@@ -16,8 +16,12 @@ struct VertexEnclosure {
     Verdict verdict = Verdict::undecided; ///< proved, or undecided (then nothing is known)
     double radius = 0;
     std::vector<double> correction; ///< empty on the rung double_bound; else one per coordinate of q
-    double max_gap = 0;             ///< largest |gap| of the contacts at the stored configuration, as computed
-    double lipschitz = 0;           ///< of the derivative of the constraints (V4 (a)), where it was computed; else 0
+    /// On the rung double_bound, where it is known: the Newton step, one per degree of freedom. The true vertex is
+    /// within `step_radius` of stored q + step (V4 (e)).
+    std::vector<double> step;
+    double step_radius = 0;
+    double max_gap = 0;   ///< largest |gap| of the contacts at the stored configuration, as computed
+    double lipschitz = 0; ///< of the derivative of the constraints (V4 (a)), where it was computed; else 0
     Rung rung = Rung::double_bound;
 
     /// The true vertex is within this distance (2-norm, all coordinates) of the *stored* configuration: `radius` is

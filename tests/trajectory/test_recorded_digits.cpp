@@ -1,0 +1,119 @@
+// Numbers of records against the true vertex in 400 bits: what is shown holds to within the bound beside it, and the
+// bounds are those of the last digit.
+#include "oracle/dense_forces.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+using namespace crafted;
+using oracle::Real;
+
+namespace {
+
+State<2> prepared(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    PreparationReport<2> report;
+    auto result = prepare<2>(options, report);
+    BOOST_TEST_REQUIRE(result.ok());
+    return result.value();
+}
+
+/// Loaded stress at which the force in a contact vanishes, all products exact.
+Real vanishing_stress(const State<2>& state, const oracle::Vector& q, const Contact& opens) {
+    const DofMap<2> dofs(state.packing);
+    const auto size = static_cast<std::size_t>(dofs.dof_count());
+    oracle::Vector gaps;
+    const oracle::Matrix derivative = oracle::gap_derivatives(state, q, gaps);
+    oracle::Matrix a(size, oracle::Vector(size + 2, Real(0)));
+    for (std::size_t r = 0; r < size; ++r) {
+        const auto c = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(r)));
+        for (std::size_t l = 0; l < size; ++l) {
+            a[r][l] = -derivative[l][c];
+        }
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            if (c == 2 * state.packing.radius.size() + axis) {
+                const bool loaded = static_cast<int>(axis) == state.load.loaded_axis;
+                const Real length = state.load.reference_length[1 - axis];
+                a[r][size] -= loaded ? Real(0) : Real(state.load.stress[axis] * length);
+                a[r][size + 1] -= loaded ? length : Real(0);
+            }
+        }
+    }
+    BOOST_TEST_REQUIRE(oracle::solve(a));
+    const auto l = static_cast<std::size_t>(std::find(state.contacts.begin(), state.contacts.end(), opens) -
+                                            state.contacts.begin());
+    BOOST_TEST_REQUIRE(l < size);
+    return -a[l][size] / a[l][size + 1];
+}
+
+void within(const char* name, double shown, double bound, const Real& truth) {
+    BOOST_TEST(static_cast<double>(abs(truth - shown)) <= bound,
+               name << " is " << shown << ", off by " << static_cast<double>(truth - shown) << ", bound " << bound);
+}
+
+/// `terms`: size of what the number is made of, when it may be smaller than its last digit says.
+void compare(const char* name, double shown, double bound, const Real& truth, double terms) {
+    within(name, shown, bound, truth);
+    BOOST_TEST(bound <= 0x1p-52 * std::max(std::abs(shown), 0x1p-40 * terms), name << " has bound " << bound);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_AUTO_TEST_CASE(recorded_numbers_hold_in_every_digit_at_the_true_vertex) {
+    for (const CertifyLevel level : {CertifyLevel::plain, CertifyLevel::decisions}) {
+        RunOptions options;
+        options.certify = level;
+        const Played run = play(prepared(20, 3), +1, 4, {}, options);
+        BOOST_TEST_REQUIRE(run.records.equilibria.size() == 5U, run.why());
+        double most = 0; // what the stored coordinates would give
+        for (std::size_t k = 0; k < run.records.equilibria.size(); ++k) {
+            const EquilibriumRecord<2>& e = run.records.equilibria[k];
+            const State<2>& state = run.records.states[k];
+            const auto q = oracle::true_vertex(state);
+            BOOST_TEST_REQUIRE(q.has_value());
+            BOOST_TEST_CONTEXT("level " << to_string(level) << ", equilibrium " << k) {
+                Real potential = 0;
+                for (std::size_t a = 0; a < 2; ++a) {
+                    const Real length = (*q)[2 * state.packing.radius.size() + a];
+                    const Real reference = state.load.reference_length[a];
+                    const Real strain = (reference - length) / reference;
+                    compare("L", e.length[a], e.length_bound[a], length, 1);
+                    compare("eps", e.strain[a], e.strain_bound[a], strain, 1);
+                    most = std::max(
+                        most, std::abs((state.load.reference_length[a] - state.packing.length(static_cast<int>(a))) /
+                                           state.load.reference_length[a] -
+                                       e.strain[a]));
+                    potential += Real(state.load.stress[a]) * Real(state.load.reference_length[1 - a]) * length;
+                }
+                compare("W", e.potential, e.potential_bound, potential, 1);
+                within("low", e.stress_low, e.stress_low_bound, vanishing_stress(state, *q, e.opens_low));
+                within("high", e.stress_high, e.stress_high_bound, vanishing_stress(state, *q, e.opens_high));
+                BOOST_TEST(std::max(e.stress_low_bound, e.stress_high_bound) < 1e-9);
+                State<2> other = state;
+                other.contacts = {e.min_gap_contact};
+                oracle::Vector gap;
+                (void)oracle::gap_derivatives(other, *q, gap);
+                compare("min_gap", e.min_gap, e.min_gap_bound, gap[0], 0x1p40);
+            }
+        }
+        BOOST_TEST(most > 1e-15); // the comparison can fail
+        for (const ArcRecord<2>& arc : run.records.arcs) {
+            const EquilibriumRecord<2>& e = run.records.equilibria[static_cast<std::size_t>(arc.equilibrium)];
+            BOOST_TEST(std::isnan(arc.strain_bound) == (level == CertifyLevel::plain));
+            if (arc.arc == e.arcs && level != CertifyLevel::plain) {
+                BOOST_TEST(std::abs(arc.strain - e.strain[1]) <= arc.strain_bound + e.strain_bound[1]);
+                BOOST_TEST(arc.strain_bound < 1e-18);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -166,7 +166,7 @@ void events(const fs::path& run, std::vector<Forgery>& list) {
                                        [=](Json& e) { e[name] = value * factor; }));
             }
         }
-        for (const char* name : {"margin", "displacement", "steps", "decided_by", "certificate"}) {
+        for (const char* name : {"eps2_bound", "margin", "displacement", "steps", "decided_by", "certificate"}) {
             list.push_back(in_line(
                 file, k, name, [=](Json& e) { e[name] = e[name].is_number() ? Json(1) : e[name]; }, Expected::listed));
         }
@@ -228,9 +228,16 @@ void events(const fs::path& run, std::vector<Forgery>& list) {
 }
 
 const std::vector<std::string>& unchecked_columns() {
-    static const std::vector<std::string> columns{"segment", "force_bound",   "sigma_min_bound",
-                                                  "balance", "virtual_power", "gap_residual",
-                                                  "margin",  "decided_by",    "seconds"};
+    static const std::vector<std::string> columns = [] {
+        std::vector<std::string> names{"segment", "balance",    "virtual_power", "gap_residual",
+                                       "margin",  "decided_by", "seconds"};
+        for (const std::string& name : equilibria_columns()) {
+            if (name.ends_with("_bound")) {
+                names.push_back(name);
+            }
+        }
+        return names;
+    }();
     return columns;
 }
 

@@ -17,7 +17,7 @@ isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
 # For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
 isostat_count_packages=(valgrind)
 # For the style of the sources: optional, installed by continuous integration.
-isostat_lint_packages=(clang-format-16 clang-tidy-16)
+isostat_lint_packages=(clang-format-16)
 if [ "${CI:-}" = true ]; then
   isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_count_packages[@]}" "${isostat_lint_packages[@]}")
 fi

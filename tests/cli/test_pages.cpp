@@ -1,0 +1,170 @@
+// What the pages say of keys, columns, fields, commands and exit statuses is what the program has; the commands of
+// README run as they stand.
+#include "cli/program.hpp"
+#include "io/record_text.hpp"
+
+#include <isostat/io/run_directory.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <regex>
+#include <set>
+#include <sstream>
+
+using namespace program;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path project = fs::path(ISOSTAT_EXAMPLES).parent_path();
+
+std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> result;
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+        result.push_back(line);
+    }
+    return result;
+}
+
+/// The part of a page from a line that begins with `heading` to the next heading.
+std::string section(const std::string& page, const std::string& heading) {
+    std::string text;
+    bool inside = false;
+    for (const std::string& line : lines(page)) {
+        if (line.starts_with("#")) {
+            inside = line.starts_with(heading);
+        } else if (inside) {
+            text += line + "\n";
+        }
+    }
+    BOOST_TEST_REQUIRE(!text.empty(), "no section '" << heading << "'");
+    return text;
+}
+
+/// Words in backticks in the first column of the tables of a text, in their order.
+std::vector<std::string> first_column(const std::string& text) {
+    std::vector<std::string> names;
+    const std::regex word("`([^`]+)`");
+    for (const std::string& line : lines(text)) {
+        if (!line.starts_with("| `")) {
+            continue;
+        }
+        const std::string cell = line.substr(0, line.find('|', 1));
+        for (auto it = std::sregex_iterator(cell.begin(), cell.end(), word); it != std::sregex_iterator(); ++it) {
+            names.push_back((*it)[1]);
+        }
+    }
+    return names;
+}
+
+std::set<std::string> as_set(const std::vector<std::string>& names) {
+    return {names.begin(), names.end()};
+}
+
+std::string joined(const std::set<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) {
+        text += " " + name;
+    }
+    return text;
+}
+
+/// The keys that a section of a scene knows: what the message about an unknown one lists.
+std::set<std::string> known_keys(const std::string& name, const std::string& scene) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", scene);
+    const Outcome outcome = run({"plan", (folder / "s.toml").string()});
+    expect(outcome, 65, {"unknown key 'no_such_key' in [" + name + "]"});
+    const std::string marker = "expected one of ";
+    std::string list = outcome.err.substr(outcome.err.find(marker) + marker.size());
+    list = list.substr(0, list.find('\n'));
+    std::set<std::string> keys;
+    const std::regex word("[a-z0-9_]+");
+    for (auto it = std::sregex_iterator(list.begin(), list.end(), word); it != std::sregex_iterator(); ++it) {
+        keys.insert(it->str());
+    }
+    return keys;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(pages)
+
+BOOST_AUTO_TEST_CASE(the_page_of_scenes_has_every_key) {
+    const std::string page = scratch::read(project / "src/scene/README.md");
+    const std::string disks = "[packing]\ndisks = 10\n";
+    const std::string perturb = "[run]\nties = \"perturb\"\nno_such_key = 1\n";
+    const std::vector<std::array<std::string, 3>> sections{
+        {"packing", "## `[packing]`", disks + "no_such_key = 1\n"},
+        {"preparation", "## `[preparation]`", disks + "[preparation]\nno_such_key = 1\n"},
+        {"load", "## `[load]`", disks + "[load]\nno_such_key = 1\n"},
+        {"programme", "## `[[programme]]`", disks + "[[programme]]\ndo = \"up\"\nno_such_key = 1\n"},
+        {"run", "## `[run]`", disks + perturb},
+        {"output", "## `[output]`", disks + "[output]\nno_such_key = 1\n"}};
+    for (const auto& [name, heading, scene] : sections) {
+        BOOST_TEST_CONTEXT(name) {
+            const std::set<std::string> known = known_keys(name == "programme" ? "[programme]" : name, scene);
+            const std::set<std::string> told = as_set(first_column(section(page, heading)));
+            BOOST_TEST((known == told), "keys of the program:" << joined(known) << "; of the page:" << joined(told));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_in_its_order) {
+    const std::string page = scratch::read(project / "src/io/README.md");
+    BOOST_TEST(first_column(section(page, "### Columns of `equilibria.csv`")) == isostat::equilibria_columns(),
+               boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_an_arc) {
+    isostat::ArcRecord<2> arc;
+    arc.opened = arc.closed = {isostat::ContactKind::disk_disk, 0, 1};
+    arc.power_turn = true;
+    arc.certificate.emplace();
+    arc.perturbed.push_back({"force", arc.opened, {}, {isostat::ContactKind::disk_disk, -1, -1}, {}});
+    std::set<std::string> written;
+    const json line = json::parse(isostat::event_line(arc));
+    for (auto field = line.begin(); field != line.end(); ++field) {
+        written.insert(field.key());
+    }
+    const std::string page = scratch::read(project / "src/io/README.md");
+    const std::set<std::string> told = as_set(first_column(section(page, "### Fields of `events.jsonl`")));
+    BOOST_TEST((written == told), "fields written:" << joined(written) << "; of the page:" << joined(told));
+}
+
+BOOST_AUTO_TEST_CASE(the_pages_and_the_help_have_the_same_exit_statuses) {
+    const std::string help = run({"--help"}).out;
+    const auto statuses = [](std::string text) {
+        std::set<std::string> found;
+        const std::regex number(R"((^|[ |])(\d+) )");
+        for (auto it = std::sregex_iterator(text.begin(), text.end(), number); it != std::sregex_iterator(); ++it) {
+            found.insert((*it)[2]);
+        }
+        return found;
+    };
+    const auto after = [](const std::string& text) {
+        const std::size_t begin = text.find("Exit status");
+        BOOST_REQUIRE(begin != std::string::npos);
+        std::string sentence = text.substr(begin, text.find("Ctrl-C", begin) - begin);
+        std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+        return sentence;
+    };
+    const std::set<std::string> told = statuses(after(help));
+    BOOST_TEST(told.size() >= 6U);
+    BOOST_TEST((statuses(after(scratch::read(project / "README.md"))) == told));
+    std::set<std::string> table;
+    const std::regex row(R"(\| (\d+) \|)");
+    for (const std::string& line : lines(section(scratch::read(project / "src/io/README.md"), "## Exit status"))) {
+        std::smatch match;
+        if (std::regex_search(line, match, row)) {
+            table.insert(match[1]);
+        }
+    }
+    BOOST_TEST((table == told), "help:" << joined(told) << "; page:" << joined(table));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

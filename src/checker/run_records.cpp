@@ -202,6 +202,7 @@ RunRecords read_records(const std::filesystem::path& directory) {
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         for_each_line(read_text(events), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
+            records.events.back().estimated = level == "plain";
         });
     }
     records.equilibria = equilibria_of(directory / "equilibria.csv");

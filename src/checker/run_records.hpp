@@ -30,6 +30,7 @@ struct EventRecord {
     std::string opened, closed; ///< names of contacts, as in messages
     bool power_turn = false;
     double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
+    bool estimated = false;        ///< level plain: what is said of the power on the way has no bound
     std::optional<double> held_at; ///< of power turns
     std::vector<TieRecord> ties;
 };

@@ -73,8 +73,11 @@ void compare(const std::string& unit, const Played& base, const State<2>& state,
                 BOOST_TEST(here.arcs == there.arcs);
                 if (same_bits) {
                     BOOST_TEST(here.stress == there.stress * stress);
-                    BOOST_TEST((here.strain == there.strain));
-                    BOOST_TEST(here.length[0] == there.length[0] * length);
+                    // Of the true vertex: beyond 1e+-150 the correction of the enclosure is coarser, within its bound.
+                    for (std::size_t a = 0; a < 2; ++a) {
+                        BOOST_TEST(std::abs(here.strain[a] - there.strain[a]) <= 4e-15);
+                        BOOST_TEST(std::abs(here.length[a] / length - there.length[a]) <= 4e-15 * there.length[a]);
+                    }
                     for (std::size_t c = 0; c < state.packing.q.size(); ++c) {
                         BOOST_TEST(run.records.states[k].packing.q[c] == base.records.states[k].packing.q[c] * length);
                     }

@@ -90,6 +90,33 @@ std::set<std::string> known_keys(const std::string& name, const std::string& sce
     return keys;
 }
 
+/// What a page has between a line "```LANGUAGE" and the next "```"; from the first such line after `after`.
+std::string block(const std::string& page, const std::string& language, const std::string& after) {
+    const std::size_t from = page.find(after);
+    BOOST_TEST_REQUIRE((from != std::string::npos), "no '" << after << "' on the page");
+    const std::string fence = "```" + language + "\n";
+    const std::size_t begin = page.find(fence, from);
+    BOOST_TEST_REQUIRE((begin != std::string::npos), "no block of " << language << " after '" << after << "'");
+    const std::size_t text = begin + fence.size();
+    return page.substr(text, page.find("```", text) - text);
+}
+
+/// Commands of a section: the words behind `build/release/isostat` in lines that are set in by four blanks.
+std::vector<std::vector<std::string>> commands(const std::string& text) {
+    std::vector<std::vector<std::string>> found;
+    const std::string program = "    build/release/isostat ";
+    for (const std::string& line : lines(text)) {
+        if (line.starts_with(program)) {
+            std::istringstream words(line.substr(program.size(), line.find('#') - program.size()));
+            found.emplace_back();
+            for (std::string word; words >> word;) {
+                found.back().push_back(word);
+            }
+        }
+    }
+    return found;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(pages)
@@ -165,6 +192,44 @@ BOOST_AUTO_TEST_CASE(the_pages_and_the_help_have_the_same_exit_statuses) {
         }
     }
     BOOST_TEST((table == told), "help:" << joined(told) << "; page:" << joined(table));
+}
+
+BOOST_AUTO_TEST_CASE(the_first_run_of_the_readme_does_what_it_shows) {
+    const std::string page = scratch::read(project / "README.md");
+    const scratch::Folder folder;
+    scratch::write(folder / "first.toml", block(page, "toml", "## A first run"));
+    const std::string here = "cd " + quoted(folder.path().string()) + "; ";
+    const auto known = commands(section(page, "## A first run"));
+    BOOST_TEST_REQUIRE(known.size() == 5U);
+    std::string shown;
+    for (const std::vector<std::string>& command : known) {
+        const Outcome outcome = run(command, here);
+        BOOST_TEST(outcome.status == 0, command[0] << ": " << outcome.status << "; " << outcome.err);
+        shown += outcome.out + outcome.err;
+    }
+    for (const std::string& line : lines(block(page, "", "build/release/isostat run first.toml"))) {
+        const std::string without_times = line.substr(0, line.find(" 0:00:00"));
+        BOOST_TEST(contains(shown, without_times), "README shows '" << line << "', the program: " << shown);
+    }
+    BOOST_TEST(run({"plan", "first.toml"}, here).status == 0);
+}
+
+BOOST_AUTO_TEST_CASE(the_readme_names_every_command) {
+    const std::string page = scratch::read(project / "README.md");
+    const std::string help = run({"--help"}).out;
+    const std::size_t begin = help.find("Subcommands:");
+    BOOST_REQUIRE(begin != std::string::npos);
+    const std::regex name(R"(\n  ([a-z]+) )");
+    int commands_found = 0;
+    for (auto it = std::sregex_iterator(help.begin() + static_cast<long>(begin), help.end(), name);
+         it != std::sregex_iterator(); ++it) {
+        const std::string command = (*it)[1];
+        const bool named = contains(page, "`" + command + "`") || contains(page, "isostat " + command) ||
+                           contains(page, "`" + command + " ");
+        BOOST_TEST(named, "README does not name " << command);
+        ++commands_found;
+    }
+    BOOST_TEST(commands_found >= 11);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -85,24 +85,6 @@ Packing<Dim> scatter(std::vector<double> radius, double fraction, double aspect,
 
 } // namespace preparation
 
-std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t seed) {
-    using namespace preparation;
-    require_positive("smallest diameter", law.smallest);
-    if (!(law.largest >= law.smallest) || !std::isfinite(law.largest)) {
-        bad(fmt::format("largest diameter is {}: expected a finite number that is not below the smallest, {}",
-                        law.largest, law.smallest));
-    }
-    if (count < 1) {
-        bad(fmt::format("number of disks is {}: expected at least 1", count));
-    }
-    Uniform uniform(derived_seed(seed, Stream::radii));
-    std::vector<double> radius(static_cast<std::size_t>(count));
-    for (double& r : radius) {
-        r = (law.smallest + (law.largest - law.smallest) * uniform()) / 2;
-    }
-    return radius;
-}
-
 template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report) {
     require_floating_point();
     using namespace preparation;

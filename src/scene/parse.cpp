@@ -1,5 +1,6 @@
 #include "io/toml.hpp"
 #include "scene/radii_file.hpp"
+#include "scene/radii_law.hpp"
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
@@ -25,7 +26,6 @@ constexpr long largest_seed = std::numeric_limits<long>::max();
 void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
     const auto file = section.string("file");
     const auto disks = section.integer("disks");
-    const auto diameters = section.numbers("diameters");
     const auto radii = section.numbers("radii");
     const auto radii_file = section.string("radii_file");
     const std::array<std::pair<const char*, bool>, 4> sources{{{"file", file.has_value()},
@@ -44,10 +44,8 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
                                        chosen->first, other->first));
         }
     }
-    if (diameters && !disks) {
-        section.refuse(
-            "diameters",
-            fmt::format("'diameters' in [packing] goes with 'disks' and has no meaning with '{}'", chosen->first));
+    if (!disks) {
+        refuse_law(section, chosen->first);
     }
     PreparationOptions& options = scene.preparation;
     if (file) {
@@ -64,17 +62,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     }
     if (disks) {
         options.disks = static_cast<int>(section.integer("disks", 0, 1, 10'000'000));
-        options.diameters = {1.0, 2.0};
-        if (diameters) {
-            if (diameters->size() != 2 || !((*diameters)[0] >= smallest_size) ||
-                !((*diameters)[1] >= (*diameters)[0]) || !((*diameters)[1] <= largest_size)) {
-                section.fail("diameters", fmt::format("[smallest, largest] with 0 < smallest <= largest, from {} to {}",
-                                                      smallest_size, largest_size));
-            }
-            options.diameters = {(*diameters)[0], (*diameters)[1]};
-        }
-        section.record("diameters", fmt::format("[{}, {}]", toml_text(options.diameters.smallest),
-                                                toml_text(options.diameters.largest)));
+        options.diameters = read_law(section);
     } else if (radii) {
         if (radii->empty()) {
             section.fail("radii", "at least one radius");

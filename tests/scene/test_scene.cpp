@@ -57,6 +57,9 @@ BOOST_AUTO_TEST_CASE(every_setting_arrives) {
     const Scene scene = parse(R"(
 [packing]
 disks = 20
+law = "lognormal"
+diameter = 0.9
+deviation = 0.1
 diameters = [0.5, 3]
 seed = 9
 aspect = 2
@@ -97,6 +100,9 @@ checkpoint_seconds = 2.5
 pictures = false
 vtk = true
 )");
+    BOOST_TEST((scene.preparation.diameters.kind == RadiiLaw::lognormal));
+    BOOST_TEST(scene.preparation.diameters.diameter == 0.9);
+    BOOST_TEST(scene.preparation.diameters.deviation == 0.1);
     BOOST_TEST(scene.preparation.diameters.largest == 3.0);
     BOOST_TEST(scene.preparation.seed == 9U);
     BOOST_TEST(scene.preparation.aspect == 2.0);
@@ -131,10 +137,30 @@ vtk = true
     // Nothing of this scene is a default: a key that was read but not recorded would be missing here.
     BOOST_TEST((scene.run.ties == TiePolicy::perturb));
     BOOST_TEST(scene.run.ties_seed == 9U);
-    BOOST_TEST(scene.settings.size() == 35U);
+    BOOST_TEST(scene.settings.size() == 38U);
     for (const Setting& setting : scene.settings) {
         BOOST_TEST((setting.line > 0 || setting.key == "name"), setting.section << "." << setting.key);
     }
+}
+
+BOOST_AUTO_TEST_CASE(a_law_has_its_own_keys_and_no_others) {
+    const DiameterLaw mixture =
+        parse(head + "law = \"bidisperse\"\nratio = 2\nfraction = 0.25\n").preparation.diameters;
+    BOOST_TEST((mixture.kind == RadiiLaw::bidisperse));
+    BOOST_TEST(mixture.ratio == 2.0);
+    BOOST_TEST(mixture.fraction == 0.25);
+    const Scene cut = parse(head + "law = \"normal\"\ndiameter = 3\n");
+    BOOST_TEST(value_of(cut, "packing", "law") == "\"normal\"");
+    BOOST_TEST(value_of(cut, "packing", "diameters") == "[1.5, 6.0]");
+    BOOST_TEST(value_of(cut, "packing", "deviation") == "0.2");
+    BOOST_TEST(value_of(cut, "packing", "ratio") == "absent");
+    refuses(head + "law = \"poisson\"\n", {"s.toml:3:", "law", "poisson", "\"bidisperse\""});
+    refuses(head + "exponent = 2\n", {"s.toml:3:", "'exponent'", "law = \"power\"", "\"uniform\""});
+    refuses(head + "law = \"equal\"\ndiameters = [1, 2]\n", {"s.toml:4:", "'diameters'", "\"equal\""});
+    refuses(head + "law = \"bidisperse\"\nratio = 0.5\n", {"s.toml:4:", "ratio", "0.5", "from 1"});
+    refuses(head + "law = \"normal\"\ndiameters = [2, 3]\n", {"s.toml:3:", "diameter is 1", "cut"});
+    refuses("[packing]\nradii = [1]\nlaw = \"equal\"\n", {"s.toml:3:", "'law'", "'disks'", "'radii'"});
+    refuses("[packing]\nfile = \"v\"\nratio = 2\n", {"s.toml:3:", "'ratio'", "'file'"});
 }
 
 BOOST_AUTO_TEST_CASE(radii_come_from_a_list_or_a_file) {

@@ -5,6 +5,7 @@
 
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/preparation/radii.hpp>
 
 #include <atomic>
 #include <cstdint>
@@ -14,16 +15,6 @@
 #include <vector>
 
 namespace isostat {
-
-/// Diameters uniform in [smallest, largest], in the user's unit of length.
-struct DiameterLaw {
-    double smallest = 1;
-    double largest = 2;
-};
-
-/// `count` radii, independent, from a 64-bit Mersenne twister: the same seed gives the same bits on every machine.
-/// Throws `Error(bad_input)` for a law that is not 0 < smallest <= largest < infinity, or count < 1.
-std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t seed);
 
 /// Where a preparation is. `fraction` in [0, 1] is an estimate within the stage.
 struct PreparationProgress {

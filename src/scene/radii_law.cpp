@@ -1,0 +1,125 @@
+#include "scene/radii_law.hpp"
+
+#include "scene/radii_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace isostat {
+
+namespace {
+
+using enum RadiiLaw;
+
+const std::vector<std::string> words{"uniform", "equal", "bidisperse", "lognormal", "normal", "power"}; // RadiiLaw
+
+struct LawKey {
+    const char* name;
+    std::vector<RadiiLaw> laws; ///< that have it
+};
+
+const std::array<LawKey, 6> law_keys{{{"diameters", {uniform, lognormal, normal, power}},
+                                      {"diameter", {equal, bidisperse, lognormal, normal}},
+                                      {"ratio", {bidisperse}},
+                                      {"fraction", {bidisperse}},
+                                      {"deviation", {lognormal, normal}},
+                                      {"exponent", {power}}}};
+
+std::string word(RadiiLaw law) {
+    return toml_text(words[static_cast<std::size_t>(law)]);
+}
+
+bool belongs(const LawKey& key, RadiiLaw law) {
+    return std::find(key.laws.begin(), key.laws.end(), law) != key.laws.end();
+}
+
+/// Asks for it, so that it is known.
+bool given(Section& section, std::string_view key) {
+    return key == "diameters" ? section.numbers("diameters").has_value() : section.number(std::string(key)).has_value();
+}
+
+/// Refuses the keys of other laws.
+void check_keys(Section& section, RadiiLaw law) {
+    for (const LawKey& key : law_keys) {
+        if (given(section, key.name) && !belongs(key, law)) {
+            std::vector<std::string> laws;
+            std::transform(key.laws.begin(), key.laws.end(), std::back_inserter(laws), word);
+            section.refuse(key.name,
+                           fmt::format("'{}' in [packing] goes with law = {} and has no meaning with law = {}",
+                                       key.name, fmt::join(laws, ", "), word(law)));
+        }
+    }
+}
+
+/// [smallest, largest]; `law` holds the defaults.
+void read_ends(Section& section, DiameterLaw& law) {
+    if (const auto ends = section.numbers("diameters")) {
+        if (ends->size() != 2 || !((*ends)[0] >= smallest_size) || !((*ends)[1] >= (*ends)[0]) ||
+            !((*ends)[1] <= largest_size)) {
+            section.fail("diameters", fmt::format("[smallest, largest] with 0 < smallest <= largest, from {} to {}",
+                                                  smallest_size, largest_size));
+        }
+        law.smallest = (*ends)[0];
+        law.largest = (*ends)[1];
+    }
+    section.record("diameters", fmt::format("[{}, {}]", toml_text(law.smallest), toml_text(law.largest)));
+}
+
+} // namespace
+
+DiameterLaw read_law(Section& section) {
+    DiameterLaw law;
+    law.kind = static_cast<RadiiLaw>(section.word("law", 0, words));
+    check_keys(section, law.kind);
+    const auto has = [&](const char* name) {
+        return belongs(*std::find_if(law_keys.begin(), law_keys.end(),
+                                     [&](const LawKey& key) { return key.name == std::string_view(name); }),
+                       law.kind);
+    };
+    constexpr double largest_ratio = 1e6;
+    if (has("diameter")) {
+        law.diameter =
+            section.number("diameter", law.diameter, smallest_size, largest_size / largest_ratio,
+                           fmt::format("a positive length from {} to {}", smallest_size, largest_size / largest_ratio));
+        law.smallest = law.diameter / 2;
+        law.largest = 2 * law.diameter;
+    }
+    if (has("diameters")) {
+        read_ends(section, law);
+    }
+    if (has("ratio")) {
+        law.ratio = section.number("ratio", law.ratio, 1, largest_ratio, "a ratio from 1 to 1e6");
+        law.fraction = section.number("fraction", law.fraction, 0, 1, "a share of the disks from 0 to 1");
+    }
+    if (has("deviation")) {
+        law.deviation = section.number("deviation", law.deviation, 1e-6, 10, "a number from 1e-6 to 10");
+    }
+    if (has("exponent")) {
+        law.exponent = section.number("exponent", law.exponent, -100, 100, "a number from -100 to 100");
+    }
+    if (const std::string fault = fault_of(law); !fault.empty()) {
+        section.refuse("law", fmt::format("law = {} in [packing]: {}", word(law.kind), fault));
+    }
+    return law;
+}
+
+void refuse_law(Section& section, const std::string& source) {
+    std::vector<std::string> found;
+    if (section.string("law")) {
+        found.emplace_back("law");
+    }
+    for (const LawKey& key : law_keys) {
+        if (given(section, key.name)) {
+            found.emplace_back(key.name);
+        }
+    }
+    if (!found.empty()) {
+        section.refuse(found.front(), fmt::format("'{}' in [packing] goes with 'disks' and has no meaning with '{}'",
+                                                  found.front(), source));
+    }
+}
+
+} // namespace isostat

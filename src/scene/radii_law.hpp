@@ -1,0 +1,19 @@
+#pragma once
+/// \file
+/// The keys of [packing] that say how radii are drawn.
+
+#include "scene/section.hpp"
+
+#include <isostat/preparation/radii.hpp>
+
+namespace isostat {
+
+/// The law, with its defaults recorded. Throws `Error(bad_input)` for keys that another law has and for a law without
+/// sense.
+DiameterLaw read_law(Section& section);
+
+/// Asks for every key of a law, so that all are known, and refuses those that are given: "has no meaning with
+/// `source`".
+void refuse_law(Section& section, const std::string& source);
+
+} // namespace isostat

@@ -1,0 +1,163 @@
+#include "motion/chord.hpp"
+
+#include "core/dot.hpp"
+#include "motion/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+} // namespace
+
+template <int Dim>
+Chord<Dim>::Chord(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, std::size_t slot)
+    : structure_(&structure), factorisation_(&factorisation), slot_(slot),
+      size_(static_cast<std::size_t>(structure.size())), approach_(size_),
+      y_(static_cast<std::size_t>(structure.dofs().coordinate_count()), 0.0) {
+    make_mechanism();
+}
+
+template <int Dim> void Chord<Dim>::make_mechanism() {
+    mechanism_.assign(y_.size(), 0.0);
+    to_coordinates(factorisation().approximate().mechanism(static_cast<int>(slot_)), mechanism_);
+}
+
+template <int Dim> void Chord<Dim>::to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const {
+    const DofMap<Dim>& dofs = structure().dofs();
+    for (std::size_t mu = 0; mu < size_; ++mu) {
+        on_coordinates[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = on_dofs[mu];
+    }
+}
+
+template <int Dim> bool Chord<Dim>::converge(Packing<Dim>& at, const Contact& row) {
+    const Packing<Dim> guess = at;
+    if (iterate(at, row, true)) {
+        return true;
+    }
+    at = guess; // acceleration may have taken rounding for a direction
+    return iterate(at, row, false);
+}
+
+template <int Dim> bool Chord<Dim>::iterate(Packing<Dim>& at, const Contact& row, bool accelerated) {
+    const auto& contacts = structure().contacts();
+    const double rounding = 2 * grid_step(at);
+    double previous = infinity;
+    double rate = infinity;
+    iterations_ = 0;
+    acceleration_.clear();
+    for (int k = 0; k < 60; ++k) {
+        for (std::size_t l = 0; l < size_; ++l) {
+            approach_[l] = l == slot_ ? 0.0 : quick_gap(at, contacts[l]);
+        }
+        solve([&](const Vector& v) { return gap_rate(at, row, v); }, -quick_gap(at, row));
+        const double size = largest(y_);
+        if (!(size < infinity)) {
+            return false;
+        }
+        // About linear convergence: the next change is this one times the worse of the last two ratios.
+        const double ratio = size / previous;
+        const bool last = size <= rounding || (k > 1 && size * std::max(ratio, rate) <= 0.1 * rounding);
+        rate = ratio;
+        if (accelerated && size > rounding) { // the last change too: the ratios are those of accelerated ones
+            acceleration_.improve(y_);
+        }
+        for (std::size_t i = 0; i < y_.size(); ++i) {
+            at.q[i] += y_[i];
+        }
+        ++iterations_;
+        if (last) {
+            return true;
+        }
+        // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
+        if (k > 3 && size > (is_fresh() ? 0.5 : 0.9) * previous) {
+            return size <= (accelerated ? 64 * rounding : 1e-9 * at.min_radius());
+        }
+        previous = size;
+    }
+    return false;
+}
+
+template <int Dim> void Chord<Dim>::rates_at(const Packing<Dim>& at, const Vector& v) {
+    const auto& contacts = structure().contacts();
+    for (std::size_t l = 0; l < size_; ++l) {
+        approach_[l] = gap_rate(at, contacts[l], v);
+    }
+}
+
+/// The rates are minus the approach velocities G v, whose G is at hand.
+template <int Dim> void Chord<Dim>::rates_from_matrix(const Vector& v) {
+    const sparse::Matrix<double>& h = structure().matrix();
+    const DofMap<Dim>& dofs = structure().dofs();
+    Vector on_dofs(size_);
+    for (std::size_t mu = 0; mu < size_; ++mu) {
+        on_dofs[mu] = v[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))];
+    }
+    for (std::size_t l = 0; l < size_; ++l) {
+        double rate = 0;
+        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+            rate -= h.value[e] * on_dofs[static_cast<std::size_t>(h.row[e])];
+        }
+        approach_[l] = rate;
+    }
+}
+
+/// `rates` makes `approach_` the rates of the kept gaps along a velocity: what must be taken away from it.
+template <int Dim>
+template <class Rates>
+std::optional<std::vector<double>> Chord<Dim>::refined_tangent(const Vector& guess, std::size_t fastest,
+                                                               double accuracy, Rates rates) {
+    Vector t = guess;
+    double previous = infinity;
+    for (int k = 0; k < 40; ++k) {
+        rates(t);
+        approach_[slot_] = 0;
+        solve([&](const Vector& v) { return v[fastest]; }, 0.0);
+        const double size = largest(y_);
+        for (std::size_t i = 0; i < t.size(); ++i) {
+            t[i] += y_[i];
+        }
+        if (!(size < previous)) {
+            break;
+        }
+        // Linear convergence: what is left is about size^2 / previous.
+        if (size < accuracy * largest(t) || (k > 0 && size * size < 0.1 * accuracy * largest(t) * previous)) {
+            return t;
+        }
+        previous = size;
+    }
+    return previous < 1e-4 * largest(t) ? std::optional<Vector>(t) : std::nullopt;
+}
+
+template <int Dim>
+std::optional<std::vector<double>> Chord<Dim>::tangent(const Packing<Dim>& at, const Vector& guess, std::size_t fastest,
+                                                       double accuracy) {
+    return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_at(at, t); });
+}
+
+template <int Dim>
+std::optional<std::vector<double>> Chord<Dim>::tangent(const Vector& guess, std::size_t fastest, double accuracy) {
+    return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_from_matrix(t); });
+}
+
+template <int Dim> std::optional<Failure> Chord<Dim>::renew(const Packing<Dim>& at, std::size_t held) {
+    std::vector<Contact> with_held = contacts();
+    with_held[slot_] = Contact{ContactKind::held, static_cast<int>(held), 0};
+    auto proved = IsostaticStructure<Dim>::prove(at, std::move(with_held));
+    if (!proved.ok()) {
+        return proved.failure();
+    }
+    own_ = std::make_unique<Own>(std::move(proved.value()));
+    ++factorisations_;
+    make_mechanism();
+    return std::nullopt;
+}
+
+template class Chord<2>;
+
+} // namespace isostat

@@ -1,0 +1,105 @@
+#pragma once
+// The chord method on the kept gaps of an arc: private to the room.
+
+#include "motion/acceleration.hpp"
+
+#include <isostat/core/result.hpp>
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+/// Newton-like iterations with the factors of one contact matrix, for the equations gap_l = 0 of all its contacts but
+/// one, in the *slot*, whose row is free: the caller says what stands there. Nothing is proved by what it returns.
+template <int Dim> class Chord {
+  public:
+    using Vector = std::vector<double>;
+
+    /// \pre `structure` and `factorisation` outlive it.
+    Chord(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, std::size_t slot);
+
+    /// All of them, that in the slot included.
+    [[nodiscard]] const std::vector<Contact>& contacts() const { return structure().contacts(); }
+    [[nodiscard]] std::size_t slot() const { return slot_; }
+    [[nodiscard]] bool is_fresh() const { return factorisation().is_fresh(); }
+    /// Velocity with unit approach in the slot and none in the kept contacts, where the matrix was made.
+    [[nodiscard]] const Vector& mechanism() const { return mechanism_; }
+
+    /// Velocity with the approach velocities `approach(contact)` in the kept contacts, coordinate `still` at rest. One
+    /// pass. Good until the next call.
+    template <class Approach> const Vector& velocity(Approach approach, std::size_t still) {
+        for (std::size_t l = 0; l < size_; ++l) {
+            approach_[l] = l == slot_ ? 0.0 : approach(contacts()[l]);
+        }
+        solve([&](const Vector& v) { return v[still]; }, 0.0);
+        return y_;
+    }
+
+    /// Moves `at` to where the kept gaps vanish, down to rounding, and so does the gap of `row`; a coordinate (`held`)
+    /// stays as it is. False: it did not converge, and `at` is anywhere.
+    bool converge(Packing<Dim>& at, const Contact& row);
+    /// Iterations of the last attempt.
+    [[nodiscard]] int iterations() const { return iterations_; }
+
+    /// Tangent at a point of the curve near `guess`, scaled like it in coordinate `fastest`, to a relative accuracy.
+    std::optional<Vector> tangent(const Packing<Dim>& at, const Vector& guess, std::size_t fastest, double accuracy);
+    /// The same where the matrix was made. \pre nothing was renewed.
+    std::optional<Vector> tangent(const Vector& guess, std::size_t fastest, double accuracy);
+
+    /// Proves and factorises the structure with coordinate `held` in the slot, at another configuration.
+    std::optional<Failure> renew(const Packing<Dim>& at, std::size_t held);
+
+    /// Matrices factorised by `renew`, and applications of the factors.
+    [[nodiscard]] int factorisations() const { return factorisations_; }
+    [[nodiscard]] int passes() const { return passes_; }
+
+  private:
+    struct Own {
+        explicit Own(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
+        IsostaticStructure<Dim> structure;
+        Factorisation factorisation;
+    };
+    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
+    [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
+    void make_mechanism();
+    void to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const;
+    template <class Row> void solve(Row row, double target);
+    bool iterate(Packing<Dim>& at, const Contact& row, bool accelerated);
+    void rates_at(const Packing<Dim>& at, const Vector& v);
+    void rates_from_matrix(const Vector& v);
+    template <class Rates>
+    std::optional<Vector> refined_tangent(const Vector& guess, std::size_t fastest, double accuracy, Rates rates);
+
+    const IsostaticStructure<Dim>* structure_;
+    const Factorisation* factorisation_;
+    std::unique_ptr<Own> own_; ///< in place of the two, once renewed
+    std::size_t slot_;
+    std::size_t size_;
+    Vector approach_; ///< per contact; overwritten by a pass
+    Vector y_;        ///< on coordinates
+    Vector mechanism_;
+    Acceleration acceleration_;
+    int iterations_ = 0;
+    int factorisations_ = 0;
+    int passes_ = 0;
+};
+
+/// y_ = velocity with the approach velocities `approach_` and row(y_) = target.
+template <int Dim> template <class Row> void Chord<Dim>::solve(Row row, double target) {
+    ++passes_;
+    factorisation().approximate().velocities(approach_);
+    to_coordinates(approach_, y_);
+    const double scale = (target - row(y_)) / row(mechanism_);
+    for (std::size_t k = 0; k < y_.size(); ++k) {
+        y_[k] += scale * mechanism_[k];
+    }
+}
+
+extern template class Chord<2>;
+
+} // namespace isostat

@@ -1,0 +1,60 @@
+#pragma once
+// The curve of an arc near one of its points: private to the room.
+
+#include <isostat/packing/packing.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace isostat {
+
+/// A point of the curve, and the tangent there.
+template <int Dim> struct CurvePoint {
+    Packing<Dim> at;
+    std::vector<double> tangent; ///< on coordinates
+};
+
+/// The curve to second order, with one coordinate for the parameter: q(s) = at + s tangent + s^2 curvature / 2.
+template <int Dim> struct CurveCourse {
+    Packing<Dim> at;
+    std::vector<double> tangent;
+    std::vector<double> curvature; ///< 0 in the fastest coordinate
+    std::size_t fastest = 0;       ///< the coordinate s: its tangent is +1 or -1, no other is larger
+
+    /// Takes the coordinate with the largest tangent for s. Not finite: nor is the tangent afterwards.
+    void choose_fastest() {
+        fastest = 0;
+        for (std::size_t k = 0; k < tangent.size(); ++k) {
+            if (std::abs(tangent[k]) > std::abs(tangent[fastest])) {
+                fastest = k;
+            }
+        }
+        const double scale = 1 / std::abs(tangent[fastest]);
+        for (double& c : tangent) {
+            c *= scale;
+        }
+    }
+    [[nodiscard]] double direction() const { return tangent[fastest] < 0 ? -1.0 : 1.0; }
+    [[nodiscard]] Packing<Dim> predicted(double s) const {
+        Packing<Dim> there = at;
+        for (std::size_t k = 0; k < there.q.size(); ++k) {
+            there.q[k] += s * (tangent[k] + 0.5 * s * curvature[k]);
+        }
+        return there;
+    }
+    /// The tangent at a point of the curve, from the way it went: the third derivative is what the prediction missed.
+    /// Below `shortest` that is rounding, and left out.
+    [[nodiscard]] std::vector<double> extrapolated_tangent(const Packing<Dim>& there, double s, double shortest) const {
+        const double third = s > shortest ? 3 / s : 0.0;
+        std::vector<double> t(tangent.size());
+        for (std::size_t k = 0; k < t.size(); ++k) {
+            const double missed = there.q[k] - (at.q[k] + s * (tangent[k] + 0.5 * s * curvature[k]));
+            t[k] = tangent[k] + s * curvature[k] + third * missed;
+        }
+        return t;
+    }
+};
+
+} // namespace isostat

@@ -1,0 +1,232 @@
+#include "motion/event_scan.hpp"
+
+#include "core/dot.hpp"
+#include "motion/geometry.hpp"
+
+#include <isostat/contact/contact_set.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Smallest positive root of h + h1 s + h2 s^2 / 2, h >= 0; infinity when there is none.
+double first_root(double h, double h1, double h2) {
+    const double a = 0.5 * h2;
+    const double discriminant = h1 * h1 - 4 * a * h;
+    if (discriminant < 0) {
+        return infinity;
+    }
+    if (h1 < 0) {
+        return 2 * h / (-h1 + std::sqrt(discriminant));
+    }
+    return a < 0 ? (h1 + std::sqrt(discriminant)) / (-2 * a) : infinity;
+}
+
+/// A gap over a step of length s: the cubic with these values and slopes at the two ends.
+struct Cubic {
+    double h0, d0, h1, d1, s;
+
+    /// Above its control points: nowhere below this.
+    [[nodiscard]] double floor() const {
+        return std::min(std::min(h0, h1), std::min(h0 + d0 * s / 3, h1 - d1 * s / 3));
+    }
+    struct Point {
+        double position, value;
+    };
+    /// Where it is smallest. \pre d0 < 0 < d1
+    [[nodiscard]] Point lowest() const {
+        const double c3 = (d0 + d1) * s - 2 * (h1 - h0);
+        const double c2 = 3 * (h1 - h0) - (2 * d0 + d1) * s;
+        const double c1 = d0 * s;
+        // c1 + 2 c2 x + 3 c3 x^2 changes sign once on [0, 1]: bisection.
+        double low = 0;
+        double high = 1;
+        for (int k = 0; k < 40; ++k) {
+            const double x = 0.5 * (low + high);
+            (c1 + x * (2 * c2 + 3 * c3 * x) < 0 ? low : high) = x;
+        }
+        return {low * s, h0 + low * (c1 + low * (c2 + low * c3))};
+    }
+    /// Where it comes so near 0 that the gap may touch it.
+    [[nodiscard]] std::optional<double> dip() const {
+        // `depth` below is at most max - floor, and x^2 (1 - x)^2 is at most 1/16: most gaps are far from a dip.
+        if (floor() > 0.1 * (std::max(h0, h1) - floor())) {
+            return std::nullopt;
+        }
+        // The error of the cubic at x is x^2 (1 - x)^2 h/24 (x in units of the step); h is taken as 40 depths, far
+        // above what a disk rolling through a step of a tenth of a radius has. It vanishes at the ends, where the
+        // gap is known.
+        const Point low = lowest();
+        const double depth = std::max(h0, h1) - low.value;
+        const double x = low.position / s;
+        return low.value <= 1.6 * depth * x * x * (1 - x) * (1 - x) ? std::optional(low.position) : std::nullopt;
+    }
+};
+
+bool listed(const std::vector<Contact>& list, const Contact& c) {
+    return std::find(list.begin(), list.end(), c) != list.end();
+}
+
+} // namespace
+
+template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+    if (candidates.reference.size() != at.q.size()) {
+        return -1;
+    }
+    const double unit = 1 / candidates.reach; // squares neither under- nor overflow, whatever the units are
+    double moved = 0;
+    for (std::size_t k = 0; k + Dim <= at.q.size(); k += Dim) {
+        double square = 0;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            const double d = unit * (at.q[k + a] - candidates.reference[k + a]);
+            square += d * d;
+        }
+        moved = std::max(moved, square);
+    }
+    return candidates.reach * (0.5 - std::sqrt(moved));
+}
+
+template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+    if (reach_left(candidates, at) >= 0.25 * candidates.reach) {
+        return false;
+    }
+    candidates = find_candidates(at, candidate_fraction, candidates.triangulation);
+    return true;
+}
+
+template <int Dim>
+EventScan<Dim>::EventScan(const Contact& opened, const ArcOptions& options, CandidateList<Dim>& candidates,
+                          std::vector<Contact> open)
+    : opened_(opened), leaving_(options.leaving), resting_(options.resting), candidates_(candidates),
+      active_(std::move(open)) {
+    if (!active_.empty()) {
+        complete();
+    }
+}
+
+template <int Dim> void EventScan<Dim>::list(const Packing<Dim>& at, const std::vector<Contact>& kept) {
+    if (renew_candidates(candidates_, at)) {
+        active_.clear();
+    }
+    reach_ = reach_left(candidates_, at);
+    if (active_.empty()) {
+        const ContactSet contacts(kept, at.disk_count());
+        active_.reserve(candidates_.contacts.size());
+        std::copy_if(candidates_.contacts.begin(), candidates_.contacts.end(), std::back_inserter(active_),
+                     [&](const Contact& c) { return !contacts.contains(c); });
+        complete();
+    }
+}
+
+/// Of the open ones, those that take part; with the one that opens, which may close again.
+template <int Dim> void EventScan<Dim>::complete() {
+    std::erase_if(active_, [&](const Contact& c) { return c == opened_ || listed(resting_, c); });
+    if (opened_.kind != ContactKind::held) {
+        active_.push_back(opened_);
+    }
+}
+
+template <int Dim> GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& course, double longest, bool at_start) {
+    gap_.resize(active_.size());
+    rate_.resize(active_.size());
+    GapEvent first;
+    // Roots beyond the longest step are not asked for: |t| <= 1 in every coordinate, so that no second derivative of a
+    // gap is larger than this.
+    const double root_dim = std::sqrt(static_cast<double>(Dim));
+    const double bend = 1.01 * (2 * root_dim * largest(course.curvature) + 2 * Dim / course.at.min_radius());
+    const double curved = 0.5 * bend * longest * longest;
+    for (std::size_t c = 0; c < active_.size(); ++c) {
+        const bool opening = at_start && leaves(active_[c]);
+        if (const auto line = centre_line(course.at, active_[c]); line && !opening) {
+            gap_[c] = gap_of(course.at, active_[c], *line);
+            rate_[c] = rate_of(*line, active_[c], course.tangent);
+            if (gap_[c] + std::min(1.01 * rate_[c], 0.0) * longest > curved) {
+                continue;
+            }
+        }
+        const GapCourse gap = gap_course(course.at, active_[c], course.tangent, course.curvature);
+        gap_[c] = opening ? 0.0 : gap.value;
+        rate_[c] = gap.rate;
+        double root = first_root(std::max(gap_[c], 0.0), rate_[c], gap.bend);
+        if (gap_[c] <= 0 && !(rate_[c] > 0)) {
+            root = 0;
+        }
+        if (root < first.s) {
+            first = {active_[c], root};
+        }
+    }
+    return first;
+}
+
+template <int Dim> std::optional<GapEvent> EventScan<Dim>::first_violation(const Step& step, double noise) const {
+    std::optional<GapEvent> found;
+    double moved = 0;
+    for (std::size_t k = 0; k < step.to.q.size(); ++k) {
+        moved = std::max(moved, std::abs(step.to.q[k] - step.from.q[k]));
+    }
+    // A gap changes by no more than its grains, or a grain and a wall, move.
+    const double within = 2.01 * std::sqrt(static_cast<double>(Dim)) * moved;
+    for (std::size_t c = 0; c < active_.size(); ++c) {
+        if (gap_[c] > within || active_[c] == step.closing) {
+            continue;
+        }
+        const double h = quick_gap(step.to, active_[c]);
+        if (h < -noise) {
+            const double bend = 2 * (h - gap_[c] - rate_[c] * step.s) / (step.s * step.s);
+            const double root = std::min(first_root(gap_[c], rate_[c], bend), step.s);
+            if (!found || root < found->s) {
+                found = {active_[c], root};
+            }
+        }
+    }
+    return found;
+}
+
+template <int Dim>
+std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std::vector<double>& tangent) const {
+    std::optional<double> where;
+    for (std::size_t c = 0; c < active_.size(); ++c) {
+        if (!(rate_[c] < 0) || active_[c] == step.closing) {
+            continue;
+        }
+        const double rate = gap_rate(step.to, active_[c], tangent);
+        if (!(rate > 0)) {
+            continue;
+        }
+        const auto dip = Cubic{gap_[c], rate_[c], quick_gap(step.to, active_[c]), rate, step.s}.dip();
+        if (dip && (!where || *dip < *where)) {
+            where = dip;
+        }
+    }
+    return where;
+}
+
+template <int Dim> bool EventScan<Dim>::leaves(const Contact& contact) const {
+    return contact == opened_ || listed(leaving_, contact);
+}
+
+template <int Dim> std::vector<Contact> EventScan<Dim>::open_at_end(const Contact& closed) {
+    if (!resting_.empty() || active_.empty()) {
+        return {};
+    }
+    if (opened_.kind != ContactKind::held) {
+        active_.pop_back();
+    }
+    std::erase(active_, closed);
+    if (opened_.kind != ContactKind::held && opened_ != closed) {
+        active_.insert(std::lower_bound(active_.begin(), active_.end(), opened_), opened_);
+    }
+    return std::move(active_);
+}
+
+template double reach_left<2>(const CandidateList<2>&, const Packing<2>&);
+template bool renew_candidates<2>(CandidateList<2>&, const Packing<2>&);
+template class EventScan<2>;
+
+} // namespace isostat

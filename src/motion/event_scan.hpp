@@ -1,0 +1,74 @@
+#pragma once
+// The gaps that may close along an arc: where the next one does, and what a step may have missed. Private to the room.
+
+#include "motion/curve_course.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/motion/arc.hpp>
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+/// A gap that is expected to close, and where: distance of the fastest coordinate from where the step begins.
+struct GapEvent {
+    Contact contact;
+    double s = std::numeric_limits<double>::infinity(); ///< infinity: none closes
+};
+
+/// Displacement from `at` that the candidates still allow; negative when they are of other grains.
+template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at);
+
+/// The candidates that take part in one arc, with their gaps and rates where the present step begins. All it says is a
+/// guess: gaps are rounded, and between the ends of a step it knows a cubic.
+template <int Dim> class EventScan {
+  public:
+    /// `open`: the candidates that are not contacts of `structure`, if they are at hand.
+    EventScan(const Contact& opened, const ArcOptions& options, CandidateList<Dim>& candidates,
+              std::vector<Contact> open);
+
+    /// Sees to it that the list is complete about `at`; `kept` are the contacts that are not to be looked at.
+    void list(const Packing<Dim>& at, const std::vector<Contact>& kept);
+    /// Displacement that the candidates allow from there.
+    [[nodiscard]] double reach() const { return reach_; }
+
+    /// The first gap that the course brings to 0 within `longest`; from here on the step begins there. At the start of
+    /// the arc those that leave are 0.
+    GapEvent first_event(const CurveCourse<Dim>& course, double longest, bool at_start);
+
+    /// Where a step went and to which place. `closing`: the gap that is 0 there and is not looked at.
+    struct Step {
+        const Packing<Dim>& from;
+        const Packing<Dim>& to;
+        double s;
+        const Contact& closing;
+    };
+    /// The gap below -noise at the end of a step that reached 0 first, with an estimate of where.
+    [[nodiscard]] std::optional<GapEvent> first_violation(const Step& step, double noise) const;
+    /// First place where a gap seems to dip to or below 0 inside a step without being negative at its end, where the
+    /// tangent is `tangent`.
+    [[nodiscard]] std::optional<double> suspicious_dip(const Step& step, const std::vector<double>& tangent) const;
+
+    /// Its gap is 0 at the start, and grows.
+    [[nodiscard]] bool leaves(const Contact& contact) const;
+    /// The candidates that are not contacts after `closed` took the place of the opened one, in the order of the list;
+    /// empty: not known. The list is given away.
+    std::vector<Contact> open_at_end(const Contact& closed);
+
+  private:
+    void complete();
+
+    Contact opened_;
+    std::vector<Contact> leaving_, resting_;
+    CandidateList<Dim>& candidates_;
+    std::vector<Contact> active_;
+    std::vector<double> gap_, rate_; ///< of the active ones where the step begins
+    double reach_ = 0;
+};
+
+extern template class EventScan<2>;
+
+} // namespace isostat

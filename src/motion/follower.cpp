@@ -1,0 +1,390 @@
+#include "motion/follower.hpp"
+
+#include "core/dot.hpp"
+#include "motion/geometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+/// Relative accuracy of tangents: they only predict, choose the fastest coordinate and place dips and power turns; no
+/// sign rests on them.
+constexpr double tangent_accuracy = 1e-7;
+constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
+constexpr double end_tangent_accuracy = 1e-4;   ///< at an event, where only dips and the sign of the power are read off
+
+} // namespace
+
+template <int Dim>
+Follower<Dim>::Follower(const ArcStart<Dim>& start, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+                        const ArcOptions& options, std::vector<Contact> open)
+    : start_(start.packing), opened_(start.structure.contacts()[start.opened.index()]), options_(options),
+      chord_(start.structure, start.factorisation, start.opened.index()),
+      scan_(opened_, options, candidates, std::move(open)), power_(power),
+      here_{start.packing, chord_.mechanism(), {}, 0}, step_limit_(options.step_fraction * start.packing.min_radius()),
+      noise_(16 * grid_step(start.packing)), here_power_(power.starts_at_zero ? 0.0 : infinity) {
+    for (double& c : here_.tangent) {
+        c *= -start.direction;
+    }
+}
+
+template <int Dim> void Follower<Dim>::begin() {
+    if (!chord_.is_fresh()) { // the mechanism is that of a neighbouring matrix
+        here_.choose_fastest();
+        if (auto t = chord_.tangent(here_.tangent, here_.fastest, end_tangent_accuracy)) {
+            here_.tangent = std::move(*t);
+        } else {
+            failure_ = renew();
+        }
+    }
+    if (!failure_) {
+        opening_ = here_.tangent;
+        const double rate = 1 / gap_rate(here_.at, opened_, opening_);
+        for (double& c : opening_) {
+            c *= rate;
+        }
+        predicted_ = predict();
+    }
+}
+
+template <int Dim> std::optional<typename ArcDeparture<Dim>::Expected> Follower<Dim>::expected() const {
+    if (!predicted_ || !(event_.s <= step_limit_)) {
+        return std::nullopt;
+    }
+    return typename ArcDeparture<Dim>::Expected{event_.contact, here_.predicted(event_.s)};
+}
+
+/// Curvature and first event from `here_` and its tangent; false: `failure_` says why.
+template <int Dim> bool Follower<Dim>::predict() {
+    here_.choose_fastest();
+    if (!std::isfinite(here_.tangent[here_.fastest])) {
+        failure_ = Failure{FailureKind::not_converged, "the mechanism is not finite"};
+        return false;
+    }
+    scan_.list(here_.at, chord_.contacts());
+    here_.curvature =
+        chord_.velocity([&](const Contact& c) { return quick_curvature(here_.at, c, here_.tangent); }, here_.fastest);
+    event_ = scan_.first_event(here_, step_limit_, !moved_);
+    return true;
+}
+
+template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
+    if (failure_) {
+        return *failure_;
+    }
+    while (steps_ < options_.max_steps) {
+        auto ending = step();
+        if (!ending.ok()) {
+            return ending.failure();
+        }
+        if (ending.value()) {
+            return std::move(*ending.value());
+        }
+    }
+    return Failure{FailureKind::unbounded, fmt::format("no new contact after {} predictor steps", steps_)};
+}
+
+/// One attempt at a step. Nothing: the arc goes on, from there or from here.
+template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
+    if (!predicted_ && !predict()) {
+        return *failure_;
+    }
+    predicted_ = false;
+    if (!(here_power_ < infinity)) {
+        here_power_ = power_(here_.at, here_.tangent);
+    }
+    ++steps_;
+    // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
+    const double listed = 0.9 * scan_.reach() / (1.3 * std::sqrt(static_cast<double>(Dim)));
+    Attempt attempt = reach(std::min({step_limit_ * pace_.shrink, listed, pace_.for_dip, pace_.for_power}));
+    if (!attempt.ok()) {
+        return attempt.failure();
+    }
+    if (!attempt.value()) {
+        return Ending(std::nullopt);
+    }
+    Reached& there = *attempt.value();
+    if (there.s > noise_) {
+        if (const auto dip =
+                scan_.suspicious_dip({here_.at, there.point.at, there.s, there.closing}, there.point.tangent)) {
+            if (*dip < 1e-9 * step_limit_) {
+                return Failure{FailureKind::undecided,
+                               "a gap touches zero inside an arc and cannot be told from a contact"};
+            }
+            pace_.for_dip = std::max(*dip, 0.05 * there.s);
+            return Ending(std::nullopt);
+        }
+    }
+    const PowerSign sign = judge_power(there);
+    if (sign == PowerSign::shorten) {
+        return Ending(std::nullopt);
+    }
+    if (sign == PowerSign::turned) {
+        auto turn = power_turn(there.s, there.power);
+        return turn.ok() ? Ending(std::move(turn.value())) : Ending(turn.failure());
+    }
+    if (there.closing != nothing) {
+        const Contact closed = options_.closes.value_or(there.closing);
+        if (closed != there.closing && !converge_to(there.point.at, closed)) {
+            return Failure{FailureKind::not_converged,
+                           fmt::format("the event at contact {} was not reached", to_string<Dim>(closed))};
+        }
+        return Ending(finish(std::move(there.point), ArcEnd::contact, closed, there.power));
+    }
+    if (auto failure = go_on(std::move(there))) {
+        return *failure;
+    }
+    return Ending(std::nullopt);
+}
+
+/// The event, if it is predicted within this length or seen to lie within it; else the end of a step of this length.
+template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach(double longest) {
+    if (event_.s <= longest) {
+        return reach_event(event_, longest);
+    }
+    auto point = step_to(longest, tangent_accuracy);
+    if (!point) {
+        if (pace_.shrink < 1e-9) {
+            return Failure{FailureKind::not_converged, "the path could not be followed: steps became too short"};
+        }
+        if (auto failure = narrow()) {
+            return *failure;
+        }
+        return Attempt(std::nullopt);
+    }
+    if (const auto violation = scan_.first_violation({here_.at, point->at, longest, nothing}, noise_)) {
+        return reach_event(*violation, longest);
+    }
+    return Attempt(Reached{std::move(*point), longest, nothing});
+}
+
+/// The place where the gap of an event closes, or that of another which closes before.
+template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach_event(GapEvent event, double longest) {
+    for (int attempt = 0; attempt < 40; ++attempt) {
+        Packing<Dim> at = here_.predicted(event.s);
+        if (!converge_to(at, event.contact)) {
+            break;
+        }
+        const double reached = here_.direction() * (at.q[here_.fastest] - here_.at.q[here_.fastest]);
+        if (!(reached >= -noise_) || reached > 1.5 * std::max(longest, event.s) + noise_) {
+            break; // another root
+        }
+        if (!moved_ && scan_.leaves(event.contact) && reached < 0.25 * event.s) {
+            break; // the start itself: the gap that opens is zero there too
+        }
+        const double s = std::max(reached, 0.0);
+        if (s > noise_) {
+            if (const auto violation = scan_.first_violation({here_.at, at, s, event.contact}, noise_)) {
+                event = *violation;
+                continue;
+            }
+        }
+        auto point = tangent_at_event(std::move(at), s, event.contact);
+        if (!point) {
+            break;
+        }
+        return Attempt(Reached{std::move(*point), s, event.contact});
+    }
+    return shorten_before(event, longest);
+}
+
+/// The direct solve failed: renews the factors, and shortens the step when that does not help.
+template <int Dim>
+typename Follower<Dim>::Attempt Follower<Dim>::shorten_before(const GapEvent& event, double longest) {
+    if (longest < 1e-12 * step_limit_ || pace_.shrink < 1e-9) {
+        return Failure{FailureKind::not_converged,
+                       fmt::format("the event at contact {} was not reached", to_string<Dim>(event.contact))};
+    }
+    if (pace_.renewed) {
+        pace_.shrink = std::min(pace_.shrink, event.s / step_limit_) * 0.25;
+        return Attempt(std::nullopt);
+    }
+    if (auto failure = renew()) {
+        return *failure;
+    }
+    pace_.renewed = true;
+    return Attempt(std::nullopt);
+}
+
+template <int Dim> std::optional<CurvePoint<Dim>> Follower<Dim>::step_to(double s, double accuracy) {
+    Packing<Dim> at = here_.predicted(s);
+    const Packing<Dim> guess = at;
+    if (!chord_.converge(at, Contact{ContactKind::held, static_cast<int>(here_.fastest), 0})) {
+        return std::nullopt;
+    }
+    double off = 0;
+    for (std::size_t k = 0; k < at.q.size(); ++k) {
+        off = std::max(off, std::abs(at.q[k] - guess.q[k]));
+    }
+    // A start known to its last bits only is put back on the curve first: that is no bend, however short the step.
+    if (off > 0.2 * s + 1e-10 * at.min_radius()) {
+        return std::nullopt; // another branch, or a curve too bent for this step
+    }
+    auto t = chord_.tangent(at, here_.tangent, here_.fastest, accuracy);
+    if (!t || largest(*t) > 4) {
+        return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
+    }
+    return CurvePoint<Dim>{std::move(at), std::move(*t)};
+}
+
+template <int Dim> bool Follower<Dim>::converge_to(Packing<Dim>& at, const Contact& closing) {
+    const bool converged = chord_.converge(at, closing);
+    if (converged) {
+        snap_to_grid(at);
+    }
+    return converged;
+}
+
+/// With the tangent that the event needs: where a dip or the sign of the power is not clear from an extrapolation, it
+/// is solved for.
+template <int Dim>
+std::optional<CurvePoint<Dim>> Follower<Dim>::tangent_at_event(Packing<Dim> at, double s, const Contact& closing) {
+    if (options_.extrapolate_tangent) {
+        Vector t = here_.extrapolated_tangent(at, s, 1e-5 * step_limit_);
+        const double power = power_(here_.at, here_.tangent);
+        if (power_(at, t) > 0.1 * std::abs(power) && !scan_.suspicious_dip({here_.at, at, s, closing}, t)) {
+            return CurvePoint<Dim>{std::move(at), std::move(t)};
+        }
+    }
+    auto t = chord_.tangent(at, here_.tangent, here_.fastest, end_tangent_accuracy);
+    return t ? std::optional(CurvePoint<Dim>{std::move(at), std::move(*t)}) : std::nullopt;
+}
+
+/// The power where the step ended, and what it says of the step.
+template <int Dim> typename Follower<Dim>::PowerSign Follower<Dim>::judge_power(Reached& there) {
+    CurvePoint<Dim>& point = there.point;
+    there.power = power_(point.at, point.tangent);
+    // At a limit load the power grows from zero: over the first, possibly tiny, step its sign is left to the force
+    // in the new contact.
+    const bool judged = !power_.starts_at_zero() || moved_;
+    const bool long_enough = there.s > 1e-6 * step_limit_;
+    if (judged && there.power < 0) { // it may only seem so: a turn at the very end of an arc is none
+        if (auto t = chord_.tangent(point.at, here_.tangent, here_.fastest, turn_tangent_accuracy)) {
+            point.tangent = std::move(*t);
+            there.power = power_(point.at, point.tangent);
+        }
+    }
+    if (!judged && there.power < 0 && long_enough) {
+        pace_.for_dip = 0.25 * there.s; // it may have grown and turned within the step
+        return PowerSign::shorten;
+    }
+    if (there.power > 0 && long_enough) {
+        if (const auto dip = power_.dip(here_, chord_, {here_power_, there.power, there.s})) {
+            pace_.for_power = std::min(pace_.for_power, 0.5 * *dip);
+            return PowerSign::shorten;
+        }
+    }
+    return judged && there.power < 0 && here_power_ > 0 ? PowerSign::turned : PowerSign::positive;
+}
+
+/// The end where the power vanishes, within a step of length s at whose end it is negative.
+template <int Dim> Result<Arc<Dim>> Follower<Dim>::power_turn(double s, double power) {
+    SignChange bracket({0.0, here_power_}, {s, power});
+    std::optional<CurvePoint<Dim>> best;
+    double smallest = infinity;
+    for (int k = 0; k < 60; ++k) {
+        const double tried = bracket.next();
+        auto point = step_to(tried, turn_tangent_accuracy);
+        if (!point) {
+            return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
+        }
+        const double p = power_(point->at, point->tangent);
+        if (std::abs(p) < std::abs(smallest)) {
+            smallest = p;
+            best = std::move(point);
+        }
+        if (p == 0 || bracket.width() < 4 * grid_step(here_.at)) {
+            break;
+        }
+        bracket.found({tried, p});
+    }
+    here_.tangent = best->tangent;
+    here_.choose_fastest();
+    snap_to_grid(best->at);
+    return finish(std::move(*best), ArcEnd::power_turn, Contact{ContactKind::held, static_cast<int>(here_.fastest), 0},
+                  smallest);
+}
+
+/// The next step begins there.
+template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
+    moved_ = true;
+    here_.at = std::move(there.point.at);
+    here_.tangent = std::move(there.point.tangent);
+    here_power_ = there.power;
+    pace_.for_dip = infinity;
+    pace_.renewed = false;
+    if (chord_.iterations() > 10) {
+        here_.choose_fastest();
+        if (auto failure = renew()) {
+            return failure;
+        }
+    }
+    pace_.shrink = std::min(1.0, 2 * pace_.shrink);
+    for (int a = 0; a < Dim; ++a) {
+        if (std::abs(here_.at.length(a) / start_.length(a) - 1) > options_.max_length_change) {
+            return Failure{FailureKind::unbounded,
+                           fmt::format("the motion has no end: L along axis {} went from {} to {}", a, start_.length(a),
+                                       here_.at.length(a))};
+        }
+    }
+    return std::nullopt;
+}
+
+/// Stale factors first, then shorter steps.
+template <int Dim> std::optional<Failure> Follower<Dim>::narrow() {
+    if (chord_.iterations() > 12 || pace_.shrink < 0.3) {
+        if (auto failure = renew()) {
+            return failure;
+        }
+    }
+    pace_.shrink *= 0.25;
+    return std::nullopt;
+}
+
+/// The factors of the start are stale: those of the structure that holds the fastest coordinate, here.
+template <int Dim> std::optional<Failure> Follower<Dim>::renew() {
+    if (auto failure = chord_.renew(here_.at, here_.fastest)) {
+        return failure;
+    }
+    const double scale = here_.direction() / chord_.mechanism()[here_.fastest];
+    here_.tangent = chord_.mechanism();
+    for (double& c : here_.tangent) {
+        c *= scale;
+    }
+    return std::nullopt;
+}
+
+template <int Dim>
+Arc<Dim> Follower<Dim>::finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& closed, double power) {
+    Arc<Dim> arc;
+    for (std::size_t l = 0; l < chord_.contacts().size(); ++l) {
+        const Contact& contact = chord_.contacts()[l];
+        if (contact.kind == ContactKind::held && contact != opened_ && l != chord_.slot()) {
+            const auto k = static_cast<std::size_t>(contact.i);
+            end.at.q[k] = start_.q[k]; // held means held, rounding apart
+        }
+    }
+    for (std::size_t k = 0; k < end.at.q.size(); ++k) {
+        arc.displacement = std::max(arc.displacement, std::abs(end.at.q[k] - start_.q[k]));
+    }
+    arc.end = std::move(end.at);
+    arc.kind = kind;
+    arc.closed = closed;
+    arc.power = power;
+    arc.tangent = std::move(end.tangent);
+    arc.opening = std::move(opening_);
+    arc.open = scan_.open_at_end(closed);
+    arc.steps = steps_;
+    arc.factorisations = chord_.factorisations();
+    arc.passes = chord_.passes();
+    return arc;
+}
+
+template class Follower<2>;
+
+} // namespace isostat

@@ -1,0 +1,108 @@
+#include "motion/power_along.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace isostat {
+
+namespace {
+
+double product(const std::vector<double>& maybe_empty, const std::vector<double>& v) {
+    double sum = 0;
+    for (std::size_t k = 0; k < maybe_empty.size(); ++k) {
+        sum += maybe_empty[k] * v[k];
+    }
+    return sum;
+}
+
+/// n . third derivative of a kept gap, whose own third derivative is 0: -3 (t . curvature) / d, as approach.
+template <int Dim> double third_approach(const CurveCourse<Dim>& course, const Contact& c) {
+    if (c.kind != ContactKind::disk_disk) {
+        return 0;
+    }
+    const auto i = static_cast<std::size_t>(Dim * c.i);
+    const auto j = static_cast<std::size_t>(Dim * c.j);
+    double product = 0;
+    double square = 0;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        const double d = course.at.q[j + a] - course.at.q[i + a];
+        square += d * d;
+        product +=
+            (course.tangent[j + a] - course.tangent[i + a]) * (course.curvature[j + a] - course.curvature[i + a]);
+    }
+    return 3 * product / std::sqrt(square);
+}
+
+} // namespace
+
+template <int Dim> double PowerAlong<Dim>::operator()(const Packing<Dim>& at, const std::vector<double>& t) const {
+    return product(load_.infinitesimal ? load_.load->infinitesimal : load_.load->external_force(at), t);
+}
+
+/// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.
+template <int Dim>
+std::vector<double> PowerAlong<Dim>::change(const Packing<Dim>& at, const std::vector<double>& v) const {
+    static_assert(Dim == 2);
+    if (load_.infinitesimal || load_.load->kind == LoadKind::nominal) {
+        return {};
+    }
+    Packing<Dim> there = at;
+    for (std::size_t k = 0; k < there.q.size(); ++k) {
+        there.q[k] += v[k];
+    }
+    std::vector<double> change = load_.load->external_force(there);
+    const std::vector<double> here = load_.load->external_force(at);
+    std::transform(change.begin(), change.end(), here.begin(), change.begin(), std::minus<>());
+    return change;
+}
+
+template <int Dim>
+std::optional<double> PowerAlong<Dim>::dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const {
+    const double s = step.s;
+    // p = F.t; with c = dt/ds and e = dc/ds: p' = F.c + t.DF t, p'' = F.e + 2 c.DF t + t.DF c; dead loads: DF = 0
+    const std::vector<double> turn = change(course.at, course.tangent);
+    const double p1 = s * ((*this)(course.at, course.curvature) + product(turn, course.tangent));
+    // A pass for the fourth number only where the curved part, as the other three show it, could bring the power
+    // near 0. Like the cubic itself this is an estimate, not a proof.
+    const double rest = std::abs(step.end - step.start - p1);
+    if (std::min(step.start, step.start + p1) > 2 * rest) {
+        return std::nullopt;
+    }
+    const std::vector<double>& third =
+        chord.velocity([&](const Contact& c) { return third_approach(course, c); }, course.fastest);
+    const double p2 = 0.5 * s * s *
+                      ((*this)(course.at, third) + 2 * product(turn, course.curvature) +
+                       product(change(course.at, course.curvature), course.tangent));
+    const double p3 = step.end - step.start - p1 - p2;
+    // What the cubic misses at x is x^3 (1 - x) times a fourth derivative / 24, taken to be as much as p3.
+    constexpr int samples = 32;
+    for (int k = 1; k < samples; ++k) {
+        const double x = static_cast<double>(k) / samples;
+        if (step.start + x * (p1 + x * (p2 + x * p3)) < x * x * x * (1 - x) * std::abs(p3)) {
+            return x * s;
+        }
+    }
+    return std::nullopt;
+}
+
+double SignChange::next() const {
+    const double s = (low_.value * high_.s - high_.value * low_.s) / (low_.value - high_.value);
+    return s > low_.s && s < high_.s ? s : 0.5 * (low_.s + high_.s);
+}
+
+void SignChange::found(End there) {
+    if (there.value > 0) {
+        low_ = there;
+        high_.value *= side_ == 1 ? 0.5 : 1.0;
+        side_ = 1;
+    } else {
+        high_ = there;
+        low_.value *= side_ == -1 ? 0.5 : 1.0;
+        side_ = -1;
+    }
+}
+
+template class PowerAlong<2>;
+
+} // namespace isostat

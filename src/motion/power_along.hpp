@@ -1,0 +1,58 @@
+#pragma once
+// The power of the load along an arc: private to the room.
+
+#include "motion/chord.hpp"
+#include "motion/curve_course.hpp"
+
+#include <isostat/motion/arc.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+/// Power of the load, F_ext . t, and where it may vanish inside a step: estimates.
+template <int Dim> class PowerAlong {
+  public:
+    explicit PowerAlong(const PowerLoad<Dim>& load) : load_(load) {}
+
+    [[nodiscard]] bool starts_at_zero() const { return load_.starts_at_zero; }
+    /// F_ext . t at a configuration.
+    [[nodiscard]] double operator()(const Packing<Dim>& at, const std::vector<double>& t) const;
+
+    /// The power at the two ends of a step of length s.
+    struct Step {
+        double start, end, s;
+    };
+    /// First place inside a step where the power seems to be negative although both ends are positive: the cubic with
+    /// its value and its first two derivatives at the start, and its value at the end. Mostly without a pass, else one.
+    [[nodiscard]] std::optional<double> dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const;
+
+  private:
+    [[nodiscard]] std::vector<double> change(const Packing<Dim>& at, const std::vector<double>& v) const;
+
+    PowerLoad<Dim> load_;
+};
+
+/// Root of a function between two places where it has opposite signs, positive at the lower one: false position with
+/// the Illinois rule.
+class SignChange {
+  public:
+    struct End {
+        double s, value;
+    };
+    SignChange(End low, End high) : low_(low), high_(high) {}
+    /// Where to look next.
+    [[nodiscard]] double next() const;
+    /// What was found there: it takes the place of the end with that sign.
+    void found(End there);
+    [[nodiscard]] double width() const { return high_.s - low_.s; }
+
+  private:
+    End low_, high_;
+    int side_ = 0; ///< +1, -1: the end replaced last was the lower, the upper one
+};
+
+extern template class PowerAlong<2>;
+
+} // namespace isostat

@@ -1,14 +1,13 @@
 #include "trajectory/behind.hpp"
 #include "trajectory/descent.hpp"
+#include "trajectory/first_order_side.hpp"
 #include "trajectory/plain.hpp"
 #include "trajectory/record.hpp"
-#include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/motion/arc.hpp>
-#include <isostat/preparation/backbone.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
@@ -65,7 +64,11 @@ template <int Dim> class Run {
   public:
     Run(State<Dim>& state, int segment, const RunOptions& options, RunCounters& counters, RunObserver<Dim>& observer)
         : state_(state), segment_(segment), options_(options), counters_(counters), observer_(observer),
-          seconds_before_(counters.seconds) {}
+          seconds_before_(counters.seconds) {
+        if (options.ties == TiePolicy::perturb) {
+            first_order_.emplace(state, options.ties_seed);
+        }
+    }
 
     SegmentOutcome run(const Segment& segment) {
         SegmentOutcome outcome = play(segment);
@@ -95,26 +98,13 @@ template <int Dim> class Run {
         bound_cache_.forget();
     }
 
-    [[nodiscard]] bool perturbs() const { return options_.ties == TiePolicy::perturb; }
-    [[nodiscard]] static PerturbedStatics<Dim>* first_order(const Vertex<Dim>& vertex) {
-        return vertex.perturbed ? &vertex.perturbed->statics : nullptr;
-    }
-    /// What the limit that a rearrangement starts from says of its load.
-    struct LimitLoad {
-        std::shared_ptr<const LoadShift> shift; ///< the exact stress less the stored one
-        double error = 0;
-        Enclosure stress_rate{0, 0};
-    };
+    [[nodiscard]] bool perturbs() const { return first_order_.has_value(); }
     Result<std::unique_ptr<Vertex<Dim>>> make_vertex(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                     const Load<Dim>& load, const LimitLoad& limit);
-    void perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit);
+                                                     const Load<Dim>& load);
     static void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into);
-    std::optional<Failure> settle(const LimitLoad& limit, const std::vector<ContactId>& zeros, double stress);
-    void store_first_order();
     Result<bool> choose_start();
     std::optional<Failure> still_equilibrium(double stress);
     std::optional<Failure> reload();
-    std::optional<Failure> resume_first_order(const std::vector<std::pair<Contact, Order>>& touching);
 
     void count(DecisionKind kind, double margin, Rung rung, ArcRecord<Dim>* arc = nullptr, bool perturbed = false) {
         counters_.tally.perturbed[static_cast<std::size_t>(kind)] += perturbed ? 1 : 0;
@@ -128,9 +118,9 @@ template <int Dim> class Run {
     }
 
     std::optional<Failure> start();
-    std::optional<Failure> rearrange(Opening opening, const std::string& kind, double stress, const LimitLoad& limit);
+    std::optional<Failure> rearrange(Opening opening, const std::string& kind, const LimitLoad<Dim>& limit);
     Result<std::unique_ptr<Vertex<Dim>>> follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
-                                                const Load<Dim>& load, const LimitLoad& limit, ArcRecord<Dim>& record);
+                                                const LimitLoad<Dim>& limit, ArcRecord<Dim>& record);
     using Tell = std::function<void(DecisionKind, double margin, Rung, bool perturbed)>;
     std::optional<Failure> check_arc(const Vertex<Dim>& from, Vertex<Dim>& to, const Opening& opening,
                                      const Load<Dim>& load, ArcRecord<Dim>& record, bool& descends,
@@ -223,7 +213,7 @@ template <int Dim> class Run {
     std::array<std::optional<LoadLimit>, 2> limits_; ///< of `vertex_`, as `describe` found them
     double margin_ = infinity;                       ///< of the decisions since the last equilibrium
     Rung rung_ = Rung::combinatorial;
-    std::vector<ContactId> zeros_; ///< forces of `vertex_` that vanish in the base
+    std::optional<FirstOrderSide<Dim>> first_order_; ///< under `ties = "perturb"`
     const Segment* segment_wanted_ = nullptr;
     int made_ = 0;                    ///< equilibria of it
     std::unique_ptr<PlainWay> ahead_; ///< the next rearrangement, if it was begun
@@ -234,18 +224,12 @@ Failure located(const Failure& failure, const std::string& where) {
     return {failure.kind, where + ": " + failure.message};
 }
 
-template <int Dim> void Run<Dim>::perturb_at(Vertex<Dim>& vertex, const Load<Dim>& load, const LimitLoad& limit) {
-    if (perturbs()) {
-        perturb(vertex, load, state_.perturbation->rho, limit.stress_rate, limit.shift, limit.error);
-    }
-}
-
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::make_vertex(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                           const Load<Dim>& load, const LimitLoad& limit) {
+                                                           const Load<Dim>& load) {
     auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), load, bound_cache_);
-    if (made.ok()) {
-        perturb_at(*made.value(), load, limit);
+    if (made.ok() && perturbs()) {
+        first_order_->attach(*made.value(), {load, nullptr, 0, {0, 0}});
     }
     return made;
 }
@@ -260,8 +244,8 @@ template <int Dim> void Run<Dim>::take_log(Vertex<Dim>& vertex, std::vector<TieD
 
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, const Opening& opening, bool at_limit,
-                                                      const Load<Dim>& load, const LimitLoad& limit,
-                                                      ArcRecord<Dim>& record) {
+                                                      const LimitLoad<Dim>& limit, ArcRecord<Dim>& record) {
+    const Load<Dim>& load = limit.load;
     ArcOptions arc_options;
     arc_options.step_fraction = options_.step_fraction;
     LadderOptions ladder;
@@ -314,8 +298,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Run<Dim>::follow(const Vertex<Dim>& from, c
         record_path(record, path);
         auto made = Vertex<Dim>::exchanged(from, path.end, opening.contact, path.closed, path.tangent, load,
                                            bound_cache_, fresh ? 0 : path.passes, ladder);
-        if (made.ok()) {
-            perturb_at(*made.value(), load, limit);
+        if (made.ok() && perturbs()) {
+            first_order_->attach(*made.value(), limit);
         }
         if (!made.ok() && !fresh && !next_to && !from.factorisation.is_fresh()) {
             fresh.emplace(from.structure); // old factors may also have ended it badly
@@ -460,57 +444,10 @@ template <int Dim> std::string kind_of(const Vertex<Dim>& at, const Opening& ope
                                                                                       : "tension";
 }
 
-/// The load of an equilibrium that was reached at a limit: the stored stress, when every force is positive there as at
-/// the exact one; otherwise the stress at which one of the forces that vanish does so.
-template <int Dim>
-std::optional<Failure> Run<Dim>::settle(const LimitLoad& limit, const std::vector<ContactId>& zeros, double stress) {
-    RadiusPerturbation& stored = *state_.perturbation;
-    stored.load_zero = {ContactKind::disk_disk, -1, -1};
-    stored.stress_rate = {0, 0};
-    if (!limit.shift) {
-        return std::nullopt;
-    }
-    Statics<Dim>& statics = vertex_->statics;
-    const auto error = [&](const Enclosure& slope) { return limit.error * (std::abs(slope.value) + slope.radius); };
-    ContactId at_zero;
-    for (const ContactId l : zeros) {
-        if (!at_zero.valid() && statics.slope(l).decided()) {
-            at_zero = l;
-        }
-    }
-    for (int l = 0; l < statics.structure().size() && !at_zero.valid(); ++l) {
-        const ContactId id(l);
-        if (statics.is_structural_zero(id) || statics.structure().contacts()[id.index()].kind == ContactKind::held ||
-            std::find(zeros.begin(), zeros.end(), id) != zeros.end()) {
-            continue;
-        }
-        Enclosure f = statics.force(id, stress);
-        f.radius += error(statics.slope(id)) * (1 + 1e-10);
-        if (!f.positive()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("the force in {} is so small, {:.3g}, that the limit load must be known better "
-                                       "than it is stored",
-                                       to_string<Dim>(statics.structure().contacts()[id.index()]), f.value)};
-        }
-    }
-    if (!at_zero.valid()) {
-        return std::nullopt;
-    }
-    const Enclosure slope = statics.slope(at_zero);
-    const Enclosure f = statics.force(at_zero, stress);
-    const double bound = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
-    stored.load_zero = statics.structure().contacts()[at_zero.index()];
-    stored.stress_rate = limit.stress_rate;
-    Load<Dim> load = state_.load;
-    set_sigma(load, stress);
-    perturb(*vertex_, load, stored.rho, limit.stress_rate, statics.zero_of(at_zero, stress), bound);
-    return std::nullopt;
-}
-
 /// Asks again what made `vertex_` an equilibrium: after a resume the statics then stand on the same rung. Under
 /// `perturb` the answer must be the same with the load that the state stores.
 template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium(double stress) {
-    auto decision = decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0, first_order(*vertex_));
+    auto decision = decide_opening(vertex_->statics, stress, options_.rule, ContactId(), 0, vertex_->first_order());
     if (!perturbs()) {
         return std::nullopt;
     }
@@ -520,37 +457,15 @@ template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium(double str
                        fmt::format("equilibrium at sigma = {:.17g}: not found again with the load as it is stored{}",
                                    stress, decision.ok() ? "" : ": " + decision.failure().message)};
     }
-    zeros_ = decision.value().zeros;
+    vertex_->perturbed->zeros = decision.value().zeros;
     return std::nullopt;
-}
-
-/// The first-order side of a start: the load that its state means, and the pairs that touch.
-template <int Dim>
-std::optional<Failure> Run<Dim>::resume_first_order(const std::vector<std::pair<Contact, Order>>& touching) {
-    const RadiusPerturbation& stored = *state_.perturbation;
-    const auto& contacts = vertex_->structure.contacts();
-    const auto at = std::find(contacts.begin(), contacts.end(), stored.load_zero);
-    if (stored.load_zero.i >= 0 && at != contacts.end()) {
-        const ContactId l(static_cast<std::size_t>(at - contacts.begin()));
-        const Enclosure slope = vertex_->statics.slope(l);
-        const Enclosure f = vertex_->statics.force(l, sigma());
-        const double bound = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
-        if (!slope.decided()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("the load at which the force in {} vanishes is not known",
-                                       to_string<Dim>(stored.load_zero))};
-        }
-        perturb(*vertex_, state_.load, stored.rho, stored.stress_rate, vertex_->statics.zero_of(l, sigma()), bound);
-    }
-    return settle_touching(*vertex_, touching);
 }
 
 /// The same vertex under another load, which is meant as it is stored.
 template <int Dim> std::optional<Failure> Run<Dim>::reload() {
-    state_.perturbation->load_zero = {ContactKind::disk_disk, -1, -1};
-    state_.perturbation->stress_rate = {0, 0};
+    first_order_->load_is_stored();
     const auto touching = vertex_->perturbed->touching;
-    auto made = make_vertex(vertex_->packing, vertex_->structure.contacts(), state_.load, LimitLoad{});
+    auto made = make_vertex(vertex_->packing, vertex_->structure.contacts(), state_.load);
     if (!made.ok()) {
         return made.failure();
     }
@@ -559,47 +474,25 @@ template <int Dim> std::optional<Failure> Run<Dim>::reload() {
     return still_equilibrium(sigma());
 }
 
-/// The results of the present equilibrium go with its state.
-template <int Dim> void Run<Dim>::store_first_order() {
-    if (!vertex_->perturbed) {
-        return;
-    }
-    RadiusPerturbation& stored = *state_.perturbation;
-    stored.open = vertex_->perturbed->touching;
-    stored.zero.clear();
-    for (const ContactId l : zeros_) {
-        stored.zero.emplace_back(vertex_->structure.contacts()[l.index()], vertex_->perturbed->statics.force(l));
-    }
-}
-
-/// rho is made, and of the contacts of a hyperstatic start those are kept that carry the load for small eps > 0: of
-/// those listed, and of the pairs that touch without being listed. True: a choice was made.
+/// Of the contacts of a hyperstatic start those are kept that carry the load for small eps > 0: of those listed, and of
+/// the pairs that touch without being listed. True: a choice was made.
 template <int Dim> Result<bool> Run<Dim>::choose_start() {
-    if (!state_.perturbation) {
-        state_.perturbation.emplace();
-        state_.perturbation->seed = options_.ties_seed;
-        state_.perturbation->rho = tie_direction(state_.packing.radius, options_.ties_seed);
-    }
     if (counters_.equilibria != 0 || counters_.steps != 0) {
         return false;
     }
     const auto dofs = static_cast<std::size_t>(DofMap<Dim>(state_.packing).dof_count());
     bool chosen = false;
     const auto choose = [&]() -> std::optional<Failure> {
-        auto kept = first_order_backbone(state_.packing, state_.load, state_.contacts, state_.perturbation->rho);
-        if (!kept.ok()) {
-            return located(kept.failure(), "start");
-        }
-        state_.contacts = kept.value();
         chosen = true;
-        return std::nullopt;
+        const auto failure = first_order_->choose_contacts();
+        return failure ? std::optional<Failure>(located(*failure, "start")) : std::nullopt;
     };
     if (state_.contacts.size() > dofs) {
         if (auto failure = choose()) {
             return *failure;
         }
     }
-    auto made = make_vertex(state_.packing, state_.contacts, state_.load, LimitLoad{});
+    auto made = make_vertex(state_.packing, state_.contacts, state_.load);
     if (!made.ok()) {
         return located(made.failure(), "start");
     }
@@ -803,7 +696,6 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
         return std::nullopt;
     }
     count(DecisionKind::equilibrium, decision.margin, decision.rung, nullptr, decision.perturbed);
-    zeros_ = decision.zeros;
     way.ended = true;
     if (anew && proved == steered) {
         add_work(by_anew);
@@ -815,11 +707,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::go_ahead(Way& way, const Loa
 }
 
 template <int Dim>
-std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, double stress,
-                                           const LimitLoad& limit) {
-
-    Load<Dim> load = state_.load;
-    set_sigma(load, stress);
+std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& kind, const LimitLoad<Dim>& limit) {
+    const Load<Dim>& load = limit.load;
+    const double stress = limit.stress();
     if (options_.certify == CertifyLevel::plain) {
         return rearrange_plainly(opening, kind, load);
     }
@@ -829,6 +719,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     way.kind = kind;
     bool descends = false;          // the work of the last arc was proved positive
     std::vector<ContactId> resting; // holds at `from` whose multipliers are 0 as far as their turns are located
+    std::vector<ContactId> zeros;   // forces at the end that vanish in the base
     while (!way.ended) {
         if (steers_ahead() && !way.by_steps && resting.empty()) {
             if (auto failure = go_ahead(way, load)) {
@@ -866,7 +757,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         count(DecisionKind::opening, way.opening.margin, way.opening.rung, &record, way.opening.perturbed);
         const bool at_limit = way.arcs == 1 && kind == "limit";
         const std::string where = fmt::format("arc {} of the rearrangement at sigma = {:.17g}", way.arcs, stress);
-        auto made = follow(*from, way.opening, at_limit, load, limit, record);
+        auto made = follow(*from, way.opening, at_limit, limit, record);
         if (!made.ok()) {
             return located(made.failure(), where);
         }
@@ -887,7 +778,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
                 zero.fresh = way.last_hold;
             }
             auto again = decide_opening(way.here->statics, stress, options_.rule, zero,
-                                        bits_for(options_.rule_seed, counters_.steps), first_order(*way.here));
+                                        bits_for(options_.rule_seed, counters_.steps), way.here->first_order());
             if (!again.ok()) {
                 return located(again.failure(), where);
             }
@@ -912,7 +803,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         record_strain(record, *next, load);
         const ContactId fresh_hold = record.power_turn ? way.opening.contact : ContactId();
         auto decision = decide_opening(next->statics, stress, options_.rule, fresh_hold,
-                                       bits_for(options_.rule_seed, counters_.steps), first_order(*next));
+                                       bits_for(options_.rule_seed, counters_.steps), next->first_order());
         take_log(*next, record.perturbed);
         observer_.on_arc(record);
         if (!decision.ok()) {
@@ -927,7 +818,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
         if (!decision.value().opening) {
             count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
                   decision.value().perturbed);
-            zeros_ = decision.value().zeros;
+            zeros = decision.value().zeros;
             break;
         }
         way.opening = *decision.value().opening;
@@ -938,7 +829,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
     if (way.anew == nullptr) {
         fresh_caches(way.here->packing);
         // The load is again the stored one, if the forces allow it.
-        auto anew = make_vertex(way.here->packing, way.here->structure.contacts(), load, LimitLoad{});
+        auto anew = make_vertex(way.here->packing, way.here->structure.contacts(), load);
         if (!anew.ok()) {
             return located(anew.failure(), fmt::format("equilibrium at sigma = {:.17g}", stress));
         }
@@ -954,7 +845,7 @@ std::optional<Failure> Run<Dim>::rearrange(Opening opening, const std::string& k
                                                          to_string<Dim>(*gaps.value().negative))};
     }
     if (perturbs()) {
-        std::optional<Failure> failure = settle(limit, zeros_, stress);
+        std::optional<Failure> failure = first_order_->settle_load(*vertex_, limit, zeros);
         if (!failure) {
             failure = settle_touching(*vertex_, gaps.value().zero);
         }
@@ -1231,7 +1122,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     rung_ = Rung::combinatorial;
     record_ = record;
     state_.equilibrium = counters_.equilibria;
-    store_first_order();
+    if (perturbs()) {
+        first_order_->store(*vertex_);
+    }
     counters_.seconds = elapsed();
     observer_.on_equilibrium(record, state_, finite_forces(*vertex_, state_.load));
     return observer_.objection();
@@ -1247,7 +1140,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         }
         touching = chosen.value();
     }
-    auto made = make_vertex(state_.packing, state_.contacts, state_.load, LimitLoad{});
+    auto made = make_vertex(state_.packing, state_.contacts, state_.load);
     if (!made.ok()) {
         return located(made.failure(), "start");
     }
@@ -1260,7 +1153,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         return Failure{FailureKind::overlap, fmt::format("start: {} overlap", to_string<Dim>(*gaps.value().negative))};
     }
     if (perturbs()) {
-        if (auto failure = resume_first_order(gaps.value().zero)) {
+        if (auto failure = first_order_->resume(*vertex_, gaps.value().zero)) {
             return located(*failure, "start");
         }
         touching = touching || !gaps.value().zero.empty();
@@ -1285,16 +1178,16 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
     }
     count(DecisionKind::gaps, gaps.value().margin, gaps.value().rung);
     auto decision = decide_opening(vertex_->statics, sigma(), options_.rule, ContactId(),
-                                   bits_for(options_.rule_seed, 0), first_order(*vertex_));
+                                   bits_for(options_.rule_seed, 0), vertex_->first_order());
     if (!decision.ok()) {
         return located(decision.failure(), "start");
     }
     if (decision.value().opening) {
         const Opening& opening = *decision.value().opening;
-        return rearrange(opening, opening.infinitesimal ? "rattler" : "tension", sigma(), LimitLoad{});
+        return rearrange(opening, opening.infinitesimal ? "rattler" : "tension", {state_.load, nullptr, 0, {0, 0}});
     }
-    zeros_ = decision.value().zeros;
     if (vertex_->perturbed) {
+        vertex_->perturbed->zeros = decision.value().zeros;
         vertex_->perturbed->statics.log.clear();
     }
     count(DecisionKind::equilibrium, decision.value().margin, decision.value().rung, nullptr,
@@ -1336,7 +1229,7 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
         const std::optional<LoadLimit>& known = limits_[segment.direction > 0 ? 1 : 0];
         auto found = known && !perturbs() && vertex_->statics.rung() == Rung::double_bound
                          ? Result<LoadLimit>(*known)
-                         : find_limit(vertex_->statics, sigma(), segment.direction, first_order(*vertex_));
+                         : find_limit(vertex_->statics, sigma(), segment.direction, vertex_->first_order());
         if (!found.ok()) {
             outcome.failure = located(found.failure(), fmt::format("limit of equilibrium {}", counters_.equilibria));
             return outcome;
@@ -1382,7 +1275,8 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
         opening.margin = limit.margin;
         opening.rung = limit.rung;
         opening.perturbed = limit.perturbed;
-        LimitLoad at_limit;
+        LimitLoad<Dim> at_limit{state_.load, nullptr, 0, {0, 0}};
+        at_limit.set_stress(limit.stress);
         if (perturbs()) {
             at_limit.shift = vertex_->statics.zero_of(limit.opens, limit.stress);
             at_limit.error = limit.stress_error;
@@ -1391,7 +1285,7 @@ template <int Dim> SegmentOutcome Run<Dim>::play(const Segment& segment) {
         }
         const RunCounters before = counters_;
         ++counters_.equilibria;
-        if (auto failure = rearrange(opening, "limit", limit.stress, at_limit)) {
+        if (auto failure = rearrange(opening, "limit", at_limit)) {
             counters_.equilibria = before.equilibria; // the steps stay counted: their records are written
             counters_.seconds = elapsed();
             outcome.failure = failure;

@@ -45,18 +45,6 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
     return rho;
 }
 
-template <int Dim>
-void perturb(Vertex<Dim>& vertex, const Load<Dim>& load, const std::vector<double>& rho, const Enclosure& stress_rate,
-             std::shared_ptr<const LoadShift> shift, double shift_bound) {
-    vertex.statics.perturb_radii();
-    if (shift) {
-        vertex.statics.set_shift(std::move(shift), shift_bound);
-    }
-    vertex.perturbed = std::make_unique<FirstOrderVertex<Dim>>(
-        FirstOrder<Dim>(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.enclosure, rho),
-        vertex.statics, load, stress_rate);
-}
-
 template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction) {
     Departure<Dim> departure;
     struct Closing {
@@ -169,8 +157,6 @@ std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<st
     return std::nullopt;
 }
 
-template void perturb<2>(Vertex<2>&, const Load<2>&, const std::vector<double>&, const Enclosure&,
-                         std::shared_ptr<const LoadShift>, double);
 template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
 template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
                                       const std::vector<Contact>&);

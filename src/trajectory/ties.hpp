@@ -6,12 +6,6 @@
 
 namespace isostat {
 
-/// Gives a vertex its first-order side. `stress_rate`: first-order term of the stress of its load; `shift`: what its
-/// stored stress lacks to the exact one (null: nothing), at most `shift_bound`. Before any question to its statics.
-template <int Dim>
-void perturb(Vertex<Dim>& vertex, const Load<Dim>& load, const std::vector<double>& rho, const Enclosure& stress_rate,
-             std::shared_ptr<const LoadShift> shift, double shift_bound);
-
 /// What becomes of the pairs that touch at the start of an arc besides the contacts.
 template <int Dim> struct Departure {
     std::vector<Contact> leaving; ///< proved to separate at once
@@ -39,8 +33,6 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact
 template <int Dim>
 std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero);
 
-extern template void perturb<2>(Vertex<2>&, const Load<2>&, const std::vector<double>&, const Enclosure&,
-                                std::shared_ptr<const LoadShift>, double);
 extern template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
 extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
                                              const std::vector<Contact>&);

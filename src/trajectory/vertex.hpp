@@ -28,6 +28,8 @@ template <int Dim> struct FirstOrderVertex {
     Enclosure stress_rate;
     /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive.
     std::vector<std::pair<Contact, Enclosure>> touching;
+    std::vector<ContactId>
+        zeros; ///< of an equilibrium: forces that vanish in the base, and are positive at first order
 };
 
 template <int Dim> struct PlainArrival;
@@ -89,6 +91,7 @@ template <int Dim> class Vertex {
 
     /// Under `ties = "perturb"` only.
     std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
+    [[nodiscard]] PerturbedStatics<Dim>* first_order() { return perturbed ? &perturbed->statics : nullptr; }
 
   private:
     /// Nothing is proved unless the proof is concluded.

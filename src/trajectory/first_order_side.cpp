@@ -1,0 +1,131 @@
+#include "trajectory/first_order_side.hpp"
+
+#include <isostat/preparation/backbone.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+constexpr Contact none{ContactKind::disk_disk, -1, -1};
+
+/// The load at which a force that is almost 0 at the stored stress vanishes. \pre its slope is told from 0.
+template <int Dim> LimitLoad<Dim> zero_load(Statics<Dim>& statics, ContactId at_zero, const Load<Dim>& load) {
+    LimitLoad<Dim> at{load, nullptr, 0, {0, 0}};
+    const Enclosure slope = statics.slope(at_zero);
+    const Enclosure f = statics.force(at_zero, at.stress());
+    at.error = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);
+    at.shift = statics.zero_of(at_zero, at.stress());
+    return at;
+}
+
+} // namespace
+
+template <int Dim> FirstOrderSide<Dim>::FirstOrderSide(State<Dim>& state, std::uint64_t seed) : state_(state) {
+    if (!state.perturbation) {
+        state.perturbation.emplace();
+        state.perturbation->seed = seed;
+        state.perturbation->rho = tie_direction(state.packing.radius, seed);
+    }
+}
+
+template <int Dim> void FirstOrderSide<Dim>::attach(Vertex<Dim>& vertex, const LimitLoad<Dim>& at) const {
+    vertex.statics.perturb_radii();
+    if (at.shift) {
+        vertex.statics.set_shift(at.shift, at.error);
+    }
+    vertex.perturbed = std::make_unique<FirstOrderVertex<Dim>>(
+        FirstOrder<Dim>(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.enclosure,
+                        state_.perturbation->rho),
+        vertex.statics, at.load, at.stress_rate);
+}
+
+template <int Dim> std::optional<Failure> FirstOrderSide<Dim>::choose_contacts() const {
+    auto kept = first_order_backbone(state_.packing, state_.load, state_.contacts, state_.perturbation->rho);
+    if (!kept.ok()) {
+        return kept.failure();
+    }
+    state_.contacts = kept.value();
+    return std::nullopt;
+}
+
+template <int Dim> void FirstOrderSide<Dim>::load_is_stored() const {
+    state_.perturbation->load_zero = none;
+    state_.perturbation->stress_rate = {0, 0};
+}
+
+template <int Dim>
+std::optional<Failure> FirstOrderSide<Dim>::settle_load(Vertex<Dim>& vertex, const LimitLoad<Dim>& limit,
+                                                        const std::vector<ContactId>& zeros) const {
+    load_is_stored();
+    if (!limit.shift) {
+        return std::nullopt;
+    }
+    Statics<Dim>& statics = vertex.statics;
+    const auto& contacts = statics.structure().contacts();
+    const auto known =
+        std::find_if(zeros.begin(), zeros.end(), [&](ContactId l) { return statics.slope(l).decided(); });
+    if (known != zeros.end()) {
+        LimitLoad<Dim> at = zero_load(statics, *known, limit.load);
+        at.stress_rate = limit.stress_rate;
+        state_.perturbation->load_zero = contacts[known->index()];
+        state_.perturbation->stress_rate = limit.stress_rate;
+        attach(vertex, at);
+        return std::nullopt;
+    }
+    for (int l = 0; l < statics.structure().size(); ++l) {
+        const ContactId id(l);
+        if (statics.is_structural_zero(id) || contacts[id.index()].kind == ContactKind::held ||
+            std::find(zeros.begin(), zeros.end(), id) != zeros.end()) {
+            continue;
+        }
+        const Enclosure slope = statics.slope(id);
+        Enclosure f = statics.force(id, limit.stress());
+        f.radius += limit.error * (std::abs(slope.value) + slope.radius) * (1 + 1e-10);
+        if (!f.positive()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("the force in {} is so small, {:.3g}, that the limit load must be known better "
+                                       "than it is stored",
+                                       to_string<Dim>(contacts[id.index()]), f.value)};
+        }
+    }
+    return std::nullopt;
+}
+
+template <int Dim>
+std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex,
+                                                   const std::vector<std::pair<Contact, Order>>& touching) const {
+    const RadiusPerturbation& stored = *state_.perturbation;
+    const auto& contacts = vertex.structure.contacts();
+    const auto at = std::find(contacts.begin(), contacts.end(), stored.load_zero);
+    if (stored.load_zero.i >= 0 && at != contacts.end()) {
+        const ContactId l(static_cast<std::size_t>(at - contacts.begin()));
+        if (!vertex.statics.slope(l).decided()) {
+            return Failure{FailureKind::undecided,
+                           fmt::format("the load at which the force in {} vanishes is not known",
+                                       to_string<Dim>(stored.load_zero))};
+        }
+        LimitLoad<Dim> meant = zero_load(vertex.statics, l, state_.load);
+        meant.stress_rate = stored.stress_rate;
+        attach(vertex, meant);
+    }
+    return settle_touching(vertex, touching);
+}
+
+template <int Dim> void FirstOrderSide<Dim>::store(const Vertex<Dim>& vertex) const {
+    RadiusPerturbation& stored = *state_.perturbation;
+    stored.open = vertex.perturbed->touching;
+    stored.zero.clear();
+    for (const ContactId l : vertex.perturbed->zeros) {
+        stored.zero.emplace_back(vertex.structure.contacts()[l.index()], vertex.perturbed->statics.force(l));
+    }
+}
+
+template class FirstOrderSide<2>;
+
+} // namespace isostat

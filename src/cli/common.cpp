@@ -90,6 +90,20 @@ int status_of(Verdict verdict) {
     return undecided;
 }
 
+std::string advice(const Scene& scene, const Failure& failure, std::vector<double> radius) {
+    std::sort(radius.begin(), radius.end());
+    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
+    if (!open || !scene.start.empty()) {
+        return "";
+    }
+    constexpr double ample = 1e-6;
+    const double jitter = scene.preparation.jitter;
+    return equal && jitter == 0           ? "; equal radii: try [packing] jitter = 1e-9"
+           : jitter > 0 && jitter < ample ? fmt::format("; nearly equal radii: try a larger jitter than {}", jitter)
+                                          : "";
+}
+
 State<2> load_start(const Scene& scene) {
     const std::string source = scene.start.string();
     State<2> state = read_state<2>(scene.start).state;
@@ -153,6 +167,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         std::string message = fmt::format("preparation failed at {}: {}: {}", last_stage,
                                           to_string(prepared.failure().kind), prepared.failure().message);
         if (report.last) {
+            message += advice(scene, prepared.failure(), report.last->radius);
             write_packing<2>(failed_path, *report.last, message);
             message += fmt::format(" (what was reached is in {})", failed_path.string());
         }

@@ -130,7 +130,12 @@ class Player {
         RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
         const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, observer);
         table_.end();
-        return outcome.completed ? Ending{} : ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
+        if (outcome.completed) {
+            return {};
+        }
+        Ending ending = ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
+        ending.reason += advice(scene_, *outcome.failure, state.packing.radius);
+        return ending;
     }
 
     const Scene& scene_;

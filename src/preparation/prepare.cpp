@@ -101,8 +101,12 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     for (std::size_t i = 0; i < options.radii.size(); ++i) {
         require_positive(fmt::format("radius of disk {}", i).c_str(), options.radii[i]);
     }
+    if (!(options.jitter >= 0 && options.jitter < 1)) {
+        bad(fmt::format("jitter is {}: expected a number from 0 to below 1", options.jitter));
+    }
     const std::vector<double> radius =
-        options.radii.empty() ? draw_radii(options.diameters, options.disks, options.seed) : options.radii;
+        with_jitter(options.radii.empty() ? draw_radii(options.diameters, options.disks, options.seed) : options.radii,
+                    options.jitter, options.seed);
 
     const Scale scale(radius);
     std::vector<double> internal = radius;

@@ -150,4 +150,12 @@ std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t 
     return radius;
 }
 
+std::vector<double> with_jitter(std::vector<double> radius, double size, std::uint64_t seed) {
+    Uniform uniform(preparation::derived_seed(seed, preparation::Stream::jitter));
+    for (double& r : radius) {
+        r += r * (size * (2 * uniform() - 1));
+    }
+    return radius;
+}
+
 } // namespace isostat

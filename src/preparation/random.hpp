@@ -9,7 +9,7 @@
 namespace isostat::preparation {
 
 /// Independent uses of one seed.
-enum class Stream : std::uint64_t { radii = 1, positions = 2, infinitesimal = 3 };
+enum class Stream : std::uint64_t { radii = 1, positions = 2, infinitesimal = 3, jitter = 4 };
 
 /// Seed of one use: splitmix64 of the user's seed and the stream number (Steele, Lea, Flood, OOPSLA 2014).
 inline std::uint64_t derived_seed(std::uint64_t seed, Stream stream) {

@@ -22,6 +22,10 @@ constexpr double largest_number = 1e300;
 /// A TOML integer has a sign: seeds are its non-negative half.
 constexpr long largest_seed = std::numeric_limits<long>::max();
 
+/// Below, the doubles next to a radius are too few for different ones.
+constexpr double smallest_jitter = 1e-14;
+constexpr double largest_jitter = 0.1;
+
 /// Exactly one way to say where the disks come from.
 void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
     const auto file = section.string("file");
@@ -49,7 +53,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     }
     PreparationOptions& options = scene.preparation;
     if (file) {
-        for (const char* key : {"seed", "aspect"}) {
+        for (const char* key : {"jitter", "seed", "aspect"}) {
             if (section.has(key)) {
                 section.refuse(
                     key,
@@ -79,6 +83,10 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     } else {
         options.radii = read_radii(folder / *radii_file);
         section.record("radii_file", toml_text(*radii_file));
+    }
+    options.jitter = section.number("jitter", options.jitter, 0, largest_jitter, "0, or a number from 1e-14 to 0.1");
+    if (options.jitter > 0 && options.jitter < smallest_jitter) {
+        section.fail("jitter", "0, or a number from 1e-14 to 0.1");
     }
     options.seed = static_cast<std::uint64_t>(section.integer("seed", 1, 0, largest_seed));
     options.aspect = section.number("aspect", options.aspect, 0.01, 100, "a number from 0.01 to 100");

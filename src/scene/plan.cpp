@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace isostat {
 
 namespace {
@@ -25,10 +27,30 @@ bool prepares_more(const Scene& scene, int disks) {
     return scene.start.empty() && (given > 0 ? given : options.disks) > disks;
 }
 
+/// Whether some radii of a preparation are equal before they are jittered.
+bool equal_radii(const PreparationOptions& options) {
+    if (options.radii.empty()) {
+        const DiameterLaw& law = options.diameters;
+        return law.kind == RadiiLaw::equal || law.kind == RadiiLaw::bidisperse || law.smallest == law.largest;
+    }
+    std::vector<double> sorted = options.radii;
+    std::sort(sorted.begin(), sorted.end());
+    return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
+}
+
 void add_stages(Plan& plan, const Scene& scene) {
     const bool prepares = scene.start.empty();
     const std::string given = fmt::format("the packing is read from {}", scene.start.string());
     plan.add("stage", "read the start", !prepares, prepares ? "the packing is prepared from random disks" : given);
+    const double jitter = scene.preparation.jitter;
+    plan.add("stage", "jitter of the radii", prepares && jitter > 0,
+             !prepares ? given
+             : jitter > 0
+                 ? fmt::format("radii R_i (1 + {} rho_i), rho_i in [-1, 1) from the seed of the packing", jitter)
+             : equal_radii(scene.preparation)
+                 ? "jitter = 0; the scene has equal radii, so that ties are common: jitter = 1e-9 in [packing] makes "
+                   "them different"
+                 : "jitter = 0; no radii are equal");
     std::string soft = "random disks to a relaxed soft packing";
     if (const int above = scene.preparation.newton_above; prepares_more(scene, above)) {
         soft += fmt::format(", with Newton steps at the end (more than {} disks)", above);

@@ -329,6 +329,7 @@ BOOST_AUTO_TEST_CASE(options_without_sense_are_named) {
     names(message([&](auto& o) { o.radii = {1, nan}; }), "radius of disk 1 is nan");
     names(message([](auto& o) { o.stress = 0; }), "stress is 0");
     names(message([](auto& o) { o.aspect = -2; }), "aspect is -2");
+    names(message([](auto& o) { o.jitter = -1e-9; }), "jitter is -1e-09");
     names(message([](auto& o) { o.loose_fraction = 0.95; }), "loose fraction 0.95");
     names(message([](auto& o) { o.softness = 0.1; }), "softness 0.1");
 }

@@ -88,6 +88,28 @@ BOOST_AUTO_TEST_CASE(radii_have_the_same_bits_everywhere) {
     BOOST_TEST(third(RadiiLaw::power) == 0x1.bc35746438a62p-1);
 }
 
+BOOST_AUTO_TEST_CASE(a_jitter_is_small_seeded_and_not_the_stream_of_the_radii) {
+    const std::vector<double> radii(1000, 3.0);
+    const std::vector<double> moved = with_jitter(radii, 1e-9, 1);
+    BOOST_TEST((with_jitter(radii, 0, 1) == radii));
+    BOOST_TEST((with_jitter(radii, 1e-9, 1) == moved));
+    BOOST_TEST((with_jitter(radii, 1e-9, 2) != moved));
+    const std::vector<double> uniform = draw_radii({}, 1000, 1);
+    double low = 1, high = -1, common = 0;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+        const double rho = (moved[i] / 3 - 1) / 1e-9;
+        low = std::min(low, rho);
+        high = std::max(high, rho);
+        common += rho * (4 * uniform[i] - 3) / 1000; // both in [-1, 1): 1/3 were they the same
+    }
+    BOOST_TEST(low >= -1.000001);
+    BOOST_TEST(low < -0.98);
+    BOOST_TEST(high <= 1.000001);
+    BOOST_TEST(high > 0.98);
+    BOOST_TEST(std::abs(common) < 0.04);
+    BOOST_TEST(moved[0] == 0x1.7ffffffe7df1fp+1); // as above, in decimal arithmetic
+}
+
 BOOST_AUTO_TEST_CASE(laws_without_sense_are_named) {
     const auto refused = [](RadiiLaw kind, const auto& change, const std::vector<std::string>& words) {
         DiameterLaw law = law_of(kind);

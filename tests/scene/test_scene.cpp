@@ -61,6 +61,7 @@ law = "lognormal"
 diameter = 0.9
 deviation = 0.1
 diameters = [0.5, 3]
+jitter = 1e-6
 seed = 9
 aspect = 2
 [preparation]
@@ -104,6 +105,7 @@ vtk = true
     BOOST_TEST(scene.preparation.diameters.diameter == 0.9);
     BOOST_TEST(scene.preparation.diameters.deviation == 0.1);
     BOOST_TEST(scene.preparation.diameters.largest == 3.0);
+    BOOST_TEST(scene.preparation.jitter == 1e-6);
     BOOST_TEST(scene.preparation.seed == 9U);
     BOOST_TEST(scene.preparation.aspect == 2.0);
     BOOST_TEST(scene.preparation.loose_fraction == 0.5);
@@ -137,7 +139,7 @@ vtk = true
     // Nothing of this scene is a default: a key that was read but not recorded would be missing here.
     BOOST_TEST((scene.run.ties == TiePolicy::perturb));
     BOOST_TEST(scene.run.ties_seed == 9U);
-    BOOST_TEST(scene.settings.size() == 38U);
+    BOOST_TEST(scene.settings.size() == 39U);
     for (const Setting& setting : scene.settings) {
         BOOST_TEST((setting.line > 0 || setting.key == "name"), setting.section << "." << setting.key);
     }
@@ -198,6 +200,8 @@ BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
     refuses(head + "diameters = [0, 1]\n", {"s.toml:3:", "diameters", "0 < smallest"});
     refuses(head + "diameters = [1]\n", {"s.toml:3:", "diameters"});
     refuses(head + "diameters = 1\n", {"s.toml:3:", "diameters", "array"});
+    refuses(head + "jitter = 0.2\n", {"s.toml:3:", "jitter", "0.2", "1e-14 to 0.1"});
+    refuses(head + "jitter = 1e-15\n", {"s.toml:3:", "jitter", "1e-15", "1e-14 to 0.1"});
     refuses(head + "seed = -1\n", {"s.toml:3:", "seed", "-1"});
     refuses(head + "aspect = nan\n", {"s.toml:3:", "aspect", "nan", "finite"});
     refuses(head + "aspect = inf\n", {"s.toml:3:", "aspect", "inf", "finite"});
@@ -221,6 +225,7 @@ BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
     refuses(head + "radii = [1]\n", {"s.toml:3:", "'disks' and 'radii'"});
     refuses("[packing]\nradii = [1]\ndiameters = [1, 2]\n", {"s.toml:3:", "diameters", "radii"});
     refuses("[packing]\nfile = \"v.txt\"\nseed = 2\n", {"s.toml:3:", "seed", "file"});
+    refuses("[packing]\nfile = \"v.txt\"\njitter = 1e-9\n", {"s.toml:3:", "jitter", "file"});
     refuses("[packing]\nfile = \"v.txt\"\n[preparation]\nsoftness = 1e-6\n", {"s.toml:3:", "[preparation]"});
     refuses("[packing]\nfile = \"v.txt\"\n[load]\nsigma1 = 2\n", {"s.toml:4:", "sigma1"});
     refuses(head + "[run]\nties_seed = 2\n", {"s.toml:4:", "ties_seed", "perturb"});

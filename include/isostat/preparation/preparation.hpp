@@ -29,7 +29,8 @@ struct PreparationOptions {
     int disks = 0;             ///< n >= 1; ignored when `radii` is given
     DiameterLaw diameters;     ///< ignored when `radii` is given
     std::vector<double> radii; ///< a given list, in the order of the disks
-    std::uint64_t seed = 1;    ///< of radii, positions and infinitesimal loads (three derived streams)
+    double jitter = 0;         ///< `with_jitter`, of drawn radii and of a list
+    std::uint64_t seed = 1;    ///< of radii, jitter, positions and infinitesimal loads (derived streams)
     double stress = 1;         ///< sigma_1 = sigma_2 > 0
     double aspect = 1;         ///< Ly / Lx of the loose box; the final box is free
     LoadKind load = LoadKind::nominal;

@@ -40,4 +40,9 @@ std::string fault_of(const DiameterLaw& law);
 /// for laws with logarithms.
 std::vector<double> draw_radii(const DiameterLaw& law, int count, std::uint64_t seed);
 
+/// R_i (1 + size rho_i) to the nearest double, rho_i uniform in [-1, 1), independent, from a stream of `seed` that is
+/// not that of the radii: the equal radii of a mixture become different ones, and ties of their packings are no more.
+/// \pre 0 <= size < 1
+std::vector<double> with_jitter(std::vector<double> radius, double size, std::uint64_t seed);
+
 } // namespace isostat

@@ -39,9 +39,11 @@ inline Rational dyadic(const Integer& value, long exponent) {
 
 /// The largest integer that is not above value * 2^exponent.
 inline Integer floor_of(const Rational& value, long exponent = 0) {
-    const Rational scaled = value * power_of_two(exponent);
-    Integer result;
-    mpz_fdiv_q(result.get_mpz_t(), scaled.get_num_mpz_t(), scaled.get_den_mpz_t());
+    Integer result = value.get_num();
+    Integer divisor = value.get_den();
+    Integer& longer = exponent >= 0 ? result : divisor;
+    mpz_mul_2exp(longer.get_mpz_t(), longer.get_mpz_t(), static_cast<mp_bitcnt_t>(std::abs(exponent)));
+    mpz_fdiv_q(result.get_mpz_t(), result.get_mpz_t(), divisor.get_mpz_t());
     return result;
 }
 /// The smallest integer that is not below it.
@@ -101,10 +103,7 @@ inline Rational short_above(const Rational& value) {
         return value;
     }
     const long shift = 256 - bits(value.get_num()) + bits(value.get_den());
-    const Rational scaled = value * power_of_two(shift);
-    Integer above;
-    mpz_cdiv_q(above.get_mpz_t(), scaled.get_num_mpz_t(), scaled.get_den_mpz_t());
-    return Rational(above) * power_of_two(-shift);
+    return dyadic(ceiling_of(value, shift), -shift);
 }
 
 /// All numbers from lower to upper.

@@ -260,6 +260,50 @@ BOOST_AUTO_TEST_CASE(rungs_in_floating_point_hold_at_5000_disks) {
     check_layers(60, 54, 1e-3, options);
 }
 
+BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_was_moved_and_ended) {
+    Random random(5);
+    const Structure s = layers(3, 4, 0.5, random);
+    const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
+    BOOST_TEST_REQUIRE(proved.ok());
+    const Factorisation factorisation(proved.value());
+    InverseBoundCache cache;
+    const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
+    std::vector<double> down;
+    std::vector<double> aside;
+    for (std::size_t i = 0; i < s.contacts.size(); ++i) {
+        down.push_back(i % 2 == 0 ? 0 : -1);
+        aside.push_back(i % 2 == 0 ? 0.3 : -0.1);
+    }
+    const auto loaded = [&](double factor) {
+        ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse);
+        std::vector<double> force = down;
+        std::for_each(force.begin(), force.end(), [&](double& f) { f *= factor; });
+        ladder.add(force);
+        ladder.add(aside);
+        return ladder;
+    };
+    ForceExpression force;
+    force.contact = ContactId(0);
+    force.slope_part = 1;
+    ForceLadder<2> other = loaded(1);
+    std::shared_ptr<const LoadShift> shift;
+    {
+        ForceLadder<2> first = loaded(1);
+        shift = first.zero_of(force);
+        const ForceLadder<2> second = std::move(first);
+    }
+    const ForceLadder<2> later = loaded(2); // in the memory of those that ended
+    other.without_exact_numbers();
+    force.shift = shift.get();
+    BOOST_TEST(!other.sign(force).decided);
+    while (other.bits() < 256) {
+        BOOST_TEST_REQUIRE(other.climb());
+    }
+    const Order order = other.sign(force); // 0, to the bits of the rung
+    BOOST_TEST(!order.decided);
+    BOOST_TEST(order.exponent < -150);
+}
+
 BOOST_AUTO_TEST_CASE(distances_to_a_limit_and_steepest_descents_are_ordered_as_the_rationals_order_them) {
     Random random(77);
     int settled_above_double = 0;

@@ -92,8 +92,9 @@ template <int Dim> class ForceLadder {
     /// The rung exact is not used: for expressions with a shift.
     void without_exact_numbers();
     /// What must be added to `force.at` for the quantity (without divisor) to vanish. \pre its slope is proved not 0.
-    /// The ladder must outlive the result, and climbs when more bits are asked for.
-    [[nodiscard]] std::shared_ptr<const LoadShift> zero_of(const ForceExpression& force);
+    /// The arguments of the ladder must outlive the result; the ladder itself need not, and climbs when more bits are
+    /// asked for.
+    [[nodiscard]] std::shared_ptr<const LoadShift> zero_of(const ForceExpression& force) const;
 
     /// Sign of a quantity, and of the difference a - b, on the present rung.
     [[nodiscard]] Order sign(const ForceExpression& a) const;
@@ -101,7 +102,7 @@ template <int Dim> class ForceLadder {
 
   private:
     struct Implementation;
-    std::unique_ptr<Implementation> implementation_;
+    std::shared_ptr<Implementation> implementation_; ///< with the results of `zero_of`
 };
 
 extern template class ForceLadder<2>;

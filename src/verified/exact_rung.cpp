@@ -1,0 +1,168 @@
+#include "contact/gap_sign.hpp"
+#include "verified/exact_forces.hpp"
+#include "verified/force_rung.hpp"
+
+#include <isostat/core/work.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr mpfr_prec_t shown_bits = 160; ///< of what is told of exact numbers in doubles
+
+/// Rational times the root of an integer, to `bits` bits (a few units of rounding).
+Real root_product(const mpq_class& factor, const mpz_class& square, mpfr_prec_t bits) {
+    Real root(bits + 8);
+    mpfr_set_z(root.get(), square.get_mpz_t(), MPFR_RNDN);
+    mpfr_sqrt(root.get(), root.get(), MPFR_RNDN);
+    Real result(bits + 8);
+    mpfr_set_q(result.get(), factor.get_mpq_t(), MPFR_RNDN);
+    mpfr_mul(result.get(), result.get(), root.get(), MPFR_RNDN);
+    return result;
+}
+
+/// An exact number of which only the sign is known.
+Order exact_order(int sign) {
+    return {true, sign, infinity, Rung::exact, 0, sign == 0 ? -infinity : infinity};
+}
+
+/// Numbers x sqrt(s), x rational, s an integer: `ExactForces`.
+template <int Dim> class ExactRung final : public ForceRung<Dim> {
+  public:
+    ExactRung(LadderProblem<Dim>& problem, ExactForces<Dim> forces, double away)
+        : ForceRung<Dim>(problem, Rung::exact, 0), forces_(std::move(forces)), away_(away) {}
+
+    Order sign(const ForceExpression& a) override {
+        ForceExpression numerator = a; // divisors are positive
+        numerator.divisor = ForceExpression::Divisor::none;
+        return exact_order(sgn(value_of(numerator).factor));
+    }
+    Order compare(const ForceExpression& a, const ForceExpression& b) override {
+        const Value x = value_of(a);
+        const Value y = value_of(b);
+        const int sign_x = sgn(x.factor);
+        const int sign_y = sgn(y.factor);
+        return exact_order(sign_x != sign_y ? (sign_x > sign_y ? 1 : -1)
+                                            : sign_x * sgn(mpq_class(x.square - y.square)));
+    }
+    PreciseInterval zero_of(const ForceExpression& force, int bits) override {
+        const mpq_class zero = -value_of(force).factor / unknown(force.slope_part, force.contact);
+        PreciseInterval result(std::max(bits + 32, 160));
+        mpfr_set_q(result.low.get(), zero.get_mpq_t(), MPFR_RNDD);
+        mpfr_set_q(result.high.get(), zero.get_mpq_t(), MPFR_RNDU);
+        return result;
+    }
+    [[nodiscard]] Real digits(const RightHandSide& part, ContactId contact, int bits) const override {
+        const Real product = root_product(part.unknown[contact.index()], forces_.square(contact), bits);
+        Real value(bits);
+        mpfr_set(value.get(), product.get(), MPFR_RNDN);
+        return value;
+    }
+    [[nodiscard]] double bound_exponent(const RightHandSide&) const override { return -infinity; }
+    double normal_uncertainty() override { return away_; }
+    std::unique_ptr<ForceRung<Dim>> next() override { return nullptr; }
+
+  private:
+    /// A number with the sign of the expression, and the square of the expression.
+    struct Value {
+        mpq_class factor;
+        mpq_class square;
+    };
+    Value value_of(const ForceExpression& e);
+    void solve(RightHandSide& part) override;
+    const mpq_class& unknown(int part, ContactId contact) {
+        RightHandSide& p = this->problem_.part(part);
+        this->bring(p);
+        return p.zero ? nothing_ : p.unknown[contact.index()];
+    }
+
+    ExactForces<Dim> forces_;
+    double away_;
+    mpq_class nothing_ = 0;
+    std::map<std::size_t, mpq_class> mechanism_square_; ///< by contact
+};
+
+template <int Dim> auto ExactRung<Dim>::value_of(const ForceExpression& e) -> Value {
+    const std::size_t l = e.contact.index();
+    mpq_class value = unknown(e.part, e.contact);
+    if (e.slope_part >= 0 && e.at != e.from) {
+        value += (mpq_class(e.at) - mpq_class(e.from)) * unknown(e.slope_part, e.contact);
+    }
+    if (e.minus_magnitude) {
+        value = -abs(value);
+    }
+    switch (e.divisor) {
+    case ForceExpression::Divisor::none: return {value, value * value * forces_.square(e.contact)};
+    case ForceExpression::Divisor::part: value /= abs(unknown(e.divisor_part, e.contact)); break; // the roots cancel
+    case ForceExpression::Divisor::mechanism: {
+        auto known = mechanism_square_.find(l);
+        if (known == mechanism_square_.end()) {
+            known = mechanism_square_.emplace(l, forces_.mechanism_square(e.contact)).first;
+        }
+        return {value, value * value / known->second}; // the roots cancel
+    }
+    }
+    return {value, value * value};
+}
+
+template <int Dim> void ExactRung<Dim>::solve(RightHandSide& part) {
+    ForceSolution& s = part.solution;
+    const std::size_t n = part.force.size();
+    part.unknown = forces_.solve(part.force, part.terms.products);
+    std::vector<Real> x;
+    Real error(64);
+    Real size(64);
+    for (std::size_t l = 0; l < n; ++l) {
+        x.push_back(root_product(part.unknown[l], forces_.square(ContactId(l)), shown_bits));
+        mpfr_abs(size.get(), x.back().get(), MPFR_RNDU);
+        mpfr_max(error.get(), error.get(), size.get(), MPFR_RNDU);
+    }
+    mpfr_mul_2si(error.get(), error.get(), -shown_bits, MPFR_RNDU); // 8 bits more were carried
+    round_to_pairs(x, error, s);
+    s.residual = 0;
+}
+
+/// Loads are numbers, and exact numbers would be about what is meant: the stored configuration is the true vertex, and
+/// the loads do not depend on it.
+template <int Dim> bool applies(const LadderProblem<Dim>& problem) {
+    const auto finite = [](const RightHandSide& part) {
+        return std::all_of(part.force.begin(), part.force.end(), [](double f) { return std::isfinite(f); });
+    };
+    if (problem.structure.size() > problem.options.exact_size ||
+        !std::all_of(problem.parts.begin(), problem.parts.end(), finite)) {
+        return false;
+    }
+    if (problem.vertex == nullptr) {
+        return true;
+    }
+    const auto closed = [&](const Contact& c) {
+        return c.kind == ContactKind::held || gap_sign(problem.packing, c, 0) == 0;
+    };
+    const auto fixed = [](const RightHandSide& part) { return part.terms.rate == 0 || part.zero; };
+    const auto& contacts = problem.structure.contacts();
+    return problem.vertex->verdict == Verdict::proved &&
+           std::all_of(problem.parts.begin(), problem.parts.end(), fixed) &&
+           std::all_of(contacts.begin(), contacts.end(), closed);
+}
+
+} // namespace
+
+template <int Dim> std::unique_ptr<ForceRung<Dim>> exact_rung(LadderProblem<Dim>& problem, ForceRung<Dim>& last) {
+    if (!applies(problem)) {
+        return nullptr;
+    }
+    count_work(Work::exact_solutions);
+    ExactForces<Dim> forces(problem.packing, problem.structure);
+    return forces.regular() ? std::make_unique<ExactRung<Dim>>(problem, std::move(forces), last.normal_uncertainty())
+                            : nullptr;
+}
+
+template std::unique_ptr<ForceRung<2>> exact_rung<2>(LadderProblem<2>&, ForceRung<2>&);
+
+} // namespace isostat

@@ -1,0 +1,116 @@
+#include "verified/ladder_problem.hpp"
+
+#include "verified/norm.hpp"
+#include "verified/vertex_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double u = 0x1p-53;
+/// What is said of forces in records holds to this fraction of the largest.
+constexpr double recorded_accuracy = 1e-7;
+
+double largest_of(const std::vector<double>& x) {
+    double largest = 0;
+    for (const double c : x) {
+        largest = std::max(largest, std::abs(c));
+    }
+    return largest;
+}
+
+} // namespace
+
+void round_to_pairs(const std::vector<Real>& x, const Real& error, ForceSolution& solution) {
+    const std::size_t n = x.size();
+    solution.value.resize(n);
+    solution.low.resize(n);
+    Real bound(64);
+    Real rest(64);
+    for (std::size_t l = 0; l < n; ++l) {
+        Real left = x[l];
+        solution.value[l] = left.nearest();
+        mpfr_sub_d(left.get(), left.get(), solution.value[l], MPFR_RNDN); // exact: cancels the leading bits
+        solution.low[l] = left.nearest();
+        mpfr_sub_d(left.get(), left.get(), solution.low[l], MPFR_RNDN);
+        if (mpfr_number_p(left.get()) == 0) { // beyond the range of double
+            solution.bound = std::numeric_limits<double>::infinity();
+            return;
+        }
+        mpfr_abs(rest.get(), left.get(), MPFR_RNDU);
+        mpfr_max(bound.get(), bound.get(), rest.get(), MPFR_RNDU);
+    }
+    mpfr_add(bound.get(), bound.get(), error.get(), MPFR_RNDU);
+    solution.bound = bound.above();
+}
+
+template <int Dim> double LadderProblem<Dim>::normal_rate() {
+    if (!normal_rate_) {
+        normal_rate_ = vertex == nullptr       ? 0
+                       : vertex->lipschitz > 0 ? isostat::normal_rate(vertex->lipschitz)
+                                               : isostat::normal_rate(packing, structure.contacts());
+    }
+    return *normal_rate_;
+}
+
+template <int Dim> const Place& LadderProblem<Dim>::stored_place() {
+    if (!stored_place_) {
+        stored_place_.emplace();
+        if (vertex != nullptr) {
+            const double away = vertex->verdict == Verdict::proved
+                                    ? (vertex->radius + norm_above(vertex->correction)) * (1 + 4 * u)
+                                    : std::numeric_limits<double>::infinity();
+            stored_place_ = Place{0, normal_rate() * away, away};
+        }
+    }
+    return *stored_place_;
+}
+
+template <int Dim> void LadderProblem<Dim>::solve_in_double(RightHandSide& part, double accuracy) const {
+    ForceSolution& s = part.solution;
+    if (!s.value.empty() && !part.rough) {
+        return;
+    }
+    part.rough = accuracy > 0;
+    s = solve_forces(structure, factorisation, inverse, part.force, s.value.empty() ? part.guess : s.value, accuracy);
+    part.guess.clear();
+    // The accuracy was estimated: where the bound does not confirm what records say, to rounding at once.
+    if (part.rough && !(s.bound <= recorded_accuracy * largest_of(s.value))) {
+        part.rough = false;
+        s = solve_forces(structure, factorisation, inverse, part.force, s.value);
+    }
+}
+
+template <int Dim>
+void LadderProblem<Dim>::solve_in_double_double(RightHandSide& part, const ExtendedMatrix& matrix) const {
+    if (part.solution.rung == Rung::double_bound) {
+        refine_double_double(part.solution, matrix, structure, factorisation, inverse, part.force, part.terms.products);
+    }
+}
+
+template <int Dim> void LadderProblem<Dim>::inflate(RightHandSide& part, const Place& here, bool stored) {
+    if (vertex == nullptr) {
+        return;
+    }
+    ForceSolution& s = part.solution;
+    const double sigma = inverse.sigma_min;
+    const double left = (sigma - normal_rate() * here.shift - here.uncertainty) * (1 - 8 * u);
+    if (!(left > sigma / 2)) {
+        s.bound = std::numeric_limits<double>::infinity();
+        return;
+    }
+    double turned = here.uncertainty * norm_above(s.value) * (1 + 4 * u); // bound of |(H* - H) x|
+    if (stored) {
+        turned = std::min(turned, turn_of_forces(packing, structure.contacts(), s.value) * here.away);
+    }
+    const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
+    s.bound = residual / left * (1 + 16 * u);
+}
+
+template class LadderProblem<2>;
+
+} // namespace isostat

@@ -1,0 +1,54 @@
+#pragma once
+// Contacts that may open, and the quantities by which they are ordered: private to the room.
+
+#include "statics/proved_minimum.hpp"
+#include "statics/straight_strut.hpp"
+
+#include <isostat/statics/decisions.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// A contact that may be opened, with the quantity by which the rule orders it (smallest first).
+struct Contender {
+    ContactId contact;
+    Enclosure force;       ///< what must be negative (for a held coordinate: minus the magnitude)
+    Enclosure key;         ///< what the rule compares
+    double margin;         ///< with which the sign of `force` is proved
+    double multiplier = 0; ///< of a held coordinate, with its sign
+};
+
+template <int Dim> std::string name(const Statics<Dim>& statics, ContactId l) {
+    return to_string<Dim>(statics.structure().contacts()[l.index()]);
+}
+
+template <int Dim> bool is_held(const Statics<Dim>& statics, ContactId l) {
+    return statics.structure().contacts()[l.index()].kind == ContactKind::held;
+}
+
+/// a / b, for b > 0; a radius of infinity when that is not proved.
+Enclosure quotient(const Enclosure& a, const Enclosure& b);
+
+/// The quantity of one contact as the ladder evaluates it.
+using Quantity = std::function<ForceExpression(ContactId)>;
+
+/// What a choice among contenders needs besides them.
+template <int Dim> struct Choice {
+    OpeningRule rule = OpeningRule::most_negative;
+    std::uint64_t random_bits = 0;
+    Quantity quantity;
+    const Turn<Dim>* turn = nullptr;            ///< at a power turn: struts order their ends
+    PerturbedStatics<Dim>* perturbed = nullptr; ///< first-order terms order ties, and are written to its log
+};
+
+/// Picks by the rule among contenders that all carry a proved negative force, or are in one class of forces that vanish
+/// together. Failure: `tie`, naming them; `undecided`.
+template <int Dim>
+Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice);
+
+extern template Result<Opening> pick<2>(Statics<2>&, std::vector<Contender>, const Choice<2>&);
+
+} // namespace isostat

@@ -1,0 +1,303 @@
+#include "statics/contender.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double u = 0x1p-53;
+
+Comparison proved_larger(double margin) {
+    Comparison result;
+    result.answer = Comparison::Answer::larger;
+    result.margin = margin;
+    return result;
+}
+
+/// Which force vanishes first when the loaded stress changes in one direction: contacts, by number.
+template <int Dim> class LimitContest final : public Contest {
+  public:
+    LimitContest(Statics<Dim>& statics, double sigma, int direction, PerturbedStatics<Dim>* perturbed)
+        : statics_(statics), contacts_(statics.structure().contacts()), sigma_(sigma), direction_(direction),
+          perturbed_(perturbed) {
+        for (std::size_t l = 0; l < contacts_.size(); ++l) {
+            if (!is_held(statics_, ContactId(l)) && !statics_.slope_is_zero(ContactId(l))) {
+                candidates_.emplace_back(l);
+            }
+        }
+    }
+    [[nodiscard]] std::size_t size() const override { return contacts_.size(); }
+    Result<std::optional<std::size_t>> stand(std::size_t best) override;
+    Result<Comparison> compare(std::size_t rival, std::size_t best) override;
+
+    /// Whom to begin with: as far as rounded numbers tell, then as far as rates are proved. None: no force decreases.
+    Result<std::optional<std::size_t>> guess();
+    /// Where the force of the last one that stood vanishes, and what vanishes with it.
+    [[nodiscard]] const LoadLimit& limit() const { return limit_; }
+
+  private:
+    /// Proved sign of the rate of a force in the direction: from the enclosure, or from the ladder.
+    Order rate_sign(ContactId l);
+    Failure open_rate(ContactId l, const Order& order) const;
+    [[nodiscard]] std::string name_of(ContactId l) const { return name(statics_, l); }
+    /// Largest slope: what a zero slope is compared with.
+    double slope_size() const;
+    /// The force at the limit, wherever within its error that is.
+    Enclosure at_limit(ContactId l) const;
+    Result<Comparison> with_a_rate_of_order_eps(ContactId l, const Order& rate);
+    Result<Comparison> at_first_order(ContactId l, ContactId first, const Order& order);
+
+    Statics<Dim>& statics_;
+    const std::vector<Contact>& contacts_;
+    double sigma_;
+    int direction_;
+    PerturbedStatics<Dim>* perturbed_;
+    std::vector<ContactId> candidates_; ///< that could limit: their slopes are not structural zeros
+    LoadLimit limit_;
+    std::vector<unsigned char> in_class_; ///< of contacts: vanish with the limiting one for structural reasons
+};
+
+template <int Dim> Order LimitContest<Dim>::rate_sign(ContactId l) {
+    const Enclosure slope = statics_.slope(l);
+    Order order{true, slope.positive() ? 1 : -1, slope.margin(), statics_.rung(), statics_.bits()};
+    if (!slope.decided()) {
+        order = statics_.sign(statics_.slope_expression(l));
+    }
+    order.sign *= direction_;
+    return order;
+}
+
+template <int Dim> Failure LimitContest<Dim>::open_rate(ContactId l, const Order& order) const {
+    return {FailureKind::undecided,
+            fmt::format("the sign of the slope of the force in contact {} is not decided with {} bits: {:.3g}, proved "
+                        "to {:.3g}",
+                        name_of(l), order.bits, statics_.slope(l).value, statics_.slope(l).radius)};
+}
+
+template <int Dim> double LimitContest<Dim>::slope_size() const {
+    double size = 0;
+    for (int l = 0; l < statics_.structure().size(); ++l) {
+        size = std::max(size, std::abs(statics_.slope(ContactId(l)).value));
+    }
+    return size;
+}
+
+template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::guess() {
+    std::optional<std::size_t> first;
+    double smallest = infinity;
+    for (const ContactId l : candidates_) {
+        const double rate = direction_ * statics_.slope(l).value;
+        if (perturbed_ != nullptr && !statics_.slope(l).decided()) {
+            continue; // it may vanish in the base: looked at with the rivals
+        }
+        const double distance = rate < 0 ? statics_.force(l, sigma_).value / -rate : infinity;
+        if (distance < smallest) {
+            smallest = distance;
+            first = l.index();
+        }
+    }
+    if (first) {
+        return first;
+    }
+    for (const ContactId l : candidates_) {
+        const Order rate = rate_sign(l);
+        if (perturbed_ != nullptr && (!rate.decided || rate.sign == 0)) {
+            const Order zero = statics_.sign(statics_.force_expression(l, sigma_));
+            if (is_tie(rate, slope_size()) && zero.decided && zero.sign > 0) {
+                continue; // it changes by O(eps) over any finite way
+            }
+        }
+        if (!rate.decided || (perturbed_ != nullptr && rate.sign == 0)) {
+            return open_rate(l, rate);
+        }
+        if (rate.sign < 0) {
+            return std::optional(l.index());
+        }
+    }
+    return first;
+}
+
+template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::stand(std::size_t best) {
+    const ContactId first(best);
+    const Order rate = rate_sign(first);
+    if (!rate.decided) {
+        return open_rate(first, rate);
+    }
+    if (rate.sign >= 0) { // the guess was wrong: any other that decreases
+        for (const ContactId l : candidates_) {
+            const Order other = rate_sign(l);
+            if (!other.decided) {
+                return open_rate(l, other);
+            }
+            if (other.sign < 0) {
+                return std::optional(l.index());
+            }
+        }
+        return std::optional<std::size_t>();
+    }
+    limit_ = LoadLimit();
+    const Enclosure slope = statics_.slope(first);
+    limit_.stress = sigma_ + direction_ * (statics_.force(first, sigma_).value / std::abs(slope.value));
+    const Enclosure there = statics_.force(first, limit_.stress);
+    limit_.stress_error =
+        slope.decided() ? (std::abs(there.value) + there.radius) / (std::abs(slope.value) - slope.radius) * (1 + 8 * u)
+                        : infinity;
+    limit_.margin = rate.margin;
+    limit_.tie_class = statics_.vanish_with(first);
+    limit_.tie_class.insert(limit_.tie_class.begin(), first);
+    in_class_.assign(contacts_.size(), 0);
+    for (const ContactId l : limit_.tie_class) {
+        in_class_[l.index()] = 1;
+    }
+    return std::optional(best);
+}
+
+template <int Dim> Enclosure LimitContest<Dim>::at_limit(ContactId l) const {
+    Enclosure f = statics_.force(l, limit_.stress);
+    f.radius += std::abs(statics_.slope(l).value) * limit_.stress_error * (1 + 8 * u) +
+                statics_.slope(l).radius * limit_.stress_error;
+    return f;
+}
+
+/// Everything outside the class is still positive at the limit, hence on the whole interval (forces are affine).
+template <int Dim> Result<Comparison> LimitContest<Dim>::compare(std::size_t rival, std::size_t best) {
+    const ContactId l(rival);
+    const ContactId first(best);
+    if (in_class_[rival] != 0 || is_held(statics_, l) || statics_.is_structural_zero(l)) {
+        return Comparison{};
+    }
+    const Enclosure f = at_limit(l);
+    if (f.positive()) {
+        return proved_larger(f.margin());
+    }
+    if (statics_.slope_is_zero(l)) {
+        return Comparison{}; // positive at sigma, and constant
+    }
+    const Order rate = rate_sign(l);
+    if (perturbed_ != nullptr && (!rate.decided || rate.sign == 0)) {
+        return with_a_rate_of_order_eps(l, rate);
+    }
+    if (!rate.decided) {
+        return open_rate(l, rate);
+    }
+    if (rate.sign >= 0) {
+        return Comparison{};
+    }
+    const Order order =
+        statics_.compare(statics_.distance_expression(l, sigma_), statics_.distance_expression(first, sigma_));
+    if (perturbed_ != nullptr && needs_first_order(order, std::max(std::abs(limit_.stress), std::abs(sigma_)))) {
+        return at_first_order(l, first, order);
+    }
+    return by_order(order, fmt::format(", {} ({})", name_of(l), reach(order)));
+}
+
+/// A force that vanishes in the base is then affine in the load at first order.
+template <int Dim> Result<Comparison> LimitContest<Dim>::with_a_rate_of_order_eps(ContactId l, const Order& rate) {
+    const Order zero = statics_.sign(statics_.force_expression(l, sigma_));
+    if (zero.decided && zero.sign > 0 && is_tie(rate, slope_size())) {
+        return Comparison{};
+    }
+    const Enclosure f1 = perturbed_->force_at(l, limit_.stress, limit_.stress_error);
+    if (!is_tie(rate, slope_size()) || !is_tie(zero, perturbed_->size()) || !f1.positive()) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("the force in {} and its slope vanish in the base; its first-order term at "
+                                   "sigma = {:.17g} is {}: where on the way it changes sign is not followed",
+                                   name_of(l), limit_.stress, shown(f1))};
+    }
+    Comparison result = proved_larger(f1.margin());
+    result.settled = TieDecision{
+        "zero all along", contacts_[l.index()], f1, {ContactKind::disk_disk, -1, -1}, {}, zero.exponent, zero.bits};
+    return result;
+}
+
+template <int Dim>
+Result<Comparison> LimitContest<Dim>::at_first_order(ContactId l, ContactId first, const Order& order) {
+    const Enclosure mine = perturbed_->limit_rate(first, limit_.stress, limit_.stress_error);
+    const Enclosure other = perturbed_->limit_rate(l, limit_.stress, limit_.stress_error);
+    return by_first_order({"limit", contacts_[first.index()], mine, contacts_[l.index()], other}, order, direction_ < 0,
+                          statics_.rung(),
+                          fmt::format("the forces in {} and {} vanish at one load, sigma = {:.17g} ({}), and the "
+                                      "first-order terms of the two loads",
+                                      name_of(first), name_of(l), limit_.stress, reach(order)));
+}
+
+/// Within a class of forces that vanish together: the infinitesimal loads decide which one reaches zero first.
+template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const std::vector<ContactId>& members) {
+    std::vector<Contender> contenders;
+    for (const ContactId l : members) {
+        if (is_held(statics, l)) {
+            continue;
+        }
+        const Enclosure b = statics.slope(l);
+        const Enclosure key =
+            members.size() == 1 ? Enclosure{0, 0} : quotient(statics.infinitesimal(l), {std::abs(b.value), b.radius});
+        contenders.push_back({l, key, key, infinity, 0});
+    }
+    Choice<Dim> choice;
+    choice.quantity = [&statics](ContactId l) {
+        ForceExpression e = statics.infinitesimal_expression(l);
+        e.divisor = ForceExpression::Divisor::part;
+        e.divisor_part = statics.slope_expression(l).part;
+        return e;
+    };
+    return pick(statics, std::move(contenders), choice);
+}
+
+LoadLimit unbounded(int direction, Rung rung) {
+    return {true, direction * infinity, 0, ContactId(), {}, infinity, rung};
+}
+
+} // namespace
+
+template <int Dim>
+Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction, PerturbedStatics<Dim>* perturbed) {
+    LimitContest<Dim> contest(statics, sigma, direction, perturbed);
+    const auto guess = contest.guess();
+    if (!guess.ok()) {
+        return guess.failure();
+    }
+    if (!guess.value()) {
+        return unbounded(direction, statics.rung());
+    }
+    const auto found =
+        proved_minimum(contest, *guess.value(), "the comparisons of the limit loads contradict each other");
+    if (!found.ok()) {
+        return found.failure();
+    }
+    const Minimum& minimum = found.value();
+    if (!minimum.index) {
+        return unbounded(direction, statics.rung());
+    }
+    LoadLimit limit = contest.limit();
+    if (!minimum.tied.empty()) {
+        return Failure{FailureKind::tie,
+                       fmt::format("the forces in the contacts {}{} vanish at one load, sigma = {:.17g}",
+                                   name(statics, ContactId(*minimum.index)), minimum.tied, limit.stress)};
+    }
+    const Result<Opening> chosen = first_of_class(statics, limit.tie_class);
+    if (!chosen.ok()) {
+        return Failure{chosen.failure().kind, fmt::format("structural tie class of {} contacts: {}",
+                                                          limit.tie_class.size(), chosen.failure().message)};
+    }
+    limit.opens = chosen.value().contact;
+    limit.margin = std::min(limit.margin, minimum.margin);
+    if (limit.tie_class.size() > 1) {
+        limit.margin = std::min(limit.margin, chosen.value().margin);
+    }
+    limit.rung = statics.rung();
+    if (perturbed != nullptr) {
+        perturbed->log.insert(perturbed->log.end(), minimum.settled.begin(), minimum.settled.end());
+        limit.perturbed = !minimum.settled.empty();
+    }
+    return limit;
+}
+
+template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
+
+} // namespace isostat

@@ -1,0 +1,211 @@
+#include "statics/contender.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double u = 0x1p-53;
+
+/// 2-norm of the mechanism that opens contact l at unit rate (the held and kept others at rest), enclosed.
+template <int Dim> Enclosure mechanism_norm(const Statics<Dim>& statics, ContactId l) {
+    const sparse::Matrix<double>& h = statics.structure().matrix();
+    std::vector<double> v(static_cast<std::size_t>(h.rows), 0.0);
+    v[l.index()] = 1;
+    statics.factorisation().solve_velocities(v);
+    double residual = 0;
+    double size = 0;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
+        double dot = j == l.index() ? -1.0 : 0.0;
+        double terms = std::abs(dot);
+        for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
+            const auto s = static_cast<std::size_t>(e);
+            const double term = h.value[s] * v[static_cast<std::size_t>(h.row[s])];
+            dot += term;
+            terms += std::abs(term);
+        }
+        const double bound = std::abs(dot) + 12 * u * terms; // at most 4 terms, 5u per entry
+        residual += bound * bound;
+    }
+    for (const double c : v) {
+        size += c * c;
+    }
+    const double value = std::sqrt(size);
+    const double away = statics.normal_uncertainty();
+    const double sigma = statics.inverse().sigma_min - away;
+    const double error = (std::sqrt(residual) + away * value) * (1 + 1e-10);
+    return {value, sigma > 0 ? error / sigma * (1 + 1e-10) + 1e-10 * value : infinity};
+}
+
+/// The contenders in the order of the rule.
+template <int Dim> class OpeningContest final : public Contest {
+  public:
+    OpeningContest(Statics<Dim>& statics, std::vector<Contender>& contenders, const Choice<Dim>& choice)
+        : statics_(statics), contenders_(contenders), choice_(choice),
+          least_(choice.rule == OpeningRule::least_negative) {
+        for (Contender& c : contenders_) {
+            c.key = c.force;
+            if (least_) {
+                c.key.value = -c.key.value;
+            } else if (choice_.rule == OpeningRule::steepest) {
+                c.key = quotient(c.force, mechanism_norm(statics_, c.contact));
+            }
+        }
+    }
+    [[nodiscard]] std::size_t size() const override { return contenders_.size(); }
+    /// Another end of the strut of the last one that stood is among the contenders.
+    [[nodiscard]] bool strut() const { return strut_; }
+
+    Result<std::optional<std::size_t>> stand(std::size_t best) override {
+        strut_ = false;
+        const bool by_force = least_ || choice_.rule == OpeningRule::most_negative;
+        mates_ = choice_.turn != nullptr && by_force ? choice_.turn->mates(contenders_[best].contact)
+                                                     : std::vector<StrutMate>();
+        return std::optional(best);
+    }
+
+    Result<Comparison> compare(std::size_t rival, std::size_t best) override {
+        const Contender& one = contenders_[best];
+        const Contender& other = contenders_[rival];
+        const auto mate =
+            std::find_if(mates_.begin(), mates_.end(), [&](const StrutMate& m) { return m.contact == other.contact; });
+        if (mate != mates_.end()) {
+            return by_strut(*mate, other);
+        }
+        const Order order = by_enclosure_or_ladder(other, one);
+        if (choice_.perturbed != nullptr && choice_.rule != OpeningRule::steepest &&
+            needs_first_order(order, choice_.perturbed->size())) {
+            return at_first_order(order, other, one);
+        }
+        return by_order(order, fmt::format("; {} (f = {:.17g}): {}", name(statics_, other.contact), other.force.value,
+                                           reach(order)));
+    }
+
+  private:
+    /// The two ends of a strut that a power turn leaves straight carry one force (S4): the infinitesimal loads order
+    /// them, not the digits to which the turn was located.
+    Comparison by_strut(const StrutMate& mate, const Contender& other) {
+        strut_ = true;
+        const Enclosure& excess = mate.excess;
+        Order order{excess.decided(), excess.positive() == least_ ? -1 : 1, excess.margin(), Rung::combinatorial};
+        return by_order(order,
+                        fmt::format("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
+                                    "loads do not order: {:.3g}, known to {:.3g}",
+                                    name(statics_, mate.contact), other.force.value, excess.value, excess.radius));
+    }
+
+    /// Difference of two enclosures where that decides, the ladder where it does not.
+    Order by_enclosure_or_ladder(const Contender& other, const Contender& one) {
+        const Enclosure difference = other.key - one.key;
+        if (difference.decided()) {
+            return {true, difference.positive() ? 1 : -1, difference.margin(), statics_.rung(), statics_.bits()};
+        }
+        Order order = statics_.compare(quantity(other), quantity(one));
+        order.sign = least_ ? -order.sign : order.sign; // quantities are forces, keys their opposites
+        return order;
+    }
+
+    Result<Comparison> at_first_order(const Order& order, const Contender& other, const Contender& one) {
+        const auto& contacts = statics_.structure().contacts();
+        const Enclosure mine = first_order_key(one);
+        const Enclosure its = first_order_key(other);
+        return by_first_order({"opening", contacts[one.contact.index()], mine, contacts[other.contact.index()], its},
+                              order, false, statics_.rung(),
+                              fmt::format("the opening rule cannot order {} and {} ({}), and the first-order terms of "
+                                          "what it compares",
+                                          name(statics_, one.contact), name(statics_, other.contact), reach(order)));
+    }
+
+    ForceExpression quantity(const Contender& c) {
+        ForceExpression e = choice_.quantity(c.contact);
+        if (choice_.rule == OpeningRule::steepest) {
+            e.divisor = ForceExpression::Divisor::mechanism;
+        }
+        return e;
+    }
+
+    /// First-order term of what the rule compares, for a contender of the finite stage.
+    Enclosure first_order_key(const Contender& c) {
+        Enclosure f1 = choice_.perturbed->force(c.contact);
+        // A held coordinate competes with -|m|: its derivative is -sign(m) m1, and the force of the contender is -|m|.
+        const bool flipped = is_held(statics_, c.contact) && c.multiplier > 0;
+        if (flipped != least_) {
+            f1.value = -f1.value;
+        }
+        return f1;
+    }
+
+    Statics<Dim>& statics_;
+    std::vector<Contender>& contenders_;
+    const Choice<Dim>& choice_;
+    bool least_;
+    bool strut_ = false;
+    std::vector<StrutMate> mates_; ///< of the one that stands
+};
+
+/// Ordered by identity, so that the choice does not depend on the order of the contact list.
+template <int Dim>
+Opening pick_at_random(const Statics<Dim>& statics, std::vector<Contender>& contenders, std::uint64_t random_bits) {
+    std::sort(contenders.begin(), contenders.end(), [&](const Contender& a, const Contender& b) {
+        const auto& contacts = statics.structure().contacts();
+        return contacts[a.contact.index()] < contacts[b.contact.index()];
+    });
+    const Contender& chosen = contenders[random_bits % contenders.size()];
+    return {chosen.contact, false, chosen.force, +1, chosen.margin, statics.rung()};
+}
+
+} // namespace
+
+Enclosure quotient(const Enclosure& a, const Enclosure& b) {
+    const double value = a.value / b.value;
+    const double smallest = b.value - b.radius;
+    if (!(smallest > 0)) {
+        return {value, infinity};
+    }
+    return {value, (a.radius + std::abs(value) * b.radius) / smallest * (1 + 8 * u) + 2 * u * std::abs(value)};
+}
+
+template <int Dim>
+Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice) {
+    if (choice.rule == OpeningRule::random) {
+        return pick_at_random(statics, contenders, choice.random_bits);
+    }
+    OpeningContest<Dim> contest(statics, contenders, choice);
+    const auto guess =
+        std::min_element(contenders.begin(), contenders.end(),
+                         [](const Contender& a, const Contender& b) { return a.key.value < b.key.value; });
+    const auto found = proved_minimum(contest, static_cast<std::size_t>(guess - contenders.begin()),
+                                      "the comparisons of the opening rule contradict each other");
+    if (!found.ok()) {
+        return found.failure();
+    }
+    const Minimum& minimum = found.value();
+    const Contender& best = contenders[*minimum.index];
+    if (!minimum.tied.empty()) {
+        return Failure{FailureKind::tie, fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}){}",
+                                                     name(statics, best.contact), best.force.value, minimum.tied)};
+    }
+    Opening opening{best.contact,
+                    false,
+                    best.force,
+                    +1,
+                    std::min(minimum.margin, best.margin),
+                    std::max(minimum.rung, statics.rung())};
+    opening.straight_strut = contest.strut();
+    opening.perturbed = !minimum.settled.empty();
+    if (choice.perturbed != nullptr) {
+        std::vector<TieDecision>& log = choice.perturbed->log;
+        log.insert(log.end(), minimum.settled.begin(), minimum.settled.end());
+    }
+    return opening;
+}
+
+template Result<Opening> pick<2>(Statics<2>&, std::vector<Contender>, const Choice<2>&);
+
+} // namespace isostat

@@ -1,0 +1,66 @@
+#pragma once
+// The smallest of several quantities, proved: private to the room.
+
+#include <isostat/core/result.hpp>
+#include <isostat/statics/perturbed.hpp>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What is proved of a rival against the smallest so far.
+struct Comparison {
+    enum class Answer : unsigned char { smaller, larger, tied, left_out };
+    Answer answer = Answer::left_out; ///< the rival is ...; left out: it does not compete
+    double margin = std::numeric_limits<double>::infinity();
+    Rung rung = Rung::combinatorial;    ///< that proved it
+    std::string tie;                    ///< with `tied`: who, and how far the two agree
+    std::optional<TieDecision> settled; ///< a tie in the base that first-order terms ordered
+};
+
+/// Quantities that can be compared, by number.
+class Contest {
+  public:
+    Contest() = default;
+    Contest(const Contest&) = delete;
+    Contest& operator=(const Contest&) = delete;
+    virtual ~Contest() = default;
+    [[nodiscard]] virtual std::size_t size() const = 0;
+    /// Before the others are compared with `best`. Another number: that one takes its place; none: there is no minimum.
+    virtual Result<std::optional<std::size_t>> stand(std::size_t best) = 0;
+    virtual Result<Comparison> compare(std::size_t rival, std::size_t best) = 0;
+};
+
+struct Minimum {
+    std::optional<std::size_t> index; ///< none: as `Contest::stand` says
+    std::string tied;                 ///< not empty: these cannot be told from it
+    double margin = std::numeric_limits<double>::infinity();
+    Rung rung = Rung::combinatorial;  ///< highest of the comparisons
+    std::vector<TieDecision> settled; ///< first-order comparisons that were needed
+};
+
+/// The guess `first`, or whoever is proved smaller and takes its place, after a comparison with all others. Failure:
+/// that of a comparison; `undecided` when they contradict each other (a place is lost more often than there are
+/// contenders), with `contradiction`.
+Result<Minimum> proved_minimum(Contest& contest, std::size_t first, const char* contradiction);
+
+/// The answer of a proved comparison of the rival with the smallest so far; `tie` is said of it when there is none.
+Comparison by_order(const Order& order, std::string tie);
+
+/// The base does not tell the two apart: `order` says that a quantity of this size is a tie.
+bool needs_first_order(const Order& order, double size);
+
+/// The rule of first order: `terms.other` is that of the rival, `terms.first` that of the smallest so far. `falling`:
+/// the larger term is the smaller quantity. Failure: `undecided`, with `message` and the two terms.
+Result<Comparison> by_first_order(TieDecision terms, const Order& order, bool falling, Rung rung,
+                                  const std::string& message);
+
+/// "proved to 256 bits" or "exactly".
+std::string reach(const Order& order);
+/// "value +- radius", said of first-order terms.
+std::string shown(const Enclosure& e);
+
+} // namespace isostat

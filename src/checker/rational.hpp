@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace isostat::checker {
@@ -112,7 +113,7 @@ struct Range {
     Rational upper;
     Range() = default;
     explicit Range(const Rational& value) : lower(value), upper(value) {}
-    Range(const Rational& from, const Rational& to) : lower(from), upper(to) {}
+    Range(Rational from, Rational to) : lower(std::move(from)), upper(std::move(to)) {}
     static Range around(const Rational& middle, const Rational& radius) { return {middle - radius, middle + radius}; }
     [[nodiscard]] bool positive() const { return lower > 0; }
     [[nodiscard]] bool negative() const { return upper < 0; }

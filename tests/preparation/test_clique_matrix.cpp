@@ -1,10 +1,7 @@
-// Sums of blocks: solved to rounding, refused when not positive; dense panels against the plain loops.
+// Sums of blocks: solved to rounding, refused when not positive.
 
 #include "../../src/preparation/clique_matrix.hpp"
-#include "../../src/preparation/dense_panel.hpp"
 #include "check.hpp"
-
-#include <isostat/core/threads.hpp>
 
 #include <cmath>
 
@@ -99,32 +96,27 @@ std::vector<double> some_numbers(std::size_t count, double step) {
 
 BOOST_AUTO_TEST_SUITE(preparation)
 
-BOOST_AUTO_TEST_CASE(sums_of_blocks_of_two_grids_are_solved_with_the_same_bits_for_any_number_of_threads,
-                     *boost::unit_test::label("threads")) {
+BOOST_AUTO_TEST_CASE(sums_of_blocks_of_two_grids_are_solved_with_the_same_bits_every_time) {
     const Grids grids;
     const std::vector<double> ground(Grids::columns(), 1e-3);
     const std::vector<double> x = some_numbers(Grids::columns(), 0.7);
     const std::vector<double> b = grids.times(x, ground);
     std::vector<double> first;
-    for (const int count : {1, 2, 3}) {
-        isostat::set_threads(count);
-        CliqueMatrix matrix(Grids::columns(), grids.start, grids.column);
-        for (const bool again : {false, true}) {
-            BOOST_TEST_CONTEXT(count << " threads, again: " << again) {
-                BOOST_REQUIRE(grids.factorise(matrix, ground));
-                std::vector<double> y = b;
-                matrix.solve(y);
-                double worst = 0;
-                for (std::size_t k = 0; k < y.size(); ++k) {
-                    worst = std::max(worst, std::abs(y[k] - x[k]));
-                }
-                BOOST_TEST(worst < 1e-8); // condition number of order 1e6
-                first = first.empty() ? y : first;
-                BOOST_TEST(y == first);
+    CliqueMatrix matrix(Grids::columns(), grids.start, grids.column);
+    for (const bool again : {false, true}) {
+        BOOST_TEST_CONTEXT("again: " << again) {
+            BOOST_REQUIRE(grids.factorise(matrix, ground));
+            std::vector<double> y = b;
+            matrix.solve(y);
+            double worst = 0;
+            for (std::size_t k = 0; k < y.size(); ++k) {
+                worst = std::max(worst, std::abs(y[k] - x[k]));
             }
+            BOOST_TEST(worst < 1e-8); // condition number of order 1e6
+            first = first.empty() ? y : first;
+            BOOST_TEST(y == first);
         }
     }
-    isostat::set_threads(1);
 }
 
 BOOST_AUTO_TEST_CASE(one_negative_pivot_anywhere_is_found_and_the_next_matrix_is_none_the_worse) {
@@ -143,94 +135,6 @@ BOOST_AUTO_TEST_CASE(one_negative_pivot_anywhere_is_found_and_the_next_matrix_is
     for (std::size_t k = 0; k < y.size(); k += 101) {
         BOOST_TEST(std::abs(y[k] - x[k]) < 1e-8);
     }
-}
-
-BOOST_AUTO_TEST_CASE(dense_products_have_the_bits_of_the_plain_loop_for_every_shape,
-                     *boost::unit_test::label("threads")) {
-    using isostat::preparation::ProductSum;
-    isostat::set_threads(2);
-    for (const std::size_t rows : {1U, 3U, 4U, 7U, 8U, 21U, 300U}) {
-        for (const std::size_t columns : {1U, 2U, 5U, 8U, 21U, 300U}) {
-            for (const std::size_t terms : {1U, 6U, 33U}) {
-                if (columns > rows) {
-                    continue;
-                }
-                const std::vector<double> a = some_numbers((rows + 2) * terms, 0.37);
-                const std::vector<double> b = some_numbers((columns + 1) * terms, 0.91);
-                const std::vector<double> c = some_numbers((rows + 3) * columns, 1.3);
-                std::vector<double> plain = c;
-                for (std::size_t j = 0; j < columns; ++j) {
-                    for (std::size_t i = 0; i < rows; ++i) {
-                        for (std::size_t k = 0; k < terms; ++k) {
-                            plain[i + (rows + 3) * j] -= a[i + (rows + 2) * k] * b[j + (columns + 1) * k];
-                        }
-                    }
-                }
-                std::vector<double> ours = c;
-                std::vector<double> lower = c;
-                const auto of = [&](std::vector<double>& to) {
-                    return ProductSum{to.data(),   rows + 3, a.data(), rows + 2, b.data(),
-                                      columns + 1, rows,     columns,  terms};
-                };
-                of(ours).subtract();
-                of(lower).subtract_lower();
-                BOOST_TEST((ours == plain), rows << " x " << columns << ", " << terms << " terms");
-                for (std::size_t j = 0; j < columns; ++j) {
-                    for (std::size_t i = j; i < rows; ++i) {
-                        BOOST_REQUIRE_EQUAL(lower[i + (rows + 3) * j], plain[i + (rows + 3) * j]);
-                    }
-                }
-            }
-        }
-    }
-    isostat::set_threads(1);
-}
-
-BOOST_AUTO_TEST_CASE(a_dense_panel_is_the_factor_of_its_product) {
-    using namespace isostat::preparation;
-    for (const auto& [rows, columns] : {std::pair<std::size_t, std::size_t>{1, 1}, {9, 4}, {40, 40}, {333, 150}}) {
-        // M = L L^T for a known L with a good diagonal.
-        std::vector<double> factor = some_numbers(rows * columns, 0.77);
-        for (std::size_t j = 0; j < columns; ++j) {
-            std::fill_n(factor.begin() + static_cast<std::ptrdiff_t>(rows * j), j, 0.0);
-            factor[j + rows * j] = 20 + static_cast<double>(j % 7);
-        }
-        std::vector<double> panel(rows * columns, 0.0);
-        for (std::size_t j = 0; j < columns; ++j) {
-            for (std::size_t i = j; i < rows; ++i) {
-                for (std::size_t k = 0; k <= j; ++k) {
-                    panel[i + rows * j] += factor[i + rows * k] * factor[j + rows * k];
-                }
-            }
-        }
-        BOOST_REQUIRE(factorise_panel(panel.data(), rows, columns));
-        std::vector<double> x = some_numbers(rows, 0.21);
-        const std::vector<double> before = x;
-        for (std::size_t j = 0; j < columns; ++j) {
-            for (std::size_t i = j; i < rows; ++i) {
-                BOOST_REQUIRE_SMALL(panel[i + rows * j] - factor[i + rows * j], 1e-10);
-            }
-        }
-        solve_panel(panel.data(), rows, columns, x.data());
-        for (std::size_t i = 0; i < rows; ++i) { // M (y, .) and what is left of z give x again
-            double sum = i < columns ? 0 : x[i];
-            for (std::size_t k = 0; k < std::min(i + 1, columns); ++k) {
-                sum += factor[i + rows * k] * x[k];
-            }
-            BOOST_REQUIRE_SMALL(sum - before[i], 1e-10);
-        }
-        x = before;
-        solve_panel_transposed(panel.data(), rows, columns, x.data());
-        for (std::size_t j = 0; j < columns; ++j) { // L^T y + M^T z = what y was
-            double sum = 0;
-            for (std::size_t i = j; i < rows; ++i) {
-                sum += factor[i + rows * j] * x[i];
-            }
-            BOOST_REQUIRE_SMALL(sum - before[j], 1e-10);
-        }
-    }
-    double negative = -1;
-    BOOST_TEST(!factorise_panel(&negative, 1, 1));
 }
 
 BOOST_AUTO_TEST_CASE(a_sum_of_blocks_is_solved_again_and_again) {

@@ -33,6 +33,15 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact
 template <int Dim>
 std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero);
 
+/// What was settled at a vertex since the last call goes into a record.
+template <int Dim> void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into) {
+    if (vertex.perturbed) {
+        std::vector<TieDecision>& log = vertex.perturbed->statics.log;
+        into.insert(into.end(), log.begin(), log.end());
+        log.clear();
+    }
+}
+
 extern template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
 extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
                                              const std::vector<Contact>&);

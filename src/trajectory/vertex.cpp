@@ -1,6 +1,6 @@
 #include "trajectory/vertex.hpp"
 
-#include "trajectory/plain.hpp"
+#include "trajectory/steering.hpp"
 
 #include <isostat/motion/arc.hpp>
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
@@ -28,18 +28,6 @@ Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInvers
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
       statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near, std::move(forces)) {}
-
-template <int Dim> double Vertex<Dim>::cost_of_solves(int arc_passes) const {
-    constexpr double proofs = 3; // passes of the bound and the enclosure
-    return (arc_passes + factorisation.passes() + proofs) * factorisation.approximate().relative_cost();
-}
-
-template <int Dim> bool Vertex<Dim>::factors_are_worn(int arc_passes) const {
-    constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
-    const int exchanges = factorisation.approximate().exchanges();
-    const double here = cost_of_solves(arc_passes);
-    return exchanges > 0 && here * (exchanges + 1) > factorisation_in_passes + cost_before_ + here;
-}
 
 template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
     if (inverse.verdict != Verdict::proved) {
@@ -102,68 +90,41 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Beginning beginning, cons
 }
 
 template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
-                                                            const Contact& closed, const std::vector<double>& tangent,
+Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, ArcProposal<Dim>& arc,
                                                             const Load<Dim>& load, InverseBoundCache& cache,
-                                                            int arc_passes, LadderOptions options) {
-    const auto anew = [&] {
-        std::vector<Contact> contacts = from.structure.contacts();
-        contacts[slot.index()] = closed;
-        return make(std::move(packing), std::move(contacts), load, cache);
-    };
-    auto next = IsostaticStructure<Dim>::exchange(from.structure, packing, slot, closed);
-    if (!next) {
-        return anew(); // it says why
+                                                            LadderOptions options) {
+    if (arc.contacts) {
+        auto made = prove(from, arc, load, cache, options);
+        if (!made.ok() || made.value() != nullptr) {
+            return made;
+        }
     }
-    const ApproximateInverse approximate =
-        from.factors_are_worn(arc_passes) ? from.factorisation.approximate().renewed(next->matrix())
-                                          : from.factorisation.approximate().exchanged(next->slot(), next->matrix());
-    const bool taken_over = approximate.exchanges() > 0;
-    auto made = prove(from, packing, std::move(*next), approximate, tangent, {}, load, cache, options);
-    if (!made.ok()) {
-        return made.failure();
-    }
-    if (made.value() == nullptr) {
-        return anew();
-    }
-    if (taken_over) {
-        made.value()->cost_before_ = from.cost_before_ + from.cost_of_solves(arc_passes);
-    }
-    return made;
-}
-
-template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::proved(const Vertex& from, PlainArrival<Dim> arrival,
-                                                         const Load<Dim>& load, InverseBoundCache& cache,
-                                                         LadderOptions options) {
-    auto made = prove(from, arrival.packing, arrival.contacts, std::move(arrival.approximate), arrival.tangent,
-                      std::move(arrival.forces), load, cache, options);
-    if (made.ok() && made.value() == nullptr) {
-        return make(std::move(arrival.packing), arrival.contacts.contacts(), load, cache);
-    }
-    return made;
+    std::vector<Contact> contacts = from.structure.contacts();
+    contacts[arc.opening.contact.index()] = arc.record.closed;
+    return make(std::move(arc.end), std::move(contacts), load, cache); // it says what is wrong
 }
 
 /// Nothing when no bound was proved in doubles.
 template <int Dim>
-Result<std::unique_ptr<Vertex<Dim>>>
-Vertex<Dim>::prove(const Vertex& from, Packing<Dim> packing, ExchangedContacts<Dim> next,
-                   ApproximateInverse approximate, const std::vector<double>& tangent, std::vector<double> forces,
-                   const Load<Dim>& load, InverseBoundCache& cache, LadderOptions options) {
+Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::prove(const Vertex& from, ArcProposal<Dim>& arc,
+                                                        const Load<Dim>& load, InverseBoundCache& cache,
+                                                        LadderOptions options) {
     std::vector<double> mechanism(static_cast<std::size_t>(from.structure.size()), 0.0);
-    for (std::size_t mu = 0; mu < mechanism.size() && !tangent.empty(); ++mu) {
-        mechanism[mu] = tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
+    for (std::size_t mu = 0; mu < mechanism.size() && !arc.tangent.empty(); ++mu) {
+        mechanism[mu] =
+            arc.tangent[static_cast<std::size_t>(from.structure.dofs().coordinate_of(static_cast<int>(mu)))];
     }
-    auto bound = carry_bound(from.structure, from.inverse, next, approximate, std::move(mechanism));
+    auto bound = carry_bound(from.structure, from.inverse, *arc.contacts, *arc.approximate, std::move(mechanism));
     if (!bound) {
-        bound = bound_exchanged(next, approximate, cache);
+        bound = bound_exchanged(*arc.contacts, *arc.approximate, cache);
     }
     if (!bound) {
         return std::unique_ptr<Vertex>();
     }
     std::unique_ptr<Vertex> vertex(
-        new Vertex(std::move(packing), IsostaticStructure<Dim>::exchanged(std::move(next), bound->proof),
-                   std::move(approximate), bound->bound, load, options, from.statics, std::move(forces)));
+        new Vertex(arc.end, IsostaticStructure<Dim>::exchanged(std::move(*arc.contacts), bound->proof),
+                   std::move(*arc.approximate), bound->bound, load, options, from.statics, std::move(arc.forces)));
+    vertex->cost_before = arc.cost_before;
     if (auto failure = vertex->lacking()) {
         return *failure;
     }

@@ -32,7 +32,7 @@ template <int Dim> struct FirstOrderVertex {
         zeros; ///< of an equilibrium: forces that vanish in the base, and are positive at first order
 };
 
-template <int Dim> struct PlainArrival;
+template <int Dim> struct ArcProposal;
 
 /// Configuration, proved structure, factors, bounds and statics of one vertex. Not movable: the parts refer to each
 /// other.
@@ -51,18 +51,12 @@ template <int Dim> class Vertex {
     };
     static Result<Beginning> begin(Packing<Dim> packing, std::vector<Contact> contacts);
     static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load<Dim>& load, InverseBoundCache& cache);
-    /// The vertex at the end of an arc: one contact of `from` exchanged. The regularity of the new structure and the
-    /// bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a Cholesky
-    /// factorisation (V1), everything anew as in `make`. The factors of `from` go on serving. `tangent` is a guess.
-    /// `arc_passes`: of these factors on the arc between the two.
-    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, Packing<Dim> packing, ContactId slot,
-                                                     const Contact& closed, const std::vector<double>& tangent,
-                                                     const Load<Dim>& load, InverseBoundCache& cache, int arc_passes,
-                                                     LadderOptions options = {});
-    /// The same for an arc that was steered without proof, whose end has exchanged contacts, an operator close to the
-    /// inverse and forces already: guesses, all but the configuration and the contacts.
-    static Result<std::unique_ptr<Vertex>> proved(const Vertex& from, PlainArrival<Dim> arrival, const Load<Dim>& load,
-                                                  InverseBoundCache& cache, LadderOptions options);
+    /// The vertex at the end of a proposed arc: one contact of `from` exchanged. The regularity of the new structure
+    /// and the bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a
+    /// Cholesky factorisation (V1), everything anew as in `make`. What the proposal brings are guesses, all but the
+    /// configuration and the contacts; what is used is taken out of it.
+    static Result<std::unique_ptr<Vertex>> exchanged(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,
+                                                     InverseBoundCache& cache, LadderOptions options);
     Vertex(const Vertex&) = delete;
     Vertex& operator=(const Vertex&) = delete;
 
@@ -72,6 +66,7 @@ template <int Dim> class Vertex {
     InverseBound inverse;
     VertexEnclosure enclosure;
     Statics<Dim> statics;
+    double cost_before = 0; ///< of the vertices since the factorisation, in passes of fresh factors, without this one
 
     /// Signs of the gaps of all candidates at the true vertex.
     struct Gaps {
@@ -99,19 +94,10 @@ template <int Dim> class Vertex {
            InverseBoundCache& cache);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
            const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near, std::vector<double> forces);
-    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, Packing<Dim> packing, ExchangedContacts<Dim> next,
-                                                 ApproximateInverse approximate, const std::vector<double>& tangent,
-                                                 std::vector<double> forces, const Load<Dim>& load,
+    static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,
                                                  InverseBoundCache& cache, LadderOptions options);
     /// What every vertex needs, or why not.
     std::optional<Failure> lacking();
-    /// Cost of the solves of this vertex and of the arc from it, in passes of fresh factors.
-    [[nodiscard]] double cost_of_solves(int arc_passes) const;
-    /// New factors are due when this vertex cost more than the average since the last ones, their making included: the
-    /// rule that keeps that average smallest. It counts operations, never seconds.
-    [[nodiscard]] bool factors_are_worn(int arc_passes) const;
-
-    double cost_before_ = 0; ///< of the vertices since the factorisation, without this one
 };
 
 extern template class Vertex<2>;

@@ -1,5 +1,5 @@
 #pragma once
-// When the factors that steer are renewed, and how: private to the room.
+// When the factors that steer are made anew, and how: private to the room.
 
 #include <isostat/core/threads.hpp>
 #include <isostat/linear/approximate_inverse.hpp>
@@ -14,7 +14,7 @@ namespace isostat {
 /// When new factors are due: as soon as an arc costs more than the average since the last ones, their making included,
 /// which keeps that average smallest. What an arc costs is smoothed over a few: single ones cost twice as much as
 /// others. Counts passes, never seconds.
-class Wear {
+class RefactorisationRule {
   public:
     /// An arc that took so many passes of `inverse`.
     void add(int passes, const ApproximateInverse& inverse) {
@@ -23,10 +23,10 @@ class Wear {
         sum_ += cost;
         ++arcs_;
     }
-    [[nodiscard]] bool out(const ApproximateInverse& inverse) const {
+    [[nodiscard]] bool due(const ApproximateInverse& inverse) const {
         return inverse.exchanges() > 0 && recent_ * arcs_ > inverse.renewal_cost() + sum_;
     }
-    void renew() { *this = {}; }
+    void restart() { *this = {}; }
 
   private:
     static constexpr double smoothed_over = 4;
@@ -36,7 +36,7 @@ class Wear {
 };
 
 /// New factors made beside the arcs, which go on with the old ones meanwhile.
-class Renewal {
+class Refactorisation {
   public:
     /// Of the matrix that `old` stands for. Nothing when one is under way.
     void begin(const ApproximateInverse& old, std::shared_ptr<const sparse::Matrix<double>> matrix) {

@@ -1,5 +1,5 @@
 #pragma once
-// A vertex on the way at level `plain`: private to the room.
+// A vertex on the way of floating steering: private to the room.
 
 #include "trajectory/foreseen_vertex.hpp"
 
@@ -20,12 +20,13 @@
 namespace isostat {
 
 /// A vertex on the way. Nothing is proved of it.
-template <int Dim> class PlainVertex {
+template <int Dim> class FloatingVertex {
   public:
     /// `guess`: forces in the same slots. `open`: see `Arc`. `foreseen`: of the same pattern, or null.
-    PlainVertex(Packing<Dim> p, IsostaticStructure<Dim> s, const ApproximateInverse& approximate, const Load<Dim>& load,
-                const std::vector<double>& guess, OpeningRule rule, CandidateList<Dim>& candidates,
-                const ArcOptions& options, std::vector<Contact> open, ForeseenVertex<Dim>* foreseen)
+    FloatingVertex(Packing<Dim> p, IsostaticStructure<Dim> s, const ApproximateInverse& approximate,
+                   const Load<Dim>& load, const std::vector<double>& guess, OpeningRule rule,
+                   CandidateList<Dim>& candidates, const ArcOptions& options, std::vector<Contact> open,
+                   ForeseenVertex<Dim>* foreseen)
         : packing(std::move(p)), structure(std::move(s)), factorisation(structure, approximate), load_(load) {
         const DofMap<Dim>& dofs = structure.dofs();
         force = on_dofs(load.external_force(packing), dofs);
@@ -135,6 +136,7 @@ template <int Dim> class PlainVertex {
         }
         return departure_.get();
     }
+    [[nodiscard]] bool has_departure() const { return departure_ != nullptr; }
     [[nodiscard]] std::optional<Opening> choose(OpeningRule rule, std::uint64_t random_bits) {
         const auto chosen = stage(true, rule, random_bits);
         return chosen ? chosen : stage(false, rule, random_bits);

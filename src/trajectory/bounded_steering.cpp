@@ -1,0 +1,135 @@
+#include "trajectory/bounded_steering.hpp"
+
+#include "trajectory/prover.hpp"
+#include "trajectory/record.hpp"
+#include "trajectory/ties.hpp"
+
+namespace isostat {
+
+namespace {
+
+/// Cost of the solves of a vertex and of the arc from it, in passes of fresh factors.
+template <int Dim> double cost_of_solves(const Vertex<Dim>& vertex, int arc_passes) {
+    constexpr double proofs = 3; // passes of the bound and the enclosure
+    return (arc_passes + vertex.factorisation.passes() + proofs) * vertex.factorisation.approximate().relative_cost();
+}
+
+/// New factors are due when this vertex cost more than the average since the last ones, their making included: the rule
+/// that keeps that average smallest. It counts operations, never seconds.
+template <int Dim> bool new_factors_are_due(const Vertex<Dim>& vertex, double cost) {
+    constexpr double factorisation_in_passes = 90; // KLU: analysis and factorisation, measured for n = 1936, 4900
+    const int exchanges = vertex.factorisation.approximate().exchanges();
+    return exchanges > 0 && cost * (exchanges + 1) > factorisation_in_passes + vertex.cost_before + cost;
+}
+
+} // namespace
+
+template <int Dim>
+BoundedSteering<Dim>::BoundedSteering(std::shared_ptr<const Vertex<Dim>> from, ArcStart<Dim> start,
+                                      double step_fraction, CandidateList<Dim>& candidates)
+    : vertex_(std::move(from)), from_(*vertex_), start_(std::move(start)), candidates_(candidates),
+      opened_(from_.structure.contacts()[start_.opening.contact.index()]) {
+    arc_options_.step_fraction = step_fraction;
+}
+
+/// What becomes of pairs that touch, and of rattlers.
+template <int Dim> std::optional<Failure> BoundedSteering<Dim>::depart() {
+    const Opening& opening = start_.opening;
+    if (from_.perturbed && !from_.perturbed->touching.empty()) {
+        auto departure = isostat::depart(from_, opening.contact, opening.direction);
+        if (!departure.ok()) {
+            return departure.failure();
+        }
+        next_to_ = departure.value().closes;
+        departure_ = departure.value().settled;
+        arc_options_.leaving = departure.value().leaving;
+        arc_options_.resting = departure.value().resting;
+    }
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their
+    // own block costs next to nothing.
+    if (opening.infinitesimal && !from_.factorisation.is_fresh()) {
+        fresh_ = Factorisation::of_moving_block(from_.structure, static_cast<int>(opening.contact.index()));
+        if (!fresh_) {
+            fresh_.emplace(from_.structure);
+        }
+    }
+    return std::nullopt;
+}
+
+template <int Dim> Result<Arc<Dim>> BoundedSteering<Dim>::attempt() {
+    if (next_to_) {
+        Arc<Dim> none;
+        none.end = from_.packing;
+        none.closed = *next_to_;
+        return none;
+    }
+    const Opening& opening = start_.opening;
+    return follow_arc(from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
+                      opening.direction, PowerLoad<Dim>{start_.load, opening.infinitesimal, start_.kind == "limit"},
+                      candidates_, arc_options_);
+}
+
+template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
+    constexpr int most_proposals = 8;
+    if (proposals_ == most_proposals) {
+        return Failure{FailureKind::undecided, "the order of the first contacts that close was not settled"};
+    }
+    if (proposals_++ == 0) {
+        if (auto failure = depart()) {
+            return *failure;
+        }
+    }
+    auto arc = attempt();
+    // An arc that fails, or ends where it began, may only have been predicted badly by old factors.
+    if ((!arc.ok() || arc.value().closed == opened_) && (!fresh_ || start_.opening.infinitesimal) &&
+        !from_.factorisation.is_fresh()) {
+        fresh_.emplace(from_.structure);
+        arc = attempt();
+    }
+    if (!arc.ok()) {
+        return arc.failure();
+    }
+    proposed_ = true;
+    return proposal(std::move(arc.value()));
+}
+
+template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path) const {
+    ArcProposal<Dim> arc;
+    arc.record.step = start_.step;
+    arc.record.kind = start_.kind;
+    arc.record.opened = opened_;
+    arc.record.perturbed = start_.settled;
+    record_path(arc.record, path);
+    arc.opening = start_.opening;
+    arc.end = std::move(path.end);
+    arc.tangent = std::move(path.tangent);
+    arc.stays = next_to_.has_value();
+    arc.resting = arc_options_.resting;
+    arc.settled = departure_;
+    arc.contacts = IsostaticStructure<Dim>::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
+    if (arc.contacts) {
+        const ApproximateInverse& old = from_.factorisation.approximate();
+        const double cost = cost_of_solves(from_, fresh_ ? 0 : path.passes);
+        arc.approximate = new_factors_are_due(from_, cost)
+                              ? old.renewed(arc.contacts->matrix())
+                              : old.exchanged(arc.contacts->slot(), arc.contacts->matrix());
+        arc.cost_before = arc.approximate->exchanges() > 0 ? from_.cost_before + cost : 0;
+    }
+    return arc;
+}
+
+template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refused) {
+    if (refused.closed_before) {
+        (next_to_ ? next_to_ : arc_options_.closes) = refused.closed_before;
+    } else if (!refused.vertex && !fresh_ && !next_to_ && !from_.factorisation.is_fresh()) {
+        fresh_.emplace(from_.structure); // old factors may also have ended it badly
+    } else {
+        return false;
+    }
+    proposed_ = false;
+    return true;
+}
+
+template class BoundedSteering<2>;
+
+} // namespace isostat

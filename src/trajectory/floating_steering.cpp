@@ -1,0 +1,239 @@
+#include "trajectory/floating_steering.hpp"
+
+#include "trajectory/descent.hpp"
+#include "trajectory/record.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+/// "the arc that opens 1-2 and closes 3-4".
+template <int Dim> std::string names(const ArcRecord<Dim>& record) {
+    return fmt::format("the arc that opens {} and closes {}", to_string<Dim>(record.opened),
+                       to_string<Dim>(record.closed));
+}
+
+/// eps_2, in double.
+template <int Dim> double strain(const Load<Dim>& load, const Packing<Dim>& packing) {
+    const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
+    return reference > 0 ? (reference - packing.length(load.loaded_axis)) / reference : 0;
+}
+
+} // namespace
+
+std::uint64_t bits_for(std::uint64_t seed, long step) { // splitmix64 finaliser
+    std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(step + 1);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31);
+}
+
+std::string kind_of(const Contact& opened, bool infinitesimal) {
+    return opened.kind == ContactKind::held ? "release" : infinitesimal ? "rattler" : "tension";
+}
+
+template <int Dim>
+FloatingSteering<Dim>::FloatingSteering(const Origin& from, const ArcStart<Dim>& start, const RunOptions& options,
+                                        CandidateList<Dim> candidates, bool for_proofs)
+    : packing_(&from.packing), structure_(&from.structure), factorisation_(&from.factorisation), start_(start),
+      load_(*start.load), options_(options), candidates_(std::move(candidates)), for_proofs_(for_proofs) {
+    arc_options_.step_fraction = options.step_fraction;
+    arc_options_.extrapolate_tangent = true;
+}
+
+template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::propose() {
+    if (stock_.empty()) {
+        return next();
+    }
+    Result<ArcProposal<Dim>> arc = std::move(stock_.front());
+    stock_.pop_front();
+    return arc;
+}
+
+template <int Dim> void FloatingSteering<Dim>::propose_ahead(const std::function<bool()>& enough) {
+    while (!ended_ && !enough() && stock_.size() < static_cast<std::size_t>(options_.max_arcs)) {
+        stock_.push_back(next());
+    }
+}
+
+template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
+    ArcProposal<Dim> arc;
+    ArcRecord<Dim>& record = arc.record;
+    record.step = start_.step;
+    record.kind = start_.kind;
+    record.opened = structure_->contacts()[start_.opening.contact.index()];
+    record.force = start_.opening.force.value;
+    record.margin = std::nan("");
+    arc.opening = start_.opening;
+    ended_ = true; // unless there is another arc after this one
+    Foretold foretold;
+    foretold.passes = here_ ? here_->passes() : 0; // of others at the start
+    auto path = follow(foretold);
+    if (!path.ok()) {
+        return path.failure();
+    }
+    if (auto failure = record_arc(record, path.value())) {
+        return *failure;
+    }
+    if (auto failure = arrive(arc, path.value(), foretold)) {
+        return *failure;
+    }
+    if (auto failure = record_power(record)) {
+        return *failure;
+    }
+    record.strain = strain(load_, *packing_);
+    if (for_proofs_) {
+        arc.ahead = true;
+        arc.end = *packing_;
+        arc.tangent = std::move(path.value().tangent);
+        arc.forces = here_->force;
+    }
+    choose(arc);
+    return arc;
+}
+
+/// With the arc that was begun beside the choice of what opens, if it was.
+template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Foretold& foretold) {
+    const Opening& opening = start_.opening;
+    const PowerLoad<Dim> power{&load_, opening.infinitesimal, start_.kind == "limit"};
+    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
+    std::optional<Factorisation> block;
+    if (opening.infinitesimal) {
+        block = Factorisation::of_moving_block(*structure_, static_cast<int>(opening.contact.index()));
+    }
+    const auto attempt = [&](const Factorisation& factors) {
+        return follow_arc(*packing_, *structure_, factors, opening.contact, opening.direction, power, candidates_,
+                          arc_options_);
+    };
+    auto* departure = here_ ? here_->departure(opening) : nullptr;
+    if (departure != nullptr) {
+        factorisation_ = &departure->factorisation;
+    }
+    auto arc = [&] {
+        if (departure == nullptr) {
+            return attempt(block ? *block : *factorisation_);
+        }
+        const std::unique_ptr<ArcDeparture<Dim>> begun = departure->arc.take();
+        foretold.end = begun->expected();
+        if (foretold.end) {
+            foretold.vertex = Promised<ForeseenVertex<Dim>>([this, &end = *foretold.end] {
+                return foresee(*structure_, here_->loaded(), here_->force, factorisation_->approximate(), load_,
+                               start_.opening.contact, end);
+            });
+        }
+        return begun->follow();
+    }();
+    const Contact& opened = structure_->contacts()[opening.contact.index()];
+    if ((!arc.ok() || arc.value().closed == opened) && (block || !factorisation_->is_fresh())) {
+        arc = attempt(Factorisation(*structure_));
+    }
+    return arc;
+}
+
+template <int Dim>
+std::optional<Failure> FloatingSteering<Dim>::record_arc(ArcRecord<Dim>& record, const Arc<Dim>& path) const {
+    if (here_ && here_->has_departure()) {
+        record.force = here_->better_force(start_.opening.contact.index(), path.opening);
+    }
+    record_path(record, path);
+    const WorkOfArc work = work_of(load_, *packing_, path.end);
+    record.work = work.value;
+    if (load_.kind == LoadKind::nominal && work.value < -1e-12 * work.size) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("W increased by {:.6g} along {}", -work.value, names(record))};
+    }
+    return std::nullopt;
+}
+
+/// The vertex at the end of the path: from now on it is `here_`.
+template <int Dim>
+std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Foretold& foretold) {
+    std::optional<ForeseenVertex<Dim>> foreseen;
+    if (foretold.end && foretold.end->closes == path.closed) {
+        foreseen = foretold.vertex.take();
+    }
+    foretold.vertex = {}; // it reads this vertex
+    auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, start_.opening.contact, path.closed,
+                                                  foreseen && foreseen->contacts ? &*foreseen->contacts : nullptr);
+    if (!next) {
+        return Failure{FailureKind::not_isostatic,
+                       fmt::format("the contacts are structurally singular at the end of {}", names(arc.record))};
+    }
+    if (!next->foreseen()) { // a normal turned into or out of an axis: the backbone may be another one
+        foreseen.reset();
+    }
+    ApproximateInverse approximate = operator_at(*next, path.passes + foretold.passes, foreseen);
+    if (for_proofs_) {
+        arc.contacts = *next;
+    }
+    auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
+    if (rule_.due(approximate)) {
+        refactorisation_.begin(approximate, unproved.shared_matrix());
+    }
+    const std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
+    here_ = std::make_unique<FloatingVertex<Dim>>(std::move(path.end), std::move(unproved), approximate, load_, guess,
+                                                  options_.rule, candidates_, arc_options_, std::move(path.open),
+                                                  foreseen ? &*foreseen : nullptr);
+    if (for_proofs_) {
+        arc.approximate = std::move(approximate);
+    }
+    packing_ = &here_->packing;
+    structure_ = &here_->structure;
+    factorisation_ = &here_->factorisation;
+    return std::nullopt;
+}
+
+/// An operator close to the inverse, after an arc that cost so many passes: renewed, foreseen, or the one before with
+/// one more exchange.
+template <int Dim>
+ApproximateInverse FloatingSteering<Dim>::operator_at(const ExchangedContacts<Dim>& next, int passes,
+                                                      std::optional<ForeseenVertex<Dim>>& foreseen) {
+    rule_.add(passes, factorisation_->approximate());
+    if (auto renewed = refactorisation_.after(next.slot(), next.matrix())) {
+        rule_.restart();
+        return std::move(*renewed);
+    }
+    if (foreseen && !for_proofs_) { // the new column is the foreseen one, which only a proof would notice
+        return std::move(*foreseen->approximate);
+    }
+    return factorisation_->approximate().exchanged(next.slot(), next.matrix());
+}
+
+template <int Dim> std::optional<Failure> FloatingSteering<Dim>::record_power(ArcRecord<Dim>& record) const {
+    if (record.power_turn) {
+        return std::nullopt;
+    }
+    const std::size_t slot = start_.opening.contact.index();
+    const bool infinitesimal = start_.opening.infinitesimal;
+    record.power = infinitesimal ? here_->infinitesimal()[slot] : here_->force[slot];
+    if ((infinitesimal || !here_->is_structural_zero(slot)) &&
+        !(infinitesimal ? here_->infinitesimal()[slot] > 0 : here_->compressive(slot))) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("the power of the load is not positive at the end of {}", names(record))};
+    }
+    return std::nullopt;
+}
+
+/// What opens next; nothing: it ends here.
+template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
+    // The ends of a straight strut carry one force at a power turn: only a proof orders them.
+    const auto chosen = arc.record.power_turn ? std::optional<Opening>()
+                                              : here_->choose(options_.rule, bits_for(options_.rule_seed, start_.step));
+    if (!chosen) {
+        const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
+        arc.last = SteeredEnd<Dim>{here_->packing, structure_->contacts(), hold, candidates_.triangulation};
+        return;
+    }
+    start_.opening = *chosen;
+    start_.kind = kind_of(structure_->contacts()[chosen->contact.index()], chosen->infinitesimal);
+    ++start_.step;
+    ended_ = false;
+}
+
+template class FloatingSteering<2>;
+
+} // namespace isostat

@@ -1,0 +1,310 @@
+#include "trajectory/prover.hpp"
+
+#include "trajectory/descent.hpp"
+#include "trajectory/floating_steering.hpp"
+
+#include <isostat/motion/arc.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+/// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
+constexpr double enough_to_decide = 1e-12;
+
+} // namespace
+
+Failure located(const Failure& failure, const std::string& where) {
+    return {failure.kind, where + ": " + failure.message};
+}
+
+template <int Dim> void ArcProof<Dim>::count(const Decision& decision) {
+    decisions.push_back(decision);
+    record.margin = std::min(record.margin, decision.margin);
+    record.decided_by = std::max(record.decided_by, decision.rung);
+}
+
+template <int Dim>
+void Prover<Dim>::start_at(const Packing<Dim>& packing, const std::shared_ptr<const RegularTriangulation<Dim>>& near) {
+    if (candidates_.reference != packing.q || candidates_.contacts.empty()) { // else it would be the same list
+        candidates_ = find_candidates(packing, candidate_fraction, near ? near : candidates_.triangulation);
+    }
+    bounds_.forget();
+}
+
+template <int Dim>
+Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::vertex(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                         const LimitLoad<Dim>& at) {
+    auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), at.load, bounds_);
+    if (!made.ok()) {
+        return made.failure();
+    }
+    if (first_order_ != nullptr) {
+        first_order_->attach(*made.value(), at);
+    }
+    return std::shared_ptr<Vertex<Dim>>(std::move(made.value()));
+}
+
+template <int Dim>
+Result<OpeningDecision> Prover<Dim>::decide(Vertex<Dim>& vertex, double stress, const ZeroHolds& zero,
+                                            long step) const {
+    return decide_opening(vertex.statics, stress, options_->rule, zero, bits_for(options_->rule_seed, step),
+                          vertex.first_order());
+}
+
+template <int Dim>
+ArcProof<Dim> Prover<Dim>::prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, const Opening& opening,
+                                 const LimitLoad<Dim>& at) {
+    ArcProof<Dim> proof;
+    ArcRecord<Dim>& record = proof.record;
+    record = arc.record;
+    record.force = opening.force.value;
+    record.margin = std::numeric_limits<double>::infinity();
+    record.decided_by = Rung::combinatorial;
+    proof.count({DecisionKind::opening, opening.margin, opening.rung, opening.perturbed});
+    proof.failure = reach(proof, from, arc, at);
+    if (!proof.reached) {
+        return proof;
+    }
+    proof.failure = descend(proof, from, opening, at.load);
+    if (!proof.failure && !record.power_turn) {
+        proof.failure = power(proof, opening, at.stress());
+    }
+    if (proof.failure || (proof.turned_back() && (arc.ahead || !proof.descends))) {
+        return proof;
+    }
+    record_strain(record, *proof.vertex, at.load);
+    proof.next = decide(*proof.vertex, at.stress(), record.power_turn ? ZeroHolds{opening.contact, {}} : ZeroHolds{},
+                        record.step);
+    take_log(*proof.vertex, record.perturbed);
+    if (options_->certify == CertifyLevel::arcs && (proof.agrees() || !arc.ahead)) {
+        certify(proof, from, opening, at.load);
+    }
+    return proof;
+}
+
+/// The vertex at the end, and no gap closed before.
+template <int Dim>
+std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
+                                          const LimitLoad<Dim>& at) {
+    const auto at_end = [&](const Failure& failure) {
+        return located(failure, fmt::format("at the end of the arc that opens {} and closes {}",
+                                            to_string<Dim>(proof.record.opened), to_string<Dim>(proof.record.closed)));
+    };
+    LadderOptions ladder;
+    ladder.first_accuracy = first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
+    auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, ladder);
+    if (!made.ok()) {
+        return at_end(made.failure());
+    }
+    proof.vertex = std::move(made.value());
+    if (first_order_ != nullptr) {
+        first_order_->attach(*proof.vertex, at);
+    }
+    const auto found = gaps(*proof.vertex);
+    if (!found.ok()) {
+        return at_end(found.failure());
+    }
+    proof.closed_before = found.value().negative;
+    return proof.closed_before ? std::nullopt : arrive(proof, arc, found.value());
+}
+
+/// Pairs that touch at the end, at first order.
+template <int Dim>
+std::optional<Failure> Prover<Dim>::arrive(ArcProof<Dim>& proof, const ArcProposal<Dim>& arc,
+                                           const typename Vertex<Dim>::Gaps& gaps) const {
+    std::vector<TieDecision> settled = arc.settled;
+    if (first_order_ != nullptr && !gaps.zero.empty()) {
+        auto arrival = isostat::arrive(*proof.vertex, gaps.zero, arc.opening.contact, arc.stays, arc.resting);
+        if (!arrival.ok()) {
+            return arrival.failure();
+        }
+        proof.closed_before = arrival.value().earlier;
+        if (proof.closed_before) {
+            return std::nullopt;
+        }
+        settled.insert(settled.end(), arrival.value().settled.begin(), arrival.value().settled.end());
+    }
+    proof.record.perturbed.insert(proof.record.perturbed.end(), settled.begin(), settled.end());
+    proof.count({DecisionKind::gaps, gaps.margin, gaps.rung, !settled.empty()});
+    proof.reached = true;
+    return std::nullopt;
+}
+
+template <int Dim>
+std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
+                                            const Load<Dim>& load) {
+    const Vertex<Dim>& to = *proof.vertex;
+    const Enclosure decrease = potential_decrease(from, to, load, opening.infinitesimal);
+    proof.record.work = work_of(load, from.packing, to.packing).value;
+    proof.descends = decrease.positive();
+    // A way of length O(eps) ends where it began: first-order terms decide there.
+    const bool at_once = from.perturbed && from.packing.q == to.packing.q;
+    const bool has_potential = std::isfinite(decrease.radius);
+    if (!has_potential || proof.descends || at_once) {
+        return std::nullopt;
+    }
+    return Failure{FailureKind::undecided,
+                   fmt::format("the potential is not proved to decrease along the arc that opens {} and closes {}: by "
+                               "{:.6g}, known to {:.3g}",
+                               to_string<Dim>(proof.record.opened), to_string<Dim>(proof.record.closed), decrease.value,
+                               decrease.radius)};
+}
+
+/// F.t = f_c (G t)_c at the event, and the new gap closes: the power is positive there iff the new force is.
+template <int Dim>
+std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& opening, double stress) {
+    Vertex<Dim>& to = *proof.vertex;
+    ArcRecord<Dim>& record = proof.record;
+    const ContactId closed = opening.contact; // in the same slot
+    const auto force = [&] {
+        return opening.infinitesimal ? to.statics.infinitesimal(closed) : to.statics.force(closed, stress);
+    };
+    Enclosure f = force();
+    record.power = f.value;
+    if (to.perturbed && !opening.infinitesimal && !f.decided() && !to.statics.is_structural_zero(closed)) {
+        const Order order = to.statics.sign(to.statics.force_expression(closed, stress));
+        PerturbedStatics<Dim>& side = to.perturbed->statics;
+        if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
+            f = side.force(closed);
+            if (!f.positive()) {
+                return Failure{FailureKind::undecided,
+                               fmt::format("the new force in {} vanishes, and its first-order term is {:.6g} +- "
+                                           "{:.3g}: the power of the load is not proved positive at the end of the arc",
+                                           to_string<Dim>(record.closed), f.value, f.radius)};
+            }
+            record.perturbed.push_back(
+                {"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
+            proof.count({DecisionKind::power, f.margin(), to.statics.rung(), true});
+            return std::nullopt;
+        }
+        if (order.decided && order.sign > 0) {
+            proof.count({DecisionKind::power, order.margin, order.rung});
+            return std::nullopt;
+        }
+    }
+    while (!f.decided() && to.statics.climb()) {
+        f = force();
+        record.power = f.value;
+    }
+    if (!opening.infinitesimal && to.statics.is_structural_zero(closed)) {
+        return std::nullopt;
+    }
+    if (!f.positive()) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("the power of the load along the arc that opens {} and closes {} is not proved "
+                                   "positive at its end: force {:.3g} in the new contact, proved to {:.3g}",
+                                   to_string<Dim>(record.opened), to_string<Dim>(record.closed), f.value, f.radius)};
+    }
+    proof.count({DecisionKind::power, f.margin(), to.statics.rung()});
+    return std::nullopt;
+}
+
+/// Level `arcs`: the certificate does not depend on how the arc was found, and an arc without one stays in the run.
+template <int Dim>
+void Prover<Dim>::certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
+                          const Load<Dim>& load) const {
+    const auto begin = std::chrono::steady_clock::now();
+    // Factors of its own: those of the run count their use, and only fresh ones leave what does not move at exactly 0.
+    const Vertex<Dim>& to = *proof.vertex;
+    const Factorisation first(from.structure);
+    const Factorisation last(to.structure);
+    const auto vertex = [](const Vertex<Dim>& v, const Factorisation& factorisation) {
+        return ArcVertex<Dim>{v.packing, v.structure, factorisation, v.inverse, v.enclosure};
+    };
+    proof.record.certificate =
+        certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
+                    PowerLoad<Dim>{&load, opening.infinitesimal, proof.record.kind == "limit"}, candidates_);
+    proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+template <int Dim>
+EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, const LimitLoad<Dim>& limit,
+                                     ContactId hold, const std::vector<ContactId>& zeros, long step) {
+    EndProof<Dim> proof;
+    auto made = Vertex<Dim>::make(std::move(beginning), limit.load, bounds_);
+    if (!made.ok()) {
+        proof.failure = made.failure();
+        return proof;
+    }
+    proof.vertex = std::move(made.value());
+    Vertex<Dim>& vertex = *proof.vertex;
+    if (first_order_ != nullptr) { // the load is again the stored one, if the forces allow it
+        first_order_->attach(vertex, {limit.load, nullptr, 0, {0, 0}});
+    }
+    auto found = gaps(vertex);
+    if (!found.ok()) {
+        proof.failure = found.failure();
+        return proof;
+    }
+    proof.gaps = std::move(found.value());
+    if (proof.gaps.negative) {
+        return proof;
+    }
+    if (first_order_ != nullptr) {
+        proof.failure = first_order_->settle_load(vertex, limit, zeros);
+        proof.failure = proof.failure ? proof.failure : settle_touching(vertex, proof.gaps.zero);
+        if (proof.failure) {
+            return proof;
+        }
+        proof.decision = ask_again(vertex, limit.stress());
+    } else {
+        proof.decision = decide(vertex, limit.stress(), hold.valid() ? ZeroHolds{hold, {}} : ZeroHolds{}, step);
+    }
+    if (proof.decision->ok() && !proof.decision->value().opening) {
+        if (first_order_ == nullptr) {
+            (void)ask_again(vertex, limit.stress());
+        }
+        proof.description = describe(vertex, limit.load);
+    }
+    return proof;
+}
+
+template <int Dim> Result<OpeningDecision> Prover<Dim>::ask_again(Vertex<Dim>& vertex, double stress) const {
+    auto decision = decide_opening(vertex.statics, stress, options_->rule, ContactId(), 0, vertex.first_order());
+    if (vertex.perturbed) {
+        vertex.perturbed->statics.log.clear();
+        if (decision.ok()) {
+            vertex.perturbed->zeros = decision.value().zeros;
+        }
+    }
+    return decision;
+}
+
+template <int Dim> std::optional<ArcProof<Dim>> ProofChain<Dim>::prove(ArcProposal<Dim>& arc) {
+    const auto same = [](const Opening& a, const Opening& b) {
+        return a.contact == b.contact && a.direction == b.direction && a.infinitesimal == b.infinitesimal;
+    };
+    if (!due_ || !same(*due_, arc.opening)) {
+        return std::nullopt; // it starts with what does not open
+    }
+    const WorkCounts steering = arc.work;
+    WorkCounts counts{};
+    ArcProof<Dim> proof;
+    {
+        const CountingIn counting(&counts);
+        proof = prover_.prove(*from_, std::move(arc), *due_, at_);
+    }
+    proof.work = counts;
+    if (!proof.agrees()) {
+        refused_ = std::move(proof);
+        return std::nullopt;
+    }
+    add(proof.work, steering);
+    from_ = proof.vertex;
+    due_ = proof.next->value().opening;
+    return proof;
+}
+
+template struct ArcProof<2>;
+template class Prover<2>;
+template class ProofChain<2>;
+
+} // namespace isostat

@@ -1,0 +1,134 @@
+#pragma once
+/// \file
+/// Proves what steering proposes, and equilibria from nothing: private to the room.
+
+#include "trajectory/counting.hpp"
+#include "trajectory/first_order_side.hpp"
+#include "trajectory/kept_candidates.hpp"
+#include "trajectory/record.hpp"
+#include "trajectory/steering.hpp"
+#include "trajectory/vertex.hpp"
+
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+/// One decision, for the tally.
+struct Decision {
+    DecisionKind kind;
+    double margin;
+    Rung rung;
+    bool perturbed = false;
+};
+
+/// What was found out about the end of a proposed arc.
+template <int Dim> struct ArcProof {
+    ArcRecord<Dim> record;
+    std::vector<Decision> decisions;             ///< that were made
+    std::shared_ptr<Vertex<Dim>> vertex;         ///< the end; null: nothing was proved of it
+    std::optional<Contact> closed_before;        ///< the arc does not end there: this one closed first
+    bool reached = false;                        ///< no gap is closed before
+    std::optional<Failure> failure;              ///< what is not proved of the arc
+    bool descends = false;                       ///< the potential is proved to decrease
+    std::optional<Result<OpeningDecision>> next; ///< what opens at the end; none when that was not asked
+    double seconds = 0;                          ///< of the certificate, at level `arcs`
+    WorkCounts work{};                           ///< to be counted when it is recorded
+
+    void count(const Decision& decision);
+    /// The arc is what happens, and it is known what follows.
+    [[nodiscard]] bool agrees() const { return next && next->ok(); }
+    [[nodiscard]] bool turned_back() const { return record.power_turn && record.closed == record.opened; }
+};
+
+/// What was found out about a vertex as an equilibrium, as far as there was need of it.
+template <int Dim> struct EndProof {
+    std::shared_ptr<Vertex<Dim>> vertex;
+    typename Vertex<Dim>::Gaps gaps;
+    std::optional<Failure> failure; ///< of the vertex, its gaps or its load: then nothing else is there
+    std::optional<Result<OpeningDecision>> decision;     ///< none: a gap is negative
+    std::optional<Result<Description<Dim>>> description; ///< of an equilibrium only
+};
+
+/// Owns what successive proofs leave for the next ones: candidates, which of them are contacts, bounds of the inverse.
+/// Nothing else touches these, whatever thread the prover works on; one thread at a time.
+template <int Dim> class Prover {
+  public:
+    /// `first_order`: under `ties = "perturb"`, else null. Both must outlive the prover.
+    Prover(const RunOptions& options, const FirstOrderSide<Dim>* first_order)
+        : options_(&options), first_order_(first_order) {}
+
+    /// Keeps nothing of what was before but a complete list of candidates at the packing, if it has that: what follows
+    /// does not depend on the past, so that a resumed run goes the same way. `near`: see `find_candidates`.
+    void start_at(const Packing<Dim>& packing, const std::shared_ptr<const RegularTriangulation<Dim>>& near = nullptr);
+    /// Lent to steering that starts from the vertices of this prover, on its thread.
+    [[nodiscard]] CandidateList<Dim>& candidates() { return candidates_; }
+
+    /// A vertex from nothing: full exact elimination, fresh factors and bound.
+    Result<std::shared_ptr<Vertex<Dim>>> vertex(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                const LimitLoad<Dim>& at);
+    Result<typename Vertex<Dim>::Gaps> gaps(Vertex<Dim>& vertex) {
+        return vertex.check_gaps(candidates_, kept_, first_order_ != nullptr);
+    }
+    /// Whether the arc from a vertex, which starts with what was proved to open there, ends where it is proposed to,
+    /// and what opens there: regularity, true vertex, order of the gaps, descent, power, next opening.
+    ArcProof<Dim> prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, const Opening& opening,
+                        const LimitLoad<Dim>& at);
+
+    /// Whether a vertex, proved from nothing, is an equilibrium. `limit`: that the rearrangement started from; `zeros`:
+    /// forces that vanish in the base; `hold`: held just now. The list of candidates is that at the vertex.
+    EndProof<Dim> prove_end(typename Vertex<Dim>::Beginning beginning, const LimitLoad<Dim>& limit, ContactId hold,
+                            const std::vector<ContactId>& zeros, long step);
+    /// Asks again what made a vertex an equilibrium: after a resume the statics then stand on the same rung. With first
+    /// order the answer must be the same with the load that the state stores.
+    Result<OpeningDecision> ask_again(Vertex<Dim>& vertex, double stress) const;
+    /// What opens, by the rule of the run; `step`: of the arc that led there.
+    Result<OpeningDecision> decide(Vertex<Dim>& vertex, double stress, const ZeroHolds& zero, long step) const;
+
+  private:
+    void certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening, const Load<Dim>& load) const;
+    std::optional<Failure> reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
+                                 const LimitLoad<Dim>& at);
+    std::optional<Failure> arrive(ArcProof<Dim>& proof, const ArcProposal<Dim>& arc,
+                                  const typename Vertex<Dim>::Gaps& gaps) const;
+    static std::optional<Failure> descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
+                                          const Load<Dim>& load);
+    static std::optional<Failure> power(ArcProof<Dim>& proof, const Opening& opening, double stress);
+
+    const RunOptions* options_;
+    const FirstOrderSide<Dim>* first_order_;
+    CandidateList<Dim> candidates_;
+    KeptCandidates kept_; ///< of `candidates_`
+    InverseBoundCache bounds_;
+};
+
+/// Proofs of successive arcs, each from the end of the one before. One that does not agree ends it.
+template <int Dim> class ProofChain {
+  public:
+    ProofChain(Prover<Dim>& prover, std::shared_ptr<const Vertex<Dim>> from, const Opening& opening,
+               const LimitLoad<Dim>& at)
+        : prover_(prover), from_(std::move(from)), due_(opening), at_(at) {}
+    /// Nothing: it does not agree.
+    std::optional<ArcProof<Dim>> prove(ArcProposal<Dim>& arc);
+    /// The proof that did not agree, if it got so far.
+    [[nodiscard]] std::optional<ArcProof<Dim>>& refused() { return refused_; }
+
+  private:
+    Prover<Dim>& prover_;
+    std::shared_ptr<const Vertex<Dim>> from_;
+    std::optional<Opening> due_; ///< what opens at `from_`
+    const LimitLoad<Dim>& at_;
+    std::optional<ArcProof<Dim>> refused_;
+};
+
+/// Where a failure happened: put before its message, so that the last line of a run says all.
+Failure located(const Failure& failure, const std::string& where);
+
+extern template struct ArcProof<2>;
+extern template class Prover<2>;
+extern template class ProofChain<2>;
+
+} // namespace isostat

@@ -1,0 +1,340 @@
+#include "trajectory/rearrangement.hpp"
+
+#include "trajectory/bounded_steering.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+template <int Dim>
+Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following)
+    : prover_(prover), recorder_(recorder), following_(following), at_(std::move(start.at)),
+      here_(std::move(start.vertex)), opening_(start.opening), kind_(std::move(start.kind)) {}
+
+template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
+    return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
+}
+
+template <int Dim> std::string Rearrangement<Dim>::at_equilibrium() const {
+    return fmt::format("equilibrium at sigma = {:.17g}", at_.stress());
+}
+
+template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<NextRearrangement<Dim>> begun) {
+    if (begun && kind_ == "limit" && begun->starts_with(opening_.contact, at_)) {
+        begun_ = std::move(begun);
+        steering_ = begun_->take();
+    }
+    while (true) {
+        if (auto failure = follow_arcs()) {
+            return *failure;
+        }
+        if (!end_) {
+            end_ = prove_end(prover_, plain() ? std::move(*steered_to_) : at_here());
+        }
+        if (auto failure = judge(*end_)) {
+            return *failure;
+        }
+        const OpeningDecision& decision = end_->decision->value();
+        if (!decision.opening) {
+            if (plain()) {
+                recorder_.count({DecisionKind::gaps, end_->gaps.margin, end_->gaps.rung});
+                recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung});
+            }
+            return Reached<Dim>{std::move(*end_), arcs_, std::move(next_)};
+        }
+        // Only plain steering ends where a force is negative: it goes on from there.
+        goes_on_from(end_->vertex, *decision.opening);
+        steering_.reset();
+        end_.reset();
+        next_.reset();
+        ended_ = false;
+    }
+}
+
+/// The other rules choose by differences that floating steering does not resolve.
+template <int Dim> bool Rearrangement<Dim>::floats() const {
+    return plain() || (options().ties == TiePolicy::stop && options().rule == OpeningRule::most_negative &&
+                       !by_steps_ && resting_.empty());
+}
+
+/// Propose, prove, record, decide, until no force is negative.
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
+    constexpr std::size_t most_waiting = 6;
+    while (!ended_) {
+        if (auto failure = cap()) {
+            return failure;
+        }
+        if (!steering_) {
+            steering_ = make_steering();
+        }
+        ProofChain<Dim> chain(prover_, here_, opening_, at_);
+        Proofs proofs([&](ArcProposal<Dim>& arc) { return plain() ? unproved(arc) : chain.prove(arc); },
+                      ahead_ ? most_waiting : 0);
+        const int before = arcs_;
+        proposed_ = 0;
+        std::optional<Failure> failed; // to propose an arc
+        while (steering_->goes_on() && !failed && !proofs.ended() && !recorder_.stopped() &&
+               before + proposed_ < options().max_arcs) {
+            failed = propose(proofs);
+            if (auto failure = record(proofs)) {
+                return failure;
+            }
+        }
+        WorkCounts beside{};
+        Prover<Dim> other(options(), nullptr);
+        std::optional<EndProof<Dim>> end;
+        if (ahead_ && steered_to_ && !steered_to_->fresh_hold.valid() && !proofs.ended()) {
+            const CountingIn counting(&beside); // the last proofs may say that it is none
+            end = prove_end(other, std::move(*steered_to_));
+        }
+        proofs.finish();
+        if (auto failure = record(proofs)) {
+            return failure;
+        }
+        if (ended_ && end && arcs_ == before + proposed_) {
+            count_all(beside);
+            prover_ = std::move(other);
+            end_ = std::move(end);
+        }
+        if (auto failure = answer(chain.refused(), failed, arcs_ > before)) {
+            return failure;
+        }
+    }
+    return std::nullopt;
+}
+
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
+    if (recorder_.stopped()) {
+        return Failure{FailureKind::interrupted, fmt::format("stopped after {} arcs of a rearrangement at sigma = "
+                                                             "{:.17g}",
+                                                             arcs_, at_.stress())};
+    }
+    if (arcs_ >= options().max_arcs) {
+        return Failure{FailureKind::cap_reached, fmt::format("no equilibrium after {} arcs at sigma = {:.17g}: the "
+                                                             "sample fails here (cap max_arcs)",
+                                                             arcs_, at_.stress())};
+    }
+    return std::nullopt;
+}
+
+template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steering() {
+    ArcStart<Dim> start{opening_, kind_, recorder_.counters.steps + 1, &at_.load, {}};
+    ahead_ = floats() && !plain();
+    if (!floats()) {
+        if (arcs_ == 0) {
+            take_log(*here_, start.settled);
+        }
+        return std::make_unique<BoundedSteering<Dim>>(here_, std::move(start), options().step_fraction,
+                                                      prover_.candidates());
+    }
+    if (options().certify == CertifyLevel::arcs) {
+        (void)here_->structure.ordering(); // made at the first call: steering and proofs may ask for it at once
+    }
+    return std::make_unique<FloatingSteering<Dim>>(
+        typename FloatingSteering<Dim>::Origin{here_->packing, here_->structure, here_->factorisation}, start,
+        options(), prover_.candidates(), ahead_);
+}
+
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::propose(Proofs& proofs) {
+    WorkCounts work{};
+    auto arc = [&] {
+        if (!ahead_) {
+            return steering_->propose();
+        }
+        const CountingIn counting(&work); // how far it goes in vain depends on the threads
+        return steering_->propose();
+    }();
+    if (!arc.ok()) {
+        return arc.failure();
+    }
+    ++proposed_;
+    arc.value().work = work;
+    steered_to_ = std::move(arc.value().last);
+    proofs.submit(std::move(arc.value()));
+    return std::nullopt;
+}
+
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::record(Proofs& proofs) {
+    while (!recorder_.stopped()) {
+        auto proof = proofs.next();
+        if (!proof) {
+            break;
+        }
+        recorder_.record(*proof, ++arcs_, at_.stress());
+        if (auto failure = decide(*proof)) {
+            return failure;
+        }
+    }
+    return std::nullopt;
+}
+
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Dim>& proof) {
+    const ArcRecord<Dim>& record = proof.record;
+    if (proof.next) {
+        const auto& opening = proof.next->value().opening;
+        recorder_.counters.tally.structural_ties += opening && opening->straight_strut ? 1 : 0;
+    }
+    if (std::abs(record.strain) > options().max_strain) {
+        return Failure{FailureKind::cap_reached,
+                       fmt::format("|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails "
+                                   "here (cap max_strain = {:.6g})",
+                                   std::abs(record.strain), at_.stress(), options().max_strain)};
+    }
+    if (!proof.next) { // level `plain`
+        ended_ = steered_to_.has_value();
+        return std::nullopt;
+    }
+    const OpeningDecision& decision = proof.next->value();
+    last_hold_ = record.power_turn ? opening_.contact : ContactId();
+    resting_.clear();
+    by_steps_ = false;
+    if (decision.opening) {
+        goes_on_from(proof.vertex, *decision.opening);
+        return std::nullopt;
+    }
+    here_ = proof.vertex;
+    zeros_ = decision.zeros;
+    ended_ = true;
+    recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung, decision.perturbed});
+    return std::nullopt;
+}
+
+template <int Dim> void Rearrangement<Dim>::goes_on_from(std::shared_ptr<Vertex<Dim>> vertex, const Opening& opening) {
+    here_ = std::move(vertex);
+    opening_ = opening;
+    kind_ = kind_of(here_->structure.contacts()[opening.contact.index()], opening.infinitesimal);
+}
+
+/// What to do about an arc that could not be proposed, or whose proof did not agree; `any`: others before did.
+template <int Dim>
+std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& refused,
+                                                  const std::optional<Failure>& failed, bool any) {
+    if (ahead_) { // proposed in vain: what depends on it is done again
+        count_all(refused ? refused->work : WorkCounts{});
+        by_steps_ = !any;
+        steering_.reset();
+        return std::nullopt;
+    }
+    if (failed) {
+        ++recorder_.counters.steps;
+        if (plain()) {
+            ++recorder_.counters.tally.plain;
+        } else {
+            recorder_.count({DecisionKind::opening, opening_.margin, opening_.rung, opening_.perturbed});
+        }
+        return located(*failed, where(arcs_ + 1));
+    }
+    if (!refused) {
+        if (!plain()) {
+            steering_.reset(); // it was for one arc
+        }
+        return std::nullopt;
+    }
+    if (steering_->revise(*refused)) {
+        count_all(refused->work);
+        return std::nullopt;
+    }
+    if (refused->next) {
+        recorder_.record(*refused, ++arcs_, at_.stress());
+        return located(refused->next->failure(), where(arcs_));
+    }
+    recorder_.count(*refused);
+    if (refused->reached && kind_ == "release" && !refused->descends) {
+        return set_aside(refused->record);
+    }
+    ++recorder_.counters.steps;
+    return located(*refused->failure, where(arcs_ + 1));
+}
+
+/// It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released once more it
+/// would do so for ever.
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const ArcRecord<Dim>& record) {
+    resting_.push_back(opening_.contact);
+    ZeroHolds zero{std::nullopt, resting_};
+    if (last_hold_.valid()) {
+        zero.fresh = last_hold_;
+    }
+    auto again = prover_.decide(*here_, at_.stress(), zero, recorder_.counters.steps);
+    if (!again.ok()) {
+        return located(again.failure(), where(arcs_ + 1));
+    }
+    if (!again.value().opening) {
+        return Failure{FailureKind::undecided,
+                       fmt::format("{}: every force is positive, and the multiplier of {} is 0 as far as the power "
+                                   "turn is located: whether and where it moves is not decided",
+                                   where(arcs_ + 1), to_string<Dim>(record.opened))};
+    }
+    goes_on_from(here_, *again.value().opening);
+    steering_.reset();
+    return std::nullopt;
+}
+
+template <int Dim> SteeredEnd<Dim> Rearrangement<Dim>::at_here() const {
+    return {here_->packing, here_->structure.contacts(), last_hold_, {}};
+}
+
+/// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
+/// run starts from the same bits. At level `plain`, with several threads, the next rearrangement is begun beside it.
+template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end) {
+    const bool follows = plain() && following_ != nullptr && threads() > 1 &&
+                         std::none_of(end.contacts.begin(), end.contacts.end(),
+                                      [](const Contact& c) { return c.kind == ContactKind::held; });
+    Errand listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
+    auto begun = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
+    listing.finish();
+    EndProof<Dim> proof;
+    if (!begun.ok()) {
+        proof.failure = begun.failure();
+        return proof;
+    }
+    auto beginning = std::make_shared<typename Vertex<Dim>::Beginning>(std::move(begun.value()));
+    if (follows) {
+        next_ = std::make_unique<NextRearrangement<Dim>>(*beginning, prover.candidates());
+    }
+    const long step = recorder_.counters.steps;
+    Promised<EndProof<Dim>> proving(
+        [&, hold = end.fresh_hold, step] { return prover.prove_end(std::move(*beginning), at_, hold, zeros_, step); });
+    if (next_ && next_->begin(at_.load, *following_, options(), step + 1)) {
+        next_->propose_ahead([&] { return !proving.underway() || recorder_.stopped(); });
+    } else {
+        next_.reset();
+    }
+    return proving.take();
+}
+
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndProof<Dim>& end) const {
+    if (end.failure) {
+        return located(*end.failure, at_equilibrium());
+    }
+    if (end.gaps.negative) {
+        const std::string overlap = to_string<Dim>(*end.gaps.negative) + " overlap";
+        return plain() ? Failure{FailureKind::undecided,
+                                 at_equilibrium() + ": plain steering went past a contact, " + overlap}
+                       : Failure{FailureKind::overlap, at_equilibrium() + ": " + overlap};
+    }
+    const Result<OpeningDecision>& decision = *end.decision;
+    if (plain()) {
+        return decision.ok() ? std::nullopt : std::optional<Failure>(located(decision.failure(), where(arcs_)));
+    }
+    if (decision.ok() && !decision.value().opening) {
+        return std::nullopt;
+    }
+    return Failure{
+        FailureKind::undecided,
+        fmt::format("{}: not found again with {}{}", at_equilibrium(),
+                    options().ties == TiePolicy::perturb ? "the load as it is stored" : "fresh factors and bounds",
+                    decision.ok() ? "" : ": " + decision.failure().message)};
+}
+
+template <int Dim> std::optional<ArcProof<Dim>> Rearrangement<Dim>::unproved(ArcProposal<Dim>& arc) {
+    ArcProof<Dim> proof;
+    proof.record = std::move(arc.record);
+    return proof;
+}
+
+template class Rearrangement<2>;
+
+} // namespace isostat

@@ -1,0 +1,94 @@
+#pragma once
+/// \file
+/// From an equilibrium at its limit to the next one: private to the room.
+
+#include "trajectory/next_rearrangement.hpp"
+#include "trajectory/pipeline.hpp"
+#include "trajectory/prover.hpp"
+#include "trajectory/recorder.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// Where a rearrangement ended: an equilibrium, proved from nothing that the way to it left.
+template <int Dim> struct Reached {
+    EndProof<Dim> proof;
+    int arcs = 0;
+    std::unique_ptr<NextRearrangement<Dim>> next; ///< what follows, if it was begun
+};
+
+/// One rearrangement under a constant load (paper, section 2.3): a contact opens, the grains move until another one
+/// closes, and the contact with the largest traction opens next, until there is none. Every arc is *proposed* by a
+/// steering, *proved*, *recorded*, and its end *decides* what opens; the level and the ties say who steers and what is
+/// proved:
+/// - `decisions` and above: floating steering goes ahead of the proofs, by a window; where one does not agree the arc
+/// is
+///   proposed again by bounded steering, window 0. With first-order ties, and by rules whose choice steering does not
+///   resolve, all of it is bounded;
+/// - `plain`: floating steering, whose arcs are recorded as they are; only the end is proved, beside the arcs of the
+///   rearrangement after it.
+template <int Dim> class Rearrangement {
+  public:
+    struct Start {
+        std::shared_ptr<Vertex<Dim>> vertex;
+        Opening opening;
+        std::string kind; ///< of the first arc, as records call it
+        LimitLoad<Dim> at;
+    };
+    /// `following`: what follows the next equilibrium; null: nothing. All must outlive the rearrangement.
+    Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following);
+
+    /// `begun`: a guess of this rearrangement, or null. Once.
+    Result<Reached<Dim>> run(std::unique_ptr<NextRearrangement<Dim>> begun);
+
+  private:
+    [[nodiscard]] const RunOptions& options() const { return recorder_.options; }
+    [[nodiscard]] bool plain() const { return options().certify == CertifyLevel::plain; }
+    [[nodiscard]] bool floats() const;
+    std::optional<Failure> follow_arcs();
+    [[nodiscard]] std::optional<Failure> cap() const;
+    std::unique_ptr<Steering<Dim>> make_steering();
+    using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
+    std::optional<Failure> propose(Proofs& proofs);
+    static std::optional<ArcProof<Dim>> unproved(ArcProposal<Dim>& arc);
+    std::optional<Failure> record(Proofs& proofs);
+    std::optional<Failure> decide(ArcProof<Dim>& proof);
+    void goes_on_from(std::shared_ptr<Vertex<Dim>> vertex, const Opening& opening);
+    std::optional<Failure> answer(std::optional<ArcProof<Dim>>& refused, const std::optional<Failure>& failed,
+                                  bool any);
+    std::optional<Failure> set_aside(const ArcRecord<Dim>& record);
+    [[nodiscard]] SteeredEnd<Dim> at_here() const;
+    EndProof<Dim> prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end);
+    std::optional<Failure> judge(const EndProof<Dim>& end) const;
+    [[nodiscard]] std::string where(int arc) const;
+    [[nodiscard]] std::string at_equilibrium() const;
+
+    Prover<Dim>& prover_;
+    Recorder<Dim>& recorder_;
+    const Segment* following_;
+    LimitLoad<Dim> at_;
+    std::shared_ptr<Vertex<Dim>> here_; ///< the last vertex that was proved
+    Opening opening_;                   ///< what opens there
+    std::string kind_;
+    int arcs_ = 0;
+    ContactId last_hold_;            ///< of the power turn at `here_`
+    std::vector<ContactId> resting_; ///< holds at `here_` whose multipliers are 0 as far as their turns are located
+    std::vector<ContactId> zeros_;   ///< forces at the end that vanish in the base
+    bool by_steps_ = false;          ///< the next arc is one that must be proved before going on
+    bool ahead_ = false;             ///< the steering goes ahead of the proofs
+    int proposed_ = 0;               ///< arcs by it
+    bool ended_ = false;             ///< no force is negative where it is
+    std::unique_ptr<NextRearrangement<Dim>> begun_;
+    std::unique_ptr<NextRearrangement<Dim>> next_;
+    std::unique_ptr<Steering<Dim>> steering_; ///< refers to `here_` or `begun_`
+    std::optional<SteeredEnd<Dim>> steered_to_;
+    std::optional<EndProof<Dim>> end_;
+};
+
+extern template class Rearrangement<2>;
+
+} // namespace isostat

@@ -1,0 +1,60 @@
+#include "trajectory/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+template <int Dim> void Recorder<Dim>::count(const Decision& decision) {
+    counters.tally.perturbed[static_cast<std::size_t>(decision.kind)] += decision.perturbed ? 1 : 0;
+    counters.tally.count(decision.kind, decision.margin, decision.rung);
+    margin_ = std::min(margin_, decision.margin);
+    rung_ = std::max(rung_, decision.rung);
+}
+
+template <int Dim> void Recorder<Dim>::count(const ArcProof<Dim>& proof) {
+    count_all(proof.work);
+    for (const Decision& decision : proof.decisions) {
+        count(decision);
+    }
+}
+
+template <int Dim> void Recorder<Dim>::record(ArcProof<Dim>& proof, int arc, double stress) {
+    ArcRecord<Dim>& record = proof.record;
+    record.step = ++counters.steps;
+    record.equilibrium = counters.equilibria;
+    record.arc = arc;
+    record.stress = stress;
+    counters.tally.plain += options.certify == CertifyLevel::plain ? 1 : 0;
+    count(proof);
+    if (record.certificate) {
+        count(*record.certificate, proof.seconds);
+    }
+    observer.on_arc(record);
+}
+
+template <int Dim> void Recorder<Dim>::take_margin(EquilibriumRecord<Dim>& record) {
+    record.margin = std::exchange(margin_, std::numeric_limits<double>::infinity());
+    record.decided_by = std::exchange(rung_, Rung::combinatorial);
+}
+
+template <int Dim> void Recorder<Dim>::count(const ArcCertificate& certificate, double seconds) {
+    ArcTally& tally = counters.arcs;
+    const bool proved = certificate.verdict == Verdict::proved;
+    (proved ? tally.certified : tally.undecided)++;
+    tally.power_undecided += proved && certificate.power != Verdict::proved ? 1 : 0;
+    tally.pieces += certificate.pieces;
+    tally.factorisations += certificate.factorisations;
+    const auto lower = [proved](double& smallest, double margin) {
+        if (proved && std::isfinite(margin) && (smallest == 0 || margin < smallest)) {
+            smallest = margin;
+        }
+    };
+    lower(tally.tube_margin, certificate.tube_margin);
+    lower(tally.gap_margin, certificate.gap_margin);
+    tally.seconds += seconds;
+}
+
+template class Recorder<2>;
+
+} // namespace isostat

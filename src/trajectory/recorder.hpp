@@ -1,0 +1,37 @@
+#pragma once
+/// \file
+/// Counters and observer of a run: private to the room.
+
+#include "trajectory/prover.hpp"
+
+namespace isostat {
+
+/// Counts what was decided, and tells the observer. For the thread that records only.
+template <int Dim> class Recorder {
+  public:
+    /// All must outlive the recorder.
+    Recorder(const RunOptions& asked, RunCounters& counted, RunObserver<Dim>& told)
+        : options(asked), counters(counted), observer(told) {}
+
+    const RunOptions& options;
+    RunCounters& counters;
+    RunObserver<Dim>& observer;
+
+    [[nodiscard]] bool stopped() const { return options.stop != nullptr && options.stop->load(); }
+    void count(const Decision& decision);
+    /// Its work and its decisions.
+    void count(const ArcProof<Dim>& proof);
+    /// An arc that happened: numbered, counted and shown.
+    void record(ArcProof<Dim>& proof, int arc, double stress);
+    /// Smallest margin and highest rung of the decisions since the last call, into the record of an equilibrium.
+    void take_margin(EquilibriumRecord<Dim>& record);
+
+  private:
+    void count(const ArcCertificate& certificate, double seconds);
+    double margin_ = std::numeric_limits<double>::infinity();
+    Rung rung_ = Rung::combinatorial;
+};
+
+extern template class Recorder<2>;
+
+} // namespace isostat

@@ -1,0 +1,82 @@
+#pragma once
+/// \file
+/// Who proposes the arcs of a rearrangement, and what is proposed: private to the room.
+
+#include "trajectory/counting.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/linear/approximate_inverse.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+#include <isostat/statics/decisions.hpp>
+#include <isostat/trajectory/records.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat {
+
+/// What an arc starts with.
+template <int Dim> struct ArcStart {
+    Opening opening;
+    std::string kind; ///< as records call it
+    long step = 0;    ///< number of the arc in the run
+    const Load<Dim>* load = nullptr;
+    std::vector<TieDecision> settled; ///< ties on the way to its opening
+};
+
+/// How records call an arc that starts with an opening of a contact, but for the first one at a limit load.
+std::string kind_of(const Contact& opened, bool infinitesimal);
+
+/// Where steering found no negative force. Nothing is proved of it.
+template <int Dim> struct SteeredEnd {
+    Packing<Dim> packing;
+    std::vector<Contact> contacts;
+    ContactId fresh_hold; ///< valid: the last arc ended at a power turn, and holds this coordinate
+    std::shared_ptr<const RegularTriangulation<Dim>> triangulation; ///< of a configuration near
+};
+
+/// An arc that was followed, and its end. A guess in every part: a prover says what is true of it.
+template <int Dim> struct ArcProposal {
+    ArcRecord<Dim> record; ///< as far as the path tells
+    Opening opening;       ///< that it starts with
+    Packing<Dim> end;
+    std::vector<double> tangent;                    ///< there, on coordinates
+    std::optional<ExchangedContacts<Dim>> contacts; ///< there; none: structurally singular
+    std::optional<ApproximateInverse> approximate;  ///< of their matrix
+    std::vector<double> forces;                     ///< the finite ones; empty: not known
+    double cost_before = 0;                         ///< see `Vertex`
+    bool ahead = false;                             ///< nothing is proved of its start either
+    /// Under `ties = "perturb"`:
+    bool stays = false;                  ///< the way is of length O(eps)
+    std::vector<Contact> resting;        ///< pairs that touch all along
+    std::vector<TieDecision> settled;    ///< ties at the start of the way
+    std::optional<SteeredEnd<Dim>> last; ///< no force is negative at the end
+    WorkCounts work{};                   ///< to be counted when it is recorded
+};
+
+template <int Dim> struct ArcProof;
+
+/// Proposes arc after arc. The two kinds differ in what a proposal starts from:
+/// - `BoundedSteering`: a vertex that is proved, and the opening that was proved to be the one; it knows the next arc
+///   only when the end of this one is proved. Finds what is there, ties included, or says why not;
+/// - `FloatingSteering`: the end of the proposal before, as refined double precision knows it. Goes ahead of every
+///   proof; *no rank, no sign and no order of what it proposes is proved or even bounded*, and one that took a wrong
+///   turn does not know.
+template <int Dim> class Steering {
+  public:
+    Steering() = default;
+    Steering(const Steering&) = delete;
+    Steering& operator=(const Steering&) = delete;
+    virtual ~Steering() = default;
+    /// It knows what the next arc starts with.
+    [[nodiscard]] virtual bool goes_on() const = 0;
+    /// The next arc. \pre goes_on(). Failures: those of `follow_arc`, and what each kind adds.
+    virtual Result<ArcProposal<Dim>> propose() = 0;
+    /// The last proposal was refused. True: the next one is another for the same arc.
+    virtual bool revise(const ArcProof<Dim>& refused) = 0;
+};
+
+} // namespace isostat

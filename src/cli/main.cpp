@@ -9,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,6 +17,10 @@
 #include <functional>
 #include <iostream>
 #include <new>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -377,8 +382,47 @@ struct Program {
     }
 };
 
+/// The number of letters to change, add or leave out between two words.
+std::size_t difference(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+            diagonal = std::exchange(row[j], std::min({changed, row[j] + 1, row[j - 1] + 1}));
+        }
+    }
+    return row.back();
+}
+
+/// Empty, or what is wrong with a first word that is no command.
+std::string wrong_command(const CLI::App& app, const std::string& word) {
+    if (word.starts_with("-")) {
+        return "";
+    }
+    const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
+    const auto far = [&word](const CLI::App* command) { return difference(word, command->get_name()); };
+    const CLI::App* near = *std::min_element(commands.begin(), commands.end(),
+                                             [&](const auto* a, const auto* b) { return far(a) < far(b); });
+    if (far(near) == 0) {
+        return "";
+    }
+    return "'" + word + "' is no command" +
+           (far(near) <= 2 ? ": did you mean '" + near->get_name() + "'?" : "; isostat --help lists them");
+}
+
+int complain(isostat::ErrorKind kind, const std::string& message) {
+    std::cerr << "isostat: " << message << '\n';
+    return isostat::Error(kind, "").exit_status();
+}
+
 int run_program(int argc, char** argv) {
     Program program(quoted(argc, argv));
+    const std::string wrong = argc > 1 ? wrong_command(program.app, argv[1]) : ""; // NOLINT(*-pointer-arithmetic)
+    if (!wrong.empty()) {
+        return complain(isostat::ErrorKind::usage, wrong);
+    }
     try {
         program.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -387,11 +431,6 @@ int run_program(int argc, char** argv) {
     isostat::require_floating_point();
     ignore_file_size_signals();
     return program.todo();
-}
-
-int complain(isostat::ErrorKind kind, const std::string& message) {
-    std::cerr << "isostat: " << message << '\n';
-    return isostat::Error(kind, "").exit_status();
 }
 
 /// `work`, with what went wrong as words and an exit status. Whatever is not foreseen is 70, never a status that

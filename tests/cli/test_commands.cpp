@@ -27,7 +27,9 @@ BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
 
 BOOST_AUTO_TEST_CASE(wrong_use_is_64) {
     expect(run({}), 64);
-    expect(run({"fly"}), 64, {"subcommand"});
+    expect(run({"fly"}), 64, {"'fly' is no command", "--help"});
+    expect(run({"runn", "scene.toml"}), 64, {"did you mean 'run'?"});
+    expect(run({"ceritfy"}), 64, {"did you mean 'certify'?"});
     expect(run({"run"}), 64, {"scene"});
     expect(run({"run", "scene.toml"}), 64, {"--output"});
     expect(run({"inspect", "a", "b"}), 64);

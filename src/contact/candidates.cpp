@@ -2,6 +2,7 @@
 #include "contact/near_pairs.hpp"
 
 #include <isostat/contact/candidates.hpp>
+#include <isostat/contact/separation.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/work.hpp>
 
@@ -31,10 +32,11 @@ template <int Dim, class Visit> void for_each_wall_contact(const Packing<Dim>& p
 
 /// Bound on the rounding of a wall gap, from the lengths that enter.
 template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Contact& contact) {
-    const auto i = static_cast<std::size_t>(contact.i);
-    const double x = std::abs(packing.q[Dim * i + static_cast<std::size_t>(contact.j)]);
-    const double length = contact.kind == ContactKind::upper_wall ? std::abs(packing.length(contact.j)) : 0;
-    return 0x1p-51 * (x + length + packing.radius[i]);
+    double lengths = 0;
+    Separation<Dim>(contact, packing.disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
+        lengths += std::abs(packing.q[k]);
+    });
+    return 0x1p-51 * (lengths + packing.radius[static_cast<std::size_t>(contact.i)]);
 }
 
 } // namespace

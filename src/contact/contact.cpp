@@ -1,9 +1,11 @@
 #include <isostat/contact/contact.hpp>
+#include <isostat/contact/separation.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace isostat {
 
@@ -12,15 +14,6 @@ namespace {
 constexpr std::array<const char*, 3> lower_name{"left", "bottom", "back"};
 constexpr std::array<const char*, 3> upper_name{"right", "top", "front"};
 constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
-
-template <int Dim> std::array<double, Dim> centre_line(const Packing<Dim>& packing, const Contact& contact) {
-    std::array<double, Dim> d{};
-    for (std::size_t a = 0; a < Dim; ++a) {
-        d[a] = packing.q[static_cast<std::size_t>(Dim * contact.j) + a] -
-               packing.q[static_cast<std::size_t>(Dim * contact.i) + a];
-    }
-    return d;
-}
 
 template <int Dim> double plain_norm(const std::array<double, Dim>& d) {
     double square = 0;
@@ -75,61 +68,38 @@ template <int Dim> std::string to_string(const Contact& contact) {
 }
 
 template <int Dim> double gap(const Packing<Dim>& packing, const Contact& contact) {
-    const auto i = static_cast<std::size_t>(contact.i);
-    const auto j = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {
     case ContactKind::disk_disk:
-        return norm<Dim>(centre_line(packing, contact)) - (packing.radius[i] + packing.radius[j]);
-    case ContactKind::lower_wall: return packing.q[Dim * i + j] - packing.radius[i];
-    case ContactKind::upper_wall: return packing.length(contact.j) - packing.q[Dim * i + j] - packing.radius[i];
+        return norm<Dim>(separation<Dim>(packing.q, contact)) - touching_distance(packing.radius, contact);
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall:
+        return wall_distance<Dim>(packing.q, contact) - touching_distance(packing.radius, contact);
     case ContactKind::held: return 0;
     }
     return 0;
 }
 
 template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, const Contact& contact) {
-    GapGradient<Dim> g;
+    std::array<double, Dim> normal; // but for the sign; of a wall 1
+    normal.fill(1);
     if (contact.kind == ContactKind::disk_disk) {
-        const std::array<double, Dim> d = centre_line(packing, contact);
-        const double length = plain_norm<Dim>(d);
-        if (in_range(length)) {
-            for (int a = 0; a < Dim; ++a) {
-                const auto k = static_cast<std::size_t>(a);
-                const double normal = d[k] / length;
-                g.coordinate[k] = Dim * contact.i + a;
-                g.coordinate[Dim + k] = Dim * contact.j + a;
-                g.value[k] = -normal;
-                g.value[Dim + k] = normal;
-            }
-            g.count = 2 * Dim;
-            return g;
+        normal = separation<Dim>(packing.q, contact);
+        double length = plain_norm<Dim>(normal);
+        if (!in_range(length)) {
+            normalise<Dim>(normal); // squares under- or overflow
+            length = plain_norm<Dim>(normal);
+        }
+        for (double& component : normal) {
+            component /= length;
         }
     }
-    const auto add = [&g](int coordinate, double value) {
-        g.coordinate[static_cast<std::size_t>(g.count)] = coordinate;
-        g.value[static_cast<std::size_t>(g.count)] = value;
-        ++g.count;
-    };
-    switch (contact.kind) {
-    case ContactKind::disk_disk: {
-        std::array<double, Dim> d = centre_line(packing, contact);
-        normalise<Dim>(d); // squares under- or overflow
-        const double length = plain_norm<Dim>(d);
-        for (int a = 0; a < Dim; ++a) {
-            add(Dim * contact.i + a, -d[static_cast<std::size_t>(a)] / length);
-        }
-        for (int a = 0; a < Dim; ++a) {
-            add(Dim * contact.j + a, d[static_cast<std::size_t>(a)] / length);
-        }
-        break;
-    }
-    case ContactKind::lower_wall: add(Dim * contact.i + contact.j, 1); break;
-    case ContactKind::upper_wall:
-        add(Dim * contact.i + contact.j, -1);
-        add(Dim * packing.disk_count() + contact.j, 1);
-        break;
-    case ContactKind::held: add(contact.i, 1); break;
-    }
+    GapGradient<Dim> g;
+    Separation<Dim>(contact, packing.disk_count())
+        .for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {
+            const auto entry = static_cast<std::size_t>(g.count++);
+            g.coordinate[entry] = static_cast<int>(coordinate);
+            g.value[entry] = sign * normal[a];
+        });
     return g;
 }
 
@@ -137,15 +107,14 @@ template <int Dim> double gap_curvature(const Packing<Dim>& packing, const Conta
     if (contact.kind != ContactKind::disk_disk) {
         return 0;
     }
-    const std::array<double, Dim> d = centre_line(packing, contact);
+    const std::array<double, Dim> d = separation<Dim>(packing.q, contact);
+    const std::array<double, Dim> u = separation<Dim>(std::span(v, packing.q.size()), contact);
     const double length = norm<Dim>(d);
     double speed = 0;
     double square = 0;
     for (std::size_t a = 0; a < Dim; ++a) {
-        const double u =
-            v[static_cast<std::size_t>(Dim * contact.j) + a] - v[static_cast<std::size_t>(Dim * contact.i) + a];
-        speed += u * d[a] / length;
-        square += u * u;
+        speed += u[a] * d[a] / length;
+        square += u[a] * u[a];
     }
     return (square - speed * speed) / length;
 }

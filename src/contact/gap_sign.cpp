@@ -1,5 +1,7 @@
 #include "contact/gap_sign.hpp"
 
+#include <isostat/contact/separation.hpp>
+
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Interval_nt.h>
 
@@ -13,19 +15,17 @@ namespace {
 /// sign of |d| - t for every t.
 template <class Number, int Dim>
 Number with_sign_of_gap(const Packing<Dim>& packing, const Contact& contact, double allowance) {
-    const auto i = static_cast<std::size_t>(contact.i);
-    const auto j = static_cast<std::size_t>(contact.j);
-    const Number radius(packing.radius[i]);
-    if (contact.kind == ContactKind::lower_wall) {
-        return Number(packing.q[Dim * i + j]) - radius + Number(allowance);
+    const auto at = [&](std::size_t k) { return Number(packing.q[k]); };
+    const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
+    const Separation<Dim> separation(contact, packing.disk_count());
+    const Number radius(packing.radius[static_cast<std::size_t>(contact.i)]);
+    if (contact.kind != ContactKind::disk_disk) {
+        return separation.of_wall(at, minus) - radius + Number(allowance);
     }
-    if (contact.kind == ContactKind::upper_wall) {
-        return Number(packing.length(contact.j)) - Number(packing.q[Dim * i + j]) - radius + Number(allowance);
-    }
-    const Number least = radius + Number(packing.radius[j]) - Number(allowance);
+    const Number least = radius + Number(packing.radius[static_cast<std::size_t>(contact.j)]) - Number(allowance);
     Number square(0);
-    for (std::size_t a = 0; a < Dim; ++a) {
-        square += CGAL::square(Number(packing.q[Dim * j + a]) - Number(packing.q[Dim * i + a]));
+    for (const Number& component : separation.of_disks(at, minus)) {
+        square += CGAL::square(component);
     }
     return square - least * CGAL::abs(least);
 }

@@ -1,5 +1,7 @@
 #include "contact/near_pairs.hpp"
 
+#include <isostat/contact/separation.hpp>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -37,11 +39,10 @@ class Gaps {
     };
     explicit Gaps(const Packing<2>& packing) : packing_(packing), plain_(lengths_are_plain(packing)) {}
 
-    [[nodiscard]] Gap of(std::size_t i, std::size_t j) const {
-        const double dx = packing_.q[2 * j] - packing_.q[2 * i];
-        const double dy = packing_.q[2 * j + 1] - packing_.q[2 * i + 1];
+    [[nodiscard]] Gap of(const Contact& pair) const {
+        const auto [dx, dy] = separation<2>(packing_.q, pair);
         const double distance = plain_ ? std::sqrt(dx * dx + dy * dy) : std::hypot(dx, dy); // slow; error below 1 ulp
-        const double radii = packing_.radius[i] + packing_.radius[j];
+        const double radii = touching_distance(packing_.radius, pair);
         return {distance - radii, 0x1p-50 * (distance + radii)};
     }
 
@@ -83,10 +84,11 @@ std::optional<std::vector<Contact>> near_edges<2>(const Packing<2>& packing, dou
     triangulation.for_each_edge([&](int first, int second) {
         const auto i = static_cast<std::size_t>(first);
         const auto j = static_cast<std::size_t>(second);
-        const auto gap = gaps.of(i, j);
+        const Contact pair{ContactKind::disk_disk, first, second};
+        const auto gap = gaps.of(pair);
         applies = applies && (gap.value >= 0 || gap.value >= -edge_overlap * smallest * (share(i) + share(j)));
         if (gap.may_be_below(reach)) {
-            pairs.push_back({ContactKind::disk_disk, first, second});
+            pairs.push_back(pair);
         }
     });
     if (!applies) {
@@ -113,12 +115,13 @@ template <> std::vector<Contact> near_pairs_by_sweep<2>(const Packing<2>& packin
         const double right = packing.q[2 * i] + packing.radius[i] + slack;
         for (std::size_t b = a + 1; b < n && left[b].first <= right; ++b) {
             const std::size_t j = left[b].second;
-            if (std::abs(packing.q[2 * j + 1] - packing.q[2 * i + 1]) > packing.radius[i] + packing.radius[j] + slack) {
+            const Contact pair{ContactKind::disk_disk, static_cast<int>(std::min(i, j)),
+                               static_cast<int>(std::max(i, j))};
+            if (std::abs(separation<2>(packing.q, pair)[1]) > touching_distance(packing.radius, pair) + slack) {
                 continue; // apart along the other axis already
             }
-            if (gaps.of(i, j).may_be_below(reach)) {
-                pairs.push_back(
-                    {ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
+            if (gaps.of(pair).may_be_below(reach)) {
+                pairs.push_back(pair);
             }
         }
     }

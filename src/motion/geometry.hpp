@@ -1,7 +1,7 @@
 #pragma once
 // Gaps and their derivatives along a motion, inline for the inner loops: private to the room.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/separation.hpp>
 
 #include <cmath>
 #include <optional>
@@ -15,16 +15,14 @@ template <int Dim> struct CentreLine {
 };
 
 /// Nothing for other contacts, and where squares under- or overflow: the general functions of the room contact serve.
-template <int Dim> std::optional<CentreLine<Dim>> centre_line(const Packing<Dim>& at, const Contact& contact) {
+template <int Dim> inline std::optional<CentreLine<Dim>> centre_line(const Packing<Dim>& at, const Contact& contact) {
     if (contact.kind != ContactKind::disk_disk) {
         return std::nullopt;
     }
-    CentreLine<Dim> line;
+    CentreLine<Dim> line{separation<Dim>(at.q, contact), 0};
     double square = 0;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        line.d[a] =
-            at.q[static_cast<std::size_t>(Dim * contact.j) + a] - at.q[static_cast<std::size_t>(Dim * contact.i) + a];
-        square += line.d[a] * line.d[a];
+    for (const double component : line.d) {
+        square += component * component;
     }
     line.length = std::sqrt(square);
     if (!(line.length > 0x1p-450 && line.length < 0x1p500)) {
@@ -33,37 +31,37 @@ template <int Dim> std::optional<CentreLine<Dim>> centre_line(const Packing<Dim>
     return line;
 }
 
-template <int Dim> double gap_of(const Packing<Dim>& at, const Contact& contact, const CentreLine<Dim>& line) {
-    return line.length -
-           (at.radius[static_cast<std::size_t>(contact.i)] + at.radius[static_cast<std::size_t>(contact.j)]);
+template <int Dim> inline double gap_of(const Packing<Dim>& at, const Contact& contact, const CentreLine<Dim>& line) {
+    return line.length - touching_distance(at.radius, contact);
 }
 
 /// The same bits as `gap`.
-template <int Dim> double quick_gap(const Packing<Dim>& at, const Contact& contact) {
+template <int Dim> inline double quick_gap(const Packing<Dim>& at, const Contact& contact) {
     const auto line = centre_line(at, contact);
     return line ? gap_of(at, contact, *line) : gap(at, contact);
 }
 
 /// Rate of the gap along v (on coordinates) times the length of the line.
 template <int Dim>
-double along(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v, double& square) {
+inline double along(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v, double& square) {
+    const std::array<double, Dim> u = separation<Dim>(v, contact);
     double sum = 0;
     square = 0;
     for (std::size_t a = 0; a < Dim; ++a) {
-        const double u =
-            v[static_cast<std::size_t>(Dim * contact.j) + a] - v[static_cast<std::size_t>(Dim * contact.i) + a];
-        sum += line.d[a] * u;
-        square += u * u;
+        sum += line.d[a] * u[a];
+        square += u[a] * u[a];
     }
     return sum;
 }
 
-template <int Dim> double rate_of(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v) {
+template <int Dim>
+inline double rate_of(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v) {
     double square = 0;
     return along(line, contact, v, square) / line.length;
 }
 
-template <int Dim> double gap_rate(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
+template <int Dim>
+inline double gap_rate(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
     if (const auto line = centre_line(at, contact)) {
         return rate_of(*line, contact, v);
     }
@@ -78,7 +76,7 @@ template <int Dim> double gap_rate(const Packing<Dim>& at, const Contact& contac
 
 /// Second derivative of the gap along a velocity.
 template <int Dim>
-double quick_curvature(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
+inline double quick_curvature(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& v) {
     if (const auto line = centre_line(at, contact)) {
         double square = 0;
         const double rate = along(*line, contact, v, square) / line->length;
@@ -92,8 +90,8 @@ struct GapCourse {
     double value, rate, bend;
 };
 template <int Dim>
-GapCourse gap_course(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& velocity,
-                     const std::vector<double>& acceleration) {
+inline GapCourse gap_course(const Packing<Dim>& at, const Contact& contact, const std::vector<double>& velocity,
+                            const std::vector<double>& acceleration) {
     if (const auto line = centre_line(at, contact)) {
         double square = 0;
         double unused = 0;

@@ -1,5 +1,7 @@
 #include "motion/power_along.hpp"
 
+#include <isostat/contact/separation.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -21,15 +23,14 @@ template <int Dim> double third_approach(const CurveCourse<Dim>& course, const C
     if (c.kind != ContactKind::disk_disk) {
         return 0;
     }
-    const auto i = static_cast<std::size_t>(Dim * c.i);
-    const auto j = static_cast<std::size_t>(Dim * c.j);
+    const auto d = separation<Dim>(course.at.q, c);
+    const auto t = separation<Dim>(course.tangent, c);
+    const auto bend = separation<Dim>(course.curvature, c);
     double product = 0;
     double square = 0;
     for (std::size_t a = 0; a < Dim; ++a) {
-        const double d = course.at.q[j + a] - course.at.q[i + a];
-        square += d * d;
-        product +=
-            (course.tangent[j + a] - course.tangent[i + a]) * (course.curvature[j + a] - course.curvature[i + a]);
+        square += d[a] * d[a];
+        product += t[a] * bend[a];
     }
     return 3 * product / std::sqrt(square);
 }

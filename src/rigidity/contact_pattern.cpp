@@ -1,3 +1,4 @@
+#include <isostat/contact/separation.hpp>
 #include <isostat/rigidity/contact_pattern.hpp>
 
 #include <algorithm>
@@ -56,24 +57,11 @@ template <int Dim> std::vector<int> shared_levels(const Packing<Dim>& packing, c
 template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const Contact& contact) {
     const int disks = dofs.coordinate_count() / Dim - 1; // those of the upper walls come last
     std::vector<int> rows;
-    const auto add = [&](int coordinate) {
-        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
-        if (dof >= 0) {
+    Separation<Dim>(contact, disks).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
+        if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
             rows.push_back(dof);
         }
-    };
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-        for (int a = 0; a < Dim; ++a) {
-            add(Dim * contact.i + a);
-            add(Dim * contact.j + a);
-        }
-        break;
-    case ContactKind::upper_wall: add(Dim * disks + contact.j); [[fallthrough]];
-    case ContactKind::lower_wall: add(Dim * contact.i + contact.j); break;
-    case ContactKind::held: add(contact.i); break;
-    }
-    std::sort(rows.begin(), rows.end());
+    });
     return rows;
 }
 

@@ -1,3 +1,4 @@
+#include <isostat/contact/separation.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/work.hpp>
@@ -15,27 +16,6 @@ namespace isostat {
 
 namespace {
 
-/// Entries of one column, sorted by row; used for both the rounded and the exact matrix so that their patterns agree.
-template <class Value> struct Column {
-    int count = 0;
-    std::array<std::pair<int, Value>, 8> entry;
-    void add(int row, Value value) {
-        int k = count++;
-        for (; k > 0 && entry[static_cast<std::size_t>(k - 1)].first > row; --k) {
-            entry[static_cast<std::size_t>(k)] = entry[static_cast<std::size_t>(k - 1)];
-        }
-        entry[static_cast<std::size_t>(k)] = {row, value};
-    }
-};
-
-template <class Value> void append(sparse::Matrix<Value>& matrix, const Column<Value>& column) {
-    for (int k = 0; k < column.count; ++k) {
-        matrix.row.push_back(column.entry[static_cast<std::size_t>(k)].first);
-        matrix.value.push_back(column.entry[static_cast<std::size_t>(k)].second);
-    }
-    matrix.start.push_back(static_cast<int>(matrix.row.size()));
-}
-
 template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t cols) {
     sparse::Matrix<Value> matrix;
     matrix.rows = rows;
@@ -45,6 +25,30 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
     matrix.row.reserve(4 * cols);
     matrix.value.reserve(4 * cols);
     return matrix;
+}
+
+/// Normal from the first disk to the second, the bits of `gap_gradient`, inline; of a wall or a held coordinate 1.
+template <int Dim> inline std::array<double, Dim> unit_normal(const Packing<Dim>& packing, const Contact& contact) {
+    std::array<double, Dim> normal;
+    normal.fill(1);
+    if (contact.kind != ContactKind::disk_disk) {
+        return normal;
+    }
+    normal = separation<Dim>(packing.q, contact);
+    double square = 0;
+    for (const double component : normal) {
+        square += component * component;
+    }
+    const double length = std::sqrt(square);
+    if (!(length > 0x1p-450 && length < 0x1p500)) { // squares under- or overflow
+        const GapGradient<Dim> gradient = gap_gradient(packing, contact);
+        std::copy_n(gradient.value.end() - Dim, Dim, normal.begin());
+        return normal;
+    }
+    for (double& component : normal) {
+        component /= length;
+    }
+    return normal;
 }
 
 /// H with columns scaled by the distance of the centres, over the field with `modulus` elements; `reduce` maps a double
@@ -57,42 +61,28 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
         residue[k] = reduce(packing.q[k]);
     }
     const auto subtract = [modulus](Value a, Value b) { return a >= b ? a - b : a + (modulus - b); };
-    const Value one = 1;
-    const Value minus_one = modulus - 1;
     auto matrix = empty_matrix<Value>(dofs.dof_count(), contacts.size());
     for (const Contact& contact : contacts) {
-        Column<Value> column;
-        const auto add = [&](int coordinate, Value value) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
-            if (dof >= 0) {
-                column.add(dof, value);
-            }
-        };
-        switch (contact.kind) {
-        case ContactKind::disk_disk:
-            for (int a = 0; a < Dim; ++a) {
-                const int ki = Dim * contact.i + a;
-                const int kj = Dim * contact.j + a;
-                const auto i = static_cast<std::size_t>(ki);
-                const auto j = static_cast<std::size_t>(kj);
-                add(ki, subtract(residue[j], residue[i]));
-                add(kj, subtract(residue[i], residue[j]));
-            }
-            break;
-        case ContactKind::lower_wall: add(Dim * contact.i + contact.j, minus_one); break;
-        case ContactKind::upper_wall:
-            add(Dim * contact.i + contact.j, one);
-            add(Dim * packing.disk_count() + contact.j, minus_one);
-            break;
-        case ContactKind::held: add(contact.i, minus_one); break;
+        const Separation<Dim> separation(contact, packing.disk_count());
+        std::array<Value, Dim> normal; // times the distance of the centres; of a wall 1
+        normal.fill(1);
+        if (contact.kind == ContactKind::disk_disk) {
+            normal = separation.of_disks([&](std::size_t k) { return residue[k]; }, subtract);
         }
-        append(matrix, column);
+        separation.for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {
+            if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
+                matrix.row.push_back(dof);
+                matrix.value.push_back(sign > 0 ? subtract(0, normal[a]) : normal[a]); // minus the gradient of the gap
+            }
+        });
+        matrix.start.push_back(static_cast<int>(matrix.row.size()));
     }
     return matrix;
 }
 
 } // namespace
 
+/// Rows grow with the coordinates, and a separation names them in order.
 template <int Dim>
 sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
                                       const std::vector<Contact>& contacts) {
@@ -103,52 +93,17 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
     matrix.row.resize(2 * Dim * contacts.size());
     matrix.value.resize(2 * Dim * contacts.size());
     std::size_t end = 0;
-    const auto add = [&](int coordinate, double value) {
-        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
-        if (dof >= 0) {
-            matrix.row[end] = dof;
-            matrix.value[end] = value;
-            ++end;
-        }
-    };
-    // The usual case, with the same bits: two disks that can move.
-    const auto add_pair = [&](const Contact& contact) {
-        const auto i = static_cast<std::size_t>(Dim * contact.i);
-        const auto j = static_cast<std::size_t>(Dim * contact.j);
-        std::array<double, Dim> d;
-        double square = 0;
-        bool usual = true;
-        for (std::size_t a = 0; a < Dim; ++a) {
-            d[a] = packing.q[j + a] - packing.q[i + a];
-            square += d[a] * d[a];
-            matrix.row[end + a] = dofs.dof_of(i + a);
-            matrix.row[end + Dim + a] = dofs.dof_of(j + a);
-            usual = usual && matrix.row[end + a] >= 0 && matrix.row[end + Dim + a] >= 0;
-        }
-        const double length = std::sqrt(square);
-        if (!usual || !(length > 0x1p-450 && length < 0x1p500)) { // else squares under- or overflow
-            return false;
-        }
-        for (std::size_t a = 0; a < Dim; ++a) {
-            const double normal = d[a] / length;
-            matrix.value[end + a] = normal;
-            matrix.value[end + Dim + a] = -normal;
-        }
-        end += 2 * Dim;
-        return true;
-    };
     for (std::size_t l = 0; l < contacts.size(); ++l) {
-        // Rows grow with the coordinates, and those of the gradient are in order (i < j).
         const Contact& contact = contacts[l];
-        if (contact.kind == ContactKind::disk_disk && add_pair(contact)) {
-            matrix.start[l + 1] = static_cast<int>(end);
-            continue;
-        }
-        const GapGradient<Dim> g = gap_gradient(packing, contact);
-        for (int k = 0; k < g.count; ++k) {
-            const auto e = static_cast<std::size_t>(k);
-            add(g.coordinate[e], -g.value[e]);
-        }
+        const std::array<double, Dim> normal = unit_normal(packing, contact);
+        Separation<Dim>(contact, packing.disk_count())
+            .for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {
+                if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
+                    matrix.row[end] = dof;
+                    matrix.value[end] = sign > 0 ? -normal[a] : normal[a];
+                    ++end;
+                }
+            });
         matrix.start[l + 1] = static_cast<int>(end);
     }
     matrix.row.resize(end);

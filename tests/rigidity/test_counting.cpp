@@ -5,6 +5,7 @@
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/exact/independent_columns.hpp>
+#include <isostat/exact/rank.hpp>
 #include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
@@ -213,6 +214,29 @@ BOOST_AUTO_TEST_CASE(the_rounded_and_the_exact_matrix_have_the_same_pattern) {
     const auto exact = exact_contact_matrix(state.packing, dofs, state.contacts);
     BOOST_TEST((rounded.start == exact.start));
     BOOST_TEST((rounded.row == exact.row));
+}
+
+BOOST_AUTO_TEST_CASE(the_exact_matrix_has_the_differences_of_the_coordinates) {
+    const State<2> state = triangular_patch(3, 4);
+    const DofMap<2> dofs(state.packing);
+    const auto exact = exact_contact_matrix(state.packing, dofs, state.contacts);
+    const auto rounded = contact_matrix(state.packing, dofs, state.contacts);
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& contact = state.contacts[l];
+        for (auto e = static_cast<std::size_t>(exact.start[l]); e < static_cast<std::size_t>(exact.start[l + 1]); ++e) {
+            const int coordinate = dofs.coordinate_of(exact.row[e]);
+            double expected = rounded.value[e];
+            if (contact.kind == ContactKind::disk_disk) { // the other disk's minus this one's
+                const int other = coordinate / 2 == contact.i ? contact.j : contact.i;
+                expected = state.packing.coordinate(DiskId(other), coordinate % 2) -
+                           state.packing.q[static_cast<std::size_t>(coordinate)];
+                BOOST_TEST(expected * rounded.value[e] >= 0);
+            } else {
+                BOOST_TEST(std::abs(expected) == 1);
+            }
+            BOOST_TEST(exact.value[e] == exact::residue(expected));
+        }
+    }
 }
 
 BOOST_AUTO_TEST_CASE(forces_and_displacements_are_reciprocal) {

@@ -1,0 +1,102 @@
+#pragma once
+/// \file
+/// How the grains of a contact stand to each other: the one place that forms r = x_j - x_i.
+
+#include <isostat/contact/contact.hpp>
+
+#include <array>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
+namespace isostat {
+
+/// The separation of two grains as a function of the coordinates: r = x_j - x_i of two disks; x_i of a disk and a lower
+/// wall, L - x_i of a disk and an upper one, along the axis of the wall. It is linear in the coordinates, with
+/// coefficients -1 and +1: of a velocity it is the relative velocity, of a derivative its derivative. (A periodic cell
+/// adds its multiples of the coordinates behind the last disk here, and nowhere else.)
+///
+/// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
+/// value. In double r is exact where the coordinates are on the grid, and else correctly rounded.
+template <int Dim> class Separation {
+  public:
+    /// `disks`: how many the packing has.
+    Separation(const Contact& contact, int disks)
+        : kind_(contact.kind), i_(contact.i), j_(contact.j), walls_(static_cast<std::size_t>(Dim * disks)) {}
+
+    /// \pre two disks
+    template <class At, class Minus> auto of_disks(At at, Minus minus) const {
+        const auto i = static_cast<std::size_t>(Dim * i_);
+        const auto j = static_cast<std::size_t>(Dim * j_);
+        using Number = std::remove_cvref_t<decltype(minus(at(j), at(i)))>;
+        return [&]<std::size_t... axis>(std::index_sequence<axis...>) {
+            return std::array<Number, sizeof...(axis)>{minus(at(j + axis), at(i + axis))...};
+        }(std::make_index_sequence<static_cast<std::size_t>(Dim)>());
+    }
+    /// \pre a disk and a wall
+    template <class At, class Minus> auto of_wall(At at, Minus minus) const {
+        const auto x = static_cast<std::size_t>(Dim * i_ + j_);
+        using Number = std::remove_cvref_t<decltype(minus(at(x), at(x)))>;
+        return kind_ == ContactKind::lower_wall ? Number(at(x))
+                                                : minus(at(walls_ + static_cast<std::size_t>(j_)), at(x));
+    }
+
+    /// Calls visit(coordinate, component, sign) for every coordinate that the gap depends on, in ascending order:
+    /// sign = -1 or +1 is the derivative of that component of r (of a held coordinate: 0, +1). \pre i < j
+    template <class Visit> void for_each_coordinate(Visit visit) const {
+        const auto axis = static_cast<std::size_t>(j_);
+        const auto x = static_cast<std::size_t>(Dim * i_);
+        switch (kind_) {
+        case ContactKind::disk_disk:
+            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+                visit(x + a, a, -1);
+            }
+            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+                visit(static_cast<std::size_t>(Dim * j_) + a, a, 1);
+            }
+            break;
+        case ContactKind::lower_wall: visit(x + axis, axis, 1); break;
+        case ContactKind::upper_wall:
+            visit(x + axis, axis, -1);
+            visit(walls_ + axis, axis, 1);
+            break;
+        case ContactKind::held: visit(static_cast<std::size_t>(i_), std::size_t{0}, 1); break;
+        }
+    }
+
+  private:
+    ContactKind kind_;
+    int i_, j_;
+    std::size_t walls_; ///< first coordinate behind the disks
+};
+
+/// r of two disks for a vector on all coordinates, of numbers of any kind. \pre two disks
+template <int Dim, class Vector> inline auto separation(const Vector& x, const Contact& pair) {
+    using Number = std::remove_cvref_t<decltype(x[0])>;
+    return Separation<Dim>(pair, static_cast<int>(x.size()) / Dim - 1)
+        .of_disks([&x](std::size_t k) -> decltype(auto) { return x[k]; },
+                  [](const Number& a, const Number& b) -> Number { return a - b; });
+}
+
+/// The same from a wall. \pre a disk and a wall
+template <int Dim, class Vector> inline auto wall_distance(const Vector& x, const Contact& contact) {
+    using Number = std::remove_cvref_t<decltype(x[0])>;
+    return Separation<Dim>(contact, static_cast<int>(x.size()) / Dim - 1)
+        .of_wall([&x](std::size_t k) -> decltype(auto) { return x[k]; },
+                 [](const Number& a, const Number& b) -> Number { return a - b; });
+}
+
+/// Separation at which the grains touch: R_i + R_j, R_i at a wall, 0 for a held coordinate. `radius`: a number for each
+/// disk.
+inline double touching_distance(const std::vector<double>& radius, const Contact& contact) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk:
+        return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)];
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: return radius[static_cast<std::size_t>(contact.i)];
+    case ContactKind::held: return 0;
+    }
+    return 0;
+}
+
+} // namespace isostat

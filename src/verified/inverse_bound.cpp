@@ -2,6 +2,7 @@
 #include "verified/extended_cholesky.hpp"
 #include "verified/regularity_prover.hpp"
 #include "verified/row_scales.hpp"
+#include "verified/singular_value.hpp"
 
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/threads.hpp>
@@ -28,23 +29,6 @@ double norm(const std::vector<double>& x) {
         sum += c * c;
     }
     return std::sqrt(sum);
-}
-
-/// |H - fl(H)|_2: every entry of fl(H) has a relative error of at most 5u, |.|_2 <= sqrt(|.|_1 |.|_inf).
-double rounding_of_entries(const sparse::Matrix<double>& h) {
-    std::vector<double> row_sum(static_cast<std::size_t>(h.rows), 0.0);
-    double column_norm = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
-        double sum = 0;
-        for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
-            const double a = std::abs(h.value[static_cast<std::size_t>(e)]);
-            sum += a;
-            row_sum[static_cast<std::size_t>(h.row[static_cast<std::size_t>(e)])] += a;
-        }
-        column_norm = std::max(column_norm, sum);
-    }
-    const double row_norm = *std::max_element(row_sum.begin(), row_sum.end());
-    return 5.01 * u * std::sqrt(column_norm * row_norm);
 }
 
 /// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
@@ -159,7 +143,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
             }
             const double square = shift - cholesky.error_bound(shift);
             // A bound that lost more than half to rounding is better made by rows.
-            const double sigma = square > 0 ? std::sqrt(square) * (1 - 4 * u) - outcome.entry_error : 0;
+            const double sigma = smallest_singular_value(square, outcome.entry_error);
             if (square > 0.25 * shift && sigma > 0) {
                 outcome.bound = {Verdict::proved, sigma, InverseBound::Route::cholesky};
             }
@@ -188,7 +172,7 @@ InverseBound bound_inverse(const IsostaticStructure<Dim>& structure, const Facto
     double square = 0.5 * estimated;
     while (square > 1e-24 && std::isfinite(square)) {
         const double proved = shifted_cholesky_double_double(h, square);
-        const double sigma = proved > 0 ? std::sqrt(proved) * (1 - 4 * u) - entry_error : 0;
+        const double sigma = smallest_singular_value(proved, entry_error);
         if (sigma > 0) {
             return {Verdict::proved, sigma, InverseBound::Route::double_double};
         }

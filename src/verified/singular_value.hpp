@@ -1,0 +1,36 @@
+#pragma once
+// The last step of V1, from a factorisation of fl(H) to the exact matrix H: private to the room.
+
+#include <isostat/sparse/pattern.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace isostat {
+
+/// |H - fl(H)|_2: every entry of fl(H) has a relative error of at most 5u, |.|_2 <= sqrt(|.|_1 |.|_inf).
+inline double rounding_of_entries(const sparse::Matrix<double>& h) {
+    constexpr double u = 0x1p-53;
+    std::vector<double> row_sum(static_cast<std::size_t>(h.rows), 0.0);
+    double column_norm = 0;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
+        double sum = 0;
+        for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
+            const double a = std::abs(h.value[static_cast<std::size_t>(e)]);
+            sum += a;
+            row_sum[static_cast<std::size_t>(h.row[static_cast<std::size_t>(e)])] += a;
+        }
+        column_norm = std::max(column_norm, sum);
+    }
+    const double row_norm = *std::max_element(row_sum.begin(), row_sum.end());
+    return 5.01 * u * std::sqrt(column_norm * row_norm);
+}
+
+/// Lower bound of sigma_min(H) from one of sigma_min(fl(H))^2 and |H - fl(H)|_2; not positive: there is none.
+inline double smallest_singular_value(double square, double entry_error) {
+    constexpr double u = 0x1p-53;
+    return square > 0 ? std::sqrt(square) * (1 - 4 * u) - entry_error : 0;
+}
+
+} // namespace isostat

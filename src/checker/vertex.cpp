@@ -52,8 +52,7 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         const Rational error = inverse.residual_row + slope * moved;
         const Rational step = inverse.row_sum * Rational(largest) * power_of_two(2 * problem.fine - 1);
         const Rational room = 1 - error;
-        // K4 with radius 2 step / room.
-        if (room <= 0 || 2 * slope * step > room * room) {
+        if (room <= 0) {
             continue;
         }
         vertex.middle = start;
@@ -63,6 +62,7 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         vertex.row_residual = inverse.residual_row + slope * vertex.moved_most;
         vertex.column_residual = inverse.residual_column +
                                  inverse.column_sum_max * 2 * Rational(problem.most_quadratic()) * vertex.moved_most;
+        // K4 with radius 2 step / room: a row residual below 1 on all of the cube is 2 slope step < room^2.
         vertex.found = vertex.row_residual < 1 && vertex.column_residual < 1;
         if (vertex.found) {
             return vertex;

@@ -36,12 +36,6 @@ struct Sum {
     }
 };
 
-/// Force of a nominal stress on the upper wall of an axis, exact.
-template <int Dim> dd_real wall_force(const Load<Dim>& load, std::size_t axis) {
-    static_assert(Dim == 2);
-    return -dd_real::mul(load.stress[axis], load.reference_length[1 - axis]);
-}
-
 /// F . (to - from).
 template <int Dim>
 Enclosure work(const Vertex<Dim>& start, const Place<Dim>& from, const Place<Dim>& to, const Load<Dim>& load,
@@ -55,12 +49,10 @@ Enclosure work(const Vertex<Dim>& start, const Place<Dim>& from, const Place<Dim
             ++terms;
         }
     }
-    for (std::size_t a = 0; a < Dim && !infinitesimal; ++a) {
-        const std::size_t k = Dim * start.packing.radius.size() + a;
-        if (start.structure.dofs().dof_of(k) >= 0) {
-            sum.add(wall_force(load, a), to[k] - from[k]);
-            ++terms;
-        }
+    for (const WallForce& wall : infinitesimal ? std::vector<WallForce>() : load.wall_forces(start.packing)) {
+        const auto k = static_cast<std::size_t>(wall.coordinate);
+        sum.add(-dd_real::mul(wall.stress, wall.length), to[k] - from[k]);
+        ++terms;
     }
     const double radius =
         (std::sqrt(sum.square) * (from.radius + to.radius) + (terms + 8) * dd_unit * sum.size) * above;
@@ -102,8 +94,11 @@ Enclosure decrease_of_phi(const Vertex<Dim>& start, const Place<Dim>& from, cons
         const dd_real term = load.stress[a] * log_of_ratio(to[k], from[k], error);
         value += term;
         size += std::abs(term.x[0]);
-        // |ln x - ln y| <= |x - y| / min(x, y).
-        const auto moved = [&](const Place<Dim>& at) { return at.radius / (at[k].x[0] - at.radius); };
+        // |ln x - ln y| <= |x - y| / min(x, y); nothing is known of a length that may be 0.
+        const auto moved = [&](const Place<Dim>& at) {
+            const double least = at[k].x[0] - at.radius;
+            return least > 0 ? at.radius / least : std::numeric_limits<double>::infinity();
+        };
         radius += std::abs(load.stress[a]) * (error + (moved(from) + moved(to)) * above);
     }
     const double bound = (radius + 8 * dd_unit * size) * above + 0x1p-52 * std::abs(value.x[0]);

@@ -73,6 +73,40 @@ BOOST_AUTO_TEST_CASE(a_wrong_factorisation_proves_nothing) {
     BOOST_TEST(!isostat::checker::bound_inverse(problem, wrong, CheckerArithmetic::fixed64).found);
 }
 
+// K4 at the stored place itself: a useless factorisation does not lead to a better one. Rational numbers throughout.
+BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_else) {
+    namespace checker = isostat::checker;
+    using checker::Rational;
+    const double h = 0x1p-5;
+    for (const double target : {0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 1.9, 2.5}) { // of 2 kappa eta
+        State<2> state = small_states::between_two(h);
+        const double row_sum = 1 / (h * 0.8); // about what K15 gives
+        const double off = target / (16 * row_sum * row_sum);
+        const double x = std::sqrt(4 - h * h + 2 * off);
+        state.packing.q[0] = 2 - x;
+        state.packing.q[2] = 2 + x;
+        const checker::Problem problem(state);
+        const checker::InverseBound inverse =
+            checker::bound_inverse(problem, checker::Solver(problem), CheckerArithmetic::singular_value);
+        BOOST_REQUIRE(inverse.found);
+        Rational largest = 0;
+        for (const std::size_t k : {0U, 2U}) {
+            const Rational dx = Rational(state.packing.q[4]) - Rational(state.packing.q[k]);
+            const Rational dy = Rational(state.packing.q[5]) - Rational(state.packing.q[k + 1]);
+            largest = std::max<Rational>(largest, abs((dx * dx + dy * dy - 4) / 2));
+        }
+        const Rational kappa = 8 * inverse.quadratic_sum;
+        const Rational eta = inverse.row_sum * largest;
+        const checker::Problem flat(small_states::between_two(h / 64));
+        const checker::TrueVertex vertex = checker::find_vertex(problem, checker::Solver(flat), inverse);
+        BOOST_TEST(vertex.found == (2 * kappa * eta < 1), target);
+        if (vertex.found) {
+            BOOST_TEST((vertex.radius >= 2 * eta && vertex.radius <= 2 * eta * Rational(1.001)));
+            BOOST_TEST((vertex.moved_most >= vertex.radius));
+        }
+    }
+}
+
 // The vertex may be anywhere in its enclosure, so the ranges of the forces hold those of every point of it; and not a
 // hundred times more.
 BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {

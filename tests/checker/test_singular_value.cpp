@@ -91,6 +91,23 @@ BOOST_AUTO_TEST_CASE(a_singular_matrix_of_a_large_state_has_no_bound) {
     }
 }
 
+// K15 counts sums of at most 2^16 products of an upper wall: beyond, 128 bits are not known to hold them.
+BOOST_AUTO_TEST_CASE(a_wall_with_more_than_2_to_the_16_contacts_has_no_singular_value) {
+    for (const int disks : {0x10000 - 1, 0x10000, 0x10000 + 1}) {
+        State<2> state = crafted::one_disk(1, 1);
+        state.packing.walls.upper[0] = WallKind::absent;
+        state.packing.radius.assign(static_cast<std::size_t>(disks), 1);
+        state.packing.q.clear();
+        state.contacts = {crafted::bottom(0)};
+        for (int i = 0; i < disks; ++i) { // in a column of the plane, where they overlap: the matrix does not mind
+            state.packing.q.insert(state.packing.q.end(), {1, 1});
+            state.contacts.insert(state.contacts.end(), {crafted::left(i), crafted::top(i)});
+        }
+        state.packing.q.insert(state.packing.q.end(), {0, 2});
+        BOOST_TEST(smallest_singular_value(Problem(state)).has_value() == (disks <= 0x10000), disks);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(lengths_scale) {
     for (const int exponent : {-900, -60, 60, 900}) {
         State<2> state = small_states::with_a_rattler();

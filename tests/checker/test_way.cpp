@@ -2,11 +2,13 @@
 #include "checker/gap_course.hpp"
 #include "checker/power_course.hpp"
 #include "checker/tube.hpp"
+#include "checker/way.hpp"
 #include "support/crafted.hpp"
 
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace isostat;
@@ -28,6 +30,57 @@ Moving rolling(double angle, double x, double y) {
     moving.loose.assign(8, false);
     return moving;
 }
+
+/// Disk 0 on disk 1 as above, from where it leaves the small fixed disk 2 to where it meets disk 3, in the sense of
+/// growing angles, under a force on it.
+struct Rolled {
+    Place from, to;
+    std::array<double, 2> force;
+
+    Rolled(double start, double stop, std::array<double, 2> f) : force(f) {
+        make(from, start, 2, start, stop);
+        make(to, stop, 3, start, stop);
+    }
+    [[nodiscard]] Objections prove() const {
+        const Witness witness{{}, {}, {to.state->packing.q[0], to.state->packing.q[1]}};
+        return prove_way(from, to, {1, +1, false, false, from.stress(), witness});
+    }
+    /// The end of the arc with the numbers that are true of it.
+    [[nodiscard]] Objections check() const {
+        EventRecord event;
+        event.opened = "0-2";
+        event.closed = "0-3";
+        event.strain = 1; // no walls, no length
+        const Range power = to.evidence->forces[1];
+        event.power = Rational((power.lower + power.upper) / 2).get_d();
+        for (std::size_t k = 0; k < 2; ++k) {
+            event.work += force[k] * (to.state->packing.q[k] - from.state->packing.q[k]);
+        }
+        return check_end(from, to, event, false);
+    }
+
+  private:
+    void make(Place& place, double angle, int other, double start, double stop) const {
+        State<2> state = rolling(angle, 0, 0).state;
+        Packing<2>& packing = state.packing;
+        // The small disks stand a little outside of the way, behind the start and ahead of the stop.
+        constexpr double aside = 0.02;
+        const double distance = 2 * std::cos(aside) + std::sqrt(1.05 * 1.05 - 4 * std::sin(aside) * std::sin(aside));
+        packing.radius = {1, 1, 0.05, 0.05};
+        packing.fixed = {0, 1, 1, 1};
+        packing.q.resize(10);
+        for (const auto& [disk, at] : {std::pair(2U, start - aside), std::pair(3U, stop + aside)}) {
+            packing.q[2 * disk] = 10 + distance * std::cos(at);
+            packing.q[2 * disk + 1] = 10 + distance * std::sin(at);
+        }
+        packing.q[8] = packing.q[9] = 0;
+        state.load.disk_force = {force[0], force[1], 0, 0, 0, 0, 0, 0};
+        state.load.infinitesimal.clear();
+        state.contacts = {crafted::pair(0, 1), crafted::pair(0, other)};
+        const Objections objection = make_place(state, place);
+        BOOST_REQUIRE_MESSAGE(!objection, (objection ? objection->text : ""));
+    }
+};
 
 } // namespace
 
@@ -109,6 +162,35 @@ BOOST_AUTO_TEST_CASE(the_power_is_positive_until_the_load_stands_on_the_curve) {
     BOOST_REQUIRE(s * 1.01 < tube->reach());
     BOOST_TEST(power_is_positive(load, moving, *tube, 0, s * 0.999));
     BOOST_TEST(!power_is_positive(load, moving, *tube, 0, s * 1.001));
+}
+
+BOOST_AUTO_TEST_CASE(a_way_against_the_load_is_not_proved) {
+    for (const double turn : {0.0, 0.5, -0.5}) {
+        const double middle = 0.6 + turn;
+        const std::array<double, 2> along{-std::sin(middle), std::cos(middle)};
+        const Objections with = Rolled(0.3, 0.9, along).prove();
+        BOOST_TEST(!with.has_value(), (with ? with->text : ""));
+        const Objections against = Rolled(0.3, 0.9, {-along[0], -along[1]}).prove();
+        BOOST_REQUIRE(against.has_value());
+        BOOST_TEST(!against->wrong);
+        BOOST_TEST(against->text.find("the power of the load is not proved positive") != std::string::npos);
+    }
+    // The load pushes along at both ends of most of the way, not all of it: at 0.9 it stands against it.
+    const std::array<double, 2> turns{-std::sin(-0.7), std::cos(-0.7)};
+    BOOST_TEST(!Rolled(0.3, 0.86, turns).prove().has_value());
+    BOOST_TEST(Rolled(0.3, 0.88, turns).prove().has_value());
+}
+
+BOOST_AUTO_TEST_CASE(an_arc_that_ends_higher_than_it_began_is_refuted) {
+    // All the way round: down the left, up on the right, over the top. At both ends the force pushes forward.
+    constexpr double degree = std::numbers::pi / 180;
+    const std::array<double, 2> gravity{0, -1};
+    const Objections down = Rolled(100 * degree, 200 * degree, gravity).check();
+    BOOST_TEST(!down.has_value(), (down ? down->text : ""));
+    const Objections up = Rolled(100 * degree, 455 * degree, gravity).check();
+    BOOST_REQUIRE(up.has_value());
+    BOOST_TEST(up->wrong);
+    BOOST_TEST(up->text.find("the potential does not decrease") != std::string::npos, up->text);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,4 +1,5 @@
 // Certificates of arcs with known answers: a free disk rolls over a fixed one past obstacles.
+#include "motion/moving_part.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/motion/arc_certificate.hpp>
@@ -197,6 +198,41 @@ BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_g
     const Known back = rolling.start();
     const auto returned = certify_arc(turn.vertex(), ContactId(1), +1, back.vertex(), power, candidates);
     BOOST_TEST(proved(returned), returned.reason);
+}
+
+BOOST_AUTO_TEST_CASE(a_coordinate_released_next_to_the_stop_goes_the_other_way) {
+    // The tube about the stop reaches back beyond the start: that the curve is in it does not mean that it goes there.
+    for (const double before : {0.01, 0.03, 0.1}) {
+        Rolling rolling;
+        const Known turn = rolling.at(stop_angle - before, Contact{ContactKind::held, 4, 0});
+        const Known stop = rolling.stop();
+        const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
+        const PowerLoad<2> power{&rolling.load, false, false};
+        const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
+        BOOST_TEST(proved(down), down.reason);
+        const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
+        BOOST_TEST(!proved(up), "released " << before << " before the stop");
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
+    Rolling rolling;
+    const Known start = rolling.start();
+    const Known stop = rolling.stop();
+    const MovingPart<2> part(start.vertex(), stop.vertex(), 1, 1e-15, 1e-15);
+    InverseBoundCache cache;
+    const auto centre = part.at_start(cache);
+    BOOST_TEST_REQUIRE((centre != nullptr));
+    CurvePiece<2> piece(part.curve(), centre->packing(), centre->structure(), centre->factorisation(),
+                        centre->sigma_min(), 1);
+    constexpr double h = 1e-6;
+    BOOST_TEST_REQUIRE(piece.prove(h));
+    for (const double share : {0.0, 0.25, 0.49, 0.5001, 0.6, 1.0, 1.9}) { // of the reach, that the disk has moved since
+        CandidateList<2> list = find_candidates(start.packing, candidate_fraction);
+        list.reference[4] += 0.6 * share * list.reach;
+        list.reference[5] += 0.8 * share * list.reach;
+        BOOST_TEST(part.complete(piece, h, list) == (share < 0.5), share);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_after_a_whole_turn) {

@@ -1,6 +1,9 @@
 // Tubes against a curve that is known: the centre of a unit disk on a fixed one moves on the circle of radius 2.
 #include "motion/curve_piece.hpp"
+#include "motion/gap_watch.hpp"
+#include "motion/power_watch.hpp"
 
+#include <isostat/io/state_file.hpp>
 #include <isostat/verified/inverse_bound.hpp>
 
 #include <boost/test/unit_test.hpp>
@@ -11,7 +14,8 @@ using namespace isostat;
 
 namespace {
 
-/// Disk 1 free at `angle` on disk 0, which is fixed; `axis` of disk 1 in the free row.
+/// Disk 1 free at `angle` on disk 0, which is fixed, and `off` from touching it: so far the curve is from the
+/// polynomial; `axis` of disk 1 in the free row. Disk 2, if any, is fixed too.
 struct OnCircle {
     Packing<2> packing;
     std::optional<IsostaticStructure<2>> structure;
@@ -19,11 +23,16 @@ struct OnCircle {
     std::optional<KeptCurve<2>> curve;
     double sigma = 0;
 
-    OnCircle(double angle, int axis) {
+    OnCircle(double angle, int axis, double off = 0, std::array<double, 3> obstacle = {}) {
         packing.walls = Walls<2>::none();
         packing.radius = {1, 1};
-        packing.q = {0, 0, 2 * std::cos(angle), 2 * std::sin(angle), 0, 0};
+        packing.q = {0, 0, (2 + off) * std::cos(angle), (2 + off) * std::sin(angle), 0, 0};
         packing.fixed = {1, 0};
+        if (obstacle[2] > 0) {
+            packing.q.insert(packing.q.end() - 2, {obstacle[0], obstacle[1]});
+            packing.radius.push_back(obstacle[2]);
+            packing.fixed.push_back(1);
+        }
         snap_to_grid(packing);
         const std::vector<Contact> contacts{{ContactKind::disk_disk, 0, 1}, {ContactKind::held, 2 + axis, 0}};
         auto proved = IsostaticStructure<2>::prove(packing, contacts);
@@ -102,6 +111,122 @@ BOOST_AUTO_TEST_CASE(a_bound_of_the_inverse_that_is_not_there_proves_no_tube) {
     OnCircle on(0.8, 0);
     on.sigma = 0;
     BOOST_TEST(!on.piece().prove(1e-6));
+}
+
+BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
+    const auto within = [](double value, double least, double slack) {
+        BOOST_TEST(value >= least * (1 - 1e-12), value << " is below " << least);
+        BOOST_TEST(value <= least * (1 + slack), value << " is far above " << least);
+    };
+    // K of V4 over the kept contacts, and what grains at rest add (A7).
+    const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
+    for (const std::size_t slot : {0U, 17U, 101U}) {
+        std::vector<int> count(state.packing.radius.size(), 0);
+        double smallest = 1e300;
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const Contact& c = state.contacts[l];
+            if (l != slot && c.kind == ContactKind::disk_disk) {
+                const auto i = static_cast<std::size_t>(c.i);
+                const auto j = static_cast<std::size_t>(c.j);
+                ++count[i];
+                ++count[j];
+                smallest = std::min(smallest, state.packing.radius[i] + state.packing.radius[j]);
+            }
+        }
+        const KeptCurve<2> curve(state.packing, state.contacts, slot, 1e-9);
+        within(curve.lipschitz, 2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-8);
+        BOOST_TEST(curve.rest_residual == 0); // all of them move
+    }
+    OnCircle on(0.8, 0);
+    const KeptCurve<2> curve(on.packing, {{ContactKind::disk_disk, 0, 1}, {ContactKind::held, 2, 0}}, 1, 1e-9);
+    within(curve.rest_residual, 1e-9, 0.02);
+    within(curve.rest_derivative, 1e-9 / 2, 0.02);
+    // A1, A2 at the centre itself, a thousandth of a radius off the curve: h is next to nothing there.
+    OnCircle off(0.8, 0, 1e-3);
+    CurvePiece<2> piece = off.piece();
+    BOOST_TEST_REQUIRE(piece.prove(1e-9));
+    const double ratio = 1e-3 / 2;
+    const double beta = (1 + 2 * ratio) / off.sigma;
+    const double residual = (2.001 * 2.001 - 4) / 4;
+    within(1 / (piece.unique() * off.curve->lipschitz), beta, 1e-4);
+    within(piece.radius(), 2 * beta * residual, 1e-2);
+    within(0.25 / piece.margin(), beta * beta * off.curve->lipschitz * residual, 1e-2);
+}
+
+// The polynomial clears the obstacle, the curve runs into it.
+BOOST_AUTO_TEST_CASE(a_gap_of_the_polynomial_within_the_tube_proves_nothing) {
+    constexpr double off = 1e-6;
+    for (const double angle : {0.8, 1.2, 2.2}) {
+        const double x = (2 + off) * std::cos(angle);
+        const double on_curve = std::acos(x / 2); // the angle of the point of the curve with the same x
+        for (const double clearance : {-0.3 * off, 10 * off}) {
+            const double place = 2 - (1.25 + clearance); // towards disk 0, where the gap does not change at first order
+            OnCircle on(angle, 0, off, {place * std::cos(on_curve), place * std::sin(on_curve), 0.25});
+            CurvePiece<2> piece = on.piece();
+            const double h = 1e-9;
+            BOOST_TEST_REQUIRE(piece.prove(h));
+            const Contact obstacle{ContactKind::disk_disk, 1, 2};
+            BOOST_TEST(gap(on.packing, obstacle) > 0.5 * off);
+            GapWatch<2> watch;
+            BOOST_TEST(watch.look(piece, obstacle, -h, h) == (clearance > 0));
+        }
+    }
+}
+
+// Seen from a disk far away the curve goes one way, the polynomial the other.
+BOOST_AUTO_TEST_CASE(a_rate_of_the_polynomial_within_its_error_proves_nothing) {
+    constexpr double off = 1e-6;
+    constexpr double far = 1000;
+    for (const double angle : {0.8, 1.1}) {
+        const double x = (2 + off) * std::cos(angle);
+        const double on_curve = std::acos(x / 2); // the angle of the point of the curve with the same x
+        for (const double side : {-1.0, 1.0}) {
+            for (const double turn : {0.0, 0.1}) {
+                const double line = 0.5 * (angle + on_curve) + side * turn;
+                OnCircle on(angle, 0, off, {x + far * std::cos(line), 2 * std::sin(angle) + far * std::sin(line), 1});
+                CurvePiece<2> piece = on.piece();
+                BOOST_TEST_REQUIRE(piece.prove(1e-9));
+                const std::vector<double> v = piece.slope(0);
+                // The gap grows where the disk moves against the line.
+                const auto rate = [&](double direction) {
+                    const double sense = v[2] * -std::sin(direction) > 0 ? 1 : -1;
+                    const double along = -std::sin(direction) * std::cos(line) + std::cos(direction) * std::sin(line);
+                    return -sense * along;
+                };
+                const int sign = GapWatch<2>::rate_sign(piece, {ContactKind::disk_disk, 1, 2}, 0);
+                if (turn == 0) {
+                    BOOST_TEST(rate(angle) * rate(on_curve) < 0);
+                    BOOST_TEST(sign == 0);
+                } else {
+                    BOOST_TEST(sign == (rate(on_curve) > 0 ? 1 : -1));
+                }
+            }
+        }
+    }
+}
+
+// A load across the direction of motion: positive power along the polynomial, negative along the curve.
+BOOST_AUTO_TEST_CASE(a_power_of_the_polynomial_within_its_error_proves_nothing) {
+    constexpr double off = 1e-6;
+    const double angle = 0.8;
+    const double on_curve = std::acos((2 + off) * std::cos(angle) / 2);
+    for (const double turn : {-0.1, 0.0, 0.1}) {
+        OnCircle on(angle, 0, off);
+        CurvePiece<2> piece = on.piece();
+        BOOST_TEST_REQUIRE(piece.prove(1e-9));
+        const double line = 0.5 * (angle + on_curve) + turn;
+        const std::vector<double> v = piece.slope(0);
+        const double sense = v[2] * std::cos(line) + v[3] * std::sin(line) > 0 ? 1 : -1;
+        Load<2> load;
+        load.disk_force = {0, 0, sense * std::cos(line), sense * std::sin(line)};
+        BOOST_TEST(v[2] * load.disk_force[2] + v[3] * load.disk_force[3] > 0);
+        const PowerLoad<2> given{&load, false, false};
+        PowerWatch<2> watch(given);
+        watch.look(piece, -1e-9, 1e-9);
+        ArcCertificate certificate;
+        watch.conclude(certificate, false);
+        BOOST_TEST((certificate.power == Verdict::proved) == (turn != 0));
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

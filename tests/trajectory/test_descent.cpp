@@ -64,6 +64,43 @@ BOOST_AUTO_TEST_CASE(the_decrease_of_the_potential_is_enclosed_for_dead_loads_an
     }
 }
 
+BOOST_AUTO_TEST_CASE(the_decrease_is_that_of_the_true_vertices_not_of_the_stored_ones) {
+    // Stored 1e-9 off their places, which are known: decided at once, to what the vertices are known to.
+    const auto off = [](double radius, double push) {
+        State<2> state = corner(radius);
+        state.packing.q[2] += push; // the length of the box, which is what the load feels
+        state.packing.q[3] += push;
+        return state;
+    };
+    Load<2> load = corner(1).load;
+    load.stress = {0.75, 1.5};
+    load.reference_length = {3, 0.1};
+    for (const double push : {1e-9, -1e-9}) {
+        const auto from = vertex_of(off(1, push));
+        const auto to = vertex_of(off(0.5, -push));
+        load.kind = LoadKind::nominal;
+        const Enclosure dead = potential_decrease(*from, *to, load, false);
+        BOOST_TEST(abs(Wide(dead.value) - (Wide(0.75) * Wide(0.1) + Wide(1.5) * 3)) <= Wide(dead.radius));
+        BOOST_TEST(dead.radius < 1e-7);
+        load.kind = LoadKind::true_stress;
+        const Enclosure phi = potential_decrease(*from, *to, load, false);
+        BOOST_TEST(abs(Wide(phi.value) - Wide(2.25) * log(Wide(2))) <= Wide(phi.radius));
+        BOOST_TEST(phi.radius < 1e-7);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_length_that_may_be_zero_says_nothing_of_its_logarithm) {
+    const auto from = vertex_of(corner(1));
+    const auto to = vertex_of(corner(0x1p-10));
+    from->enclosure.radius = 1.8; // of lengths of 2 and 2^-9: a bound of 9, and none
+    to->enclosure.radius = 1.25 * 0x1p-9;
+    Load<2> load = corner(1).load;
+    load.kind = LoadKind::true_stress;
+    const Enclosure phi = potential_decrease(*from, *to, load, false);
+    BOOST_TEST(phi.radius < 1e-9); // enclosed anew, in double-double
+    BOOST_TEST(abs(Wide(phi.value) - 20 * log(Wide(2))) <= Wide(phi.radius));
+}
+
 BOOST_AUTO_TEST_CASE(nothing_is_claimed_where_nothing_moves_or_no_potential_exists) {
     const auto from = vertex_of(corner(1));
     Load<2> load = corner(1).load;

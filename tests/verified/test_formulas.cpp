@@ -276,6 +276,62 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_proved_up_to_the_quarter_of_Kantorovich_and_not
     }
 }
 
+BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
+    // Pushed so far that the stored normals are not those of F: rho >= w |G| |p|, eta = |p| + beta rho.
+    const State<2> state = pushed(sample(), 1e-7);
+    const Known known(state);
+    const VertexEnclosure vertex = enclose_vertex(state.packing, known.structure, known.factorisation, known.bound);
+    BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
+    const sparse::Matrix<double>& h = known.structure.matrix();
+    Real worst = 0;
+    std::vector<Real> left;
+    std::vector<Real> step;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        Real size = 0;
+        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
+            size += abs(Real(h.value[e]) * Real(vertex.step[static_cast<std::size_t>(h.row[e])]));
+        }
+        left.push_back(size);
+        step.emplace_back(vertex.step[l]);
+        if (state.contacts[l].kind == ContactKind::disk_disk) {
+            const Real ratio =
+                Real(gap(state.packing, state.contacts[l])) / Real(target(state.packing, state.contacts[l]));
+            worst = std::max(worst, Real(abs(ratio)));
+        }
+    }
+    const Real beta = (1 + 2 * worst) / Real(known.bound.sigma_min);
+    const Real rest = beta * worst * norm_of(left);
+    const Real eta = norm_of(step) + rest;
+    const Real product = beta * lipschitz_of(state) * eta;
+    BOOST_TEST((rest > product * eta / 50)); // so that its absence would be seen
+    check_above(vertex.step_radius, (rest + product * eta) * (1 - Real("1e-6")), 0.01);
+    check_above(vertex.radius, eta * (1 + product) * (1 - Real("1e-6")), 0.01);
+    // Gaps that are exactly 0: what remains is 2^-98 D of each.
+    State<2> exact;
+    exact.packing.walls = Walls<2>::none();
+    exact.packing.radius = {3, 3, 2};
+    exact.packing.q = {-3, 0, 3, 0, 0, 4, 0, 0};
+    exact.packing.fixed = {1, 1, 0};
+    exact.contacts = {pair(0, 2), pair(1, 2)};
+    const Known at(exact);
+    const VertexEnclosure here = enclose_vertex(exact.packing, at.structure, at.factorisation, at.bound);
+    BOOST_TEST_REQUIRE((here.verdict == Verdict::proved));
+    check_above(here.radius, sqrt(Real(2)) * 5 * Real(0x1p-98) / Real(at.bound.sigma_min), 0.01);
+}
+
+BOOST_AUTO_TEST_CASE(the_rounding_of_a_factorisation_is_taken_off_the_shift) {
+    // The shift is half of the smallest eigenvalue, and V1 takes E off: 2 gamma_8 of each of two rows, 32 u, where the
+    // code may take a smaller one, row by row.
+    for (const double angle : {3e-7, 4e-7, 1e-6}) {
+        const Known known(between_two(angle, 0.6));
+        BOOST_TEST((known.bound.route == InverseBound::Route::cholesky));
+        const Real sigma = smaller_singular_value(known.state);
+        const Real bound = known.bound.sigma_min;
+        BOOST_TEST(bound * bound <= sigma * sigma / 2 - 16 * u);
+        BOOST_TEST(bound * bound >= sigma * sigma / 2 - 64 * u);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_bound_is_carried_less_the_change_of_the_kept_rows) {
     // Disk 2 between two fixed ones is pushed towards their line: half of its singular value is lost, as V8 says. The
     // contact exchanged is another disk's, between three fixed ones far away.

@@ -1,0 +1,214 @@
+// What is claimed of a true vertex against statements V4 to V7, with a bound of the inverse that is made worse on
+// purpose: then every term of every bound is large enough to be seen.
+#include "certificate/true_vertex.hpp"
+#include "support/crafted.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/contact/candidates.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+State<2> pushed(State<2> state, double size) {
+    for (std::size_t k = 0; k < state.packing.q.size(); ++k) {
+        state.packing.q[k] += size * std::sin(7.0 * static_cast<double>(k));
+    }
+    return state;
+}
+
+double norm_of(const std::vector<double>& x) {
+    return std::sqrt(std::inner_product(x.begin(), x.end(), x.begin(), 0.0));
+}
+
+void check_above(double value, double least, double slack) {
+    BOOST_TEST(value >= least * (1 - 1e-12), value << " is below " << least);
+    BOOST_TEST(value <= least * (1 + slack), value << " is far above " << least);
+}
+
+/// Two disks pushed off their vertex; beta is such that beta K eta = h in T9.
+struct Worse {
+    State<2> state = pushed(two_disks(1, 2, 1, 1), 1e-9);
+    std::unique_ptr<Centre<2>> centre = std::move(Centre<2>::make(state.packing, state.contacts).value());
+    double k = 2.0 / 3;  ///< K of V4: one contact, lengths 1 + 2
+    double residual = 0; ///< |F|
+    double beta = 0;
+    double radius = 0; ///< 1.18 eta
+    std::optional<Subject<2>> subject;
+    std::unique_ptr<TrueVertex<2>> vertex;
+
+    explicit Worse(double h, LoadKind kind = LoadKind::nominal) {
+        state.load.kind = kind;
+        state.load.loaded_axis = 0; // whose forces the two disks pass on
+        std::vector<double> f;
+        for (const Contact& c : state.contacts) {
+            f.push_back(gap(state.packing, c)); // F = gap (1 + gap / 2 D)
+        }
+        residual = norm_of(f);
+        beta = std::sqrt(h / (k * residual));
+        radius = 1.18 * beta * residual;
+        centre->inverse_norm = beta;
+        subject.emplace(state, centre->structure);
+        vertex = in_double(*subject, *centre);
+    }
+    /// max_i sum |x_l| / D_l: only one contact has two disks.
+    [[nodiscard]] double weight(const std::vector<double>& x) const {
+        const auto l = std::find(state.contacts.begin(), state.contacts.end(), pair(0, 1)) - state.contacts.begin();
+        return std::abs(x[static_cast<std::size_t>(l)]) / 3;
+    }
+    [[nodiscard]] std::vector<double> middle(const std::vector<Interval>& x) const {
+        std::vector<double> m;
+        for (const Interval& i : x) {
+            m.push_back((i.lower + i.upper) / 2);
+        }
+        return m;
+    }
+    /// Forces per unit of the loaded stress.
+    [[nodiscard]] std::vector<double> slopes() const {
+        std::vector<double> x(state.contacts.size(), 0.0);
+        for (const WallForce& wall : state.load.wall_forces(state.packing)) {
+            if (wall.loaded) {
+                x[static_cast<std::size_t>(subject->wall_row)] = -wall.length;
+            }
+        }
+        centre->factorisation.solve_forces(x);
+        return x;
+    }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(certificate)
+
+BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
+    for (const double size : {0.0, 1e-5}) {
+        const State<2> state = pushed(read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state, size);
+        const auto made = Centre<2>::make(state.packing, state.contacts);
+        BOOST_TEST_REQUIRE(made.ok());
+        const Centre<2>& centre = *made.value();
+        std::vector<int> count(state.packing.radius.size(), 0);
+        double smallest = 1e300;
+        double ratio = 0;
+        double largest = 0;
+        for (const Contact& c : state.contacts) {
+            const auto i = static_cast<std::size_t>(c.i);
+            const auto j = static_cast<std::size_t>(c.j);
+            const double h = std::abs(gap(state.packing, c));
+            largest = std::max(largest, h);
+            if (c.kind == ContactKind::disk_disk) {
+                const double d = state.packing.radius[i] + state.packing.radius[j];
+                smallest = std::min(smallest, d);
+                ratio = std::max(ratio, h / d);
+                ++count[i];
+                ++count[j];
+            }
+        }
+        check_above(centre.lipschitz, 2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-12);
+        check_above(centre.inverse_norm * centre.inverse.sigma_min, 1 / (1 - ratio), 3 * ratio + 1e-12);
+        BOOST_TEST(centre.inverse_norm * centre.inverse.sigma_min >= 1 + 2 * ratio);
+        BOOST_TEST(centre.largest_gap >= largest);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_vertex_exists_up_to_the_quarter_of_Kantorovich_and_its_radii_are_those_of_V5) {
+    for (const double h : {0.01, 0.1, 0.2, 0.245, 0.2501, 0.3, 0.4}) {
+        const Worse worse(h);
+        BOOST_TEST(worse.vertex->exists() == (h < 0.25), h);
+        if (!worse.vertex->exists()) {
+            continue;
+        }
+        const double room = 1.7 / (worse.beta * worse.k) / std::sqrt(6.0);
+        check_above(worse.vertex->distance(), worse.radius * 1.172 / 1.18, 0.01);
+        check_above(worse.vertex->radius(), worse.radius * 1.172 / 1.18, 0.01);
+        const double sigma = 1 / worse.beta - worse.k * worse.radius;
+        BOOST_TEST(worse.vertex->sigma_min() <= sigma);
+        BOOST_TEST(worse.vertex->sigma_min() >= sigma * (1 - 1e-6));
+        BOOST_TEST(worse.vertex->unique_radius() <= room);
+        BOOST_TEST(worse.vertex->unique_radius() >= worse.vertex->radius());
+        // The gap of any pair, to the true vertex.
+        const Interval gap = worse.vertex->gap(left(1));
+        check_above((gap.upper - gap.lower) / 2, std::sqrt(2.0) * worse.radius * (1 - 1e-9), 0.01);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(the_stored_point_is_within_the_radius_claimed) {
+    // In double-double the enclosure is about a corrected point: the way there is part of the radius.
+    Worse worse(0.01);
+    worse.centre->inverse_norm = 10;
+    const auto vertex = in_double_double(*worse.subject, *worse.centre);
+    BOOST_TEST_REQUIRE(vertex->exists());
+    std::vector<double> step;
+    for (const Contact& c : worse.state.contacts) {
+        step.push_back(gap(worse.state.packing, c));
+    }
+    worse.centre->factorisation.solve_velocities(step);
+    double largest = 0;
+    for (const double s : step) {
+        largest = std::max(largest, std::abs(s));
+    }
+    check_above(vertex->radius(), largest * (1 - 1e-6), 1e-3);
+    check_above(vertex->distance(), norm_of(step) * (1 - 1e-6), 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(forces_have_the_bound_of_V6) {
+    for (const LoadKind kind : {LoadKind::nominal, LoadKind::true_stress}) {
+        Worse worse(0.01, kind);
+        BOOST_TEST_REQUIRE(worse.vertex->exists());
+        const std::vector<Interval> forces = worse.vertex->forces();
+        const double load = kind == LoadKind::nominal ? 0 : std::hypot(1.0, 1.0) * worse.radius;
+        const double turned = 2 * worse.weight(worse.middle(forces)) * worse.radius;
+        const double bound = (forces[0].upper - forces[0].lower) / 2;
+        check_above(bound * worse.vertex->sigma_min(), (turned + load) * (1 - 1e-6), 0.01);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(ends_of_the_interval_have_the_bound_of_V7) {
+    for (const double h : {0.001, 0.02}) {
+        Worse worse(h);
+        BOOST_TEST_REQUIRE(worse.vertex->exists());
+        const LoadEndAnswer high = worse.vertex->load_end(+1);
+        BOOST_TEST_REQUIRE(high.claim.has_value(), high.open_question);
+        const std::vector<double> f = worse.middle(worse.vertex->forces());
+        const std::vector<double> b = worse.slopes();
+        const double a_bound = (worse.vertex->forces()[0].upper - worse.vertex->forces()[0].lower) / 2;
+        const double b_bound = 2 * worse.weight(b) * worse.radius / worse.vertex->sigma_min();
+        const auto opens = static_cast<std::size_t>(
+            std::find(worse.state.contacts.begin(), worse.state.contacts.end(), high.claim->opens) -
+            worse.state.contacts.begin());
+        const double t = f[opens] / b[opens];
+        const double least = (a_bound + std::abs(t) * b_bound) / (std::abs(b[opens]) - b_bound);
+        BOOST_TEST(b_bound > 1e-3 * std::abs(b[opens])); // so that every term counts
+        check_above((high.claim->stress.upper - high.claim->stress.lower) / 2, least * (1 - 1e-6), 0.01);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_to_the_vertex) {
+    // Disk 2 is 1e-10 off its true place, and disk 3 stands where the list just ends: whatever is not listed may come
+    // nearer than that. Disk 6 carries so little that the vertex is known in double-double, hence far better than
+    // 1e-10.
+    State<2> state;
+    state.packing.walls = Walls<2>::none();
+    state.packing.radius = {3, 3, 2, 1, 3, 3, 2};
+    state.packing.q = {-3, 0, 3, 0, 0, 4 + 1e-10, 0, 0, -3, -90, 3, -90, 0, -86, 0, 0};
+    state.packing.fixed = {1, 1, 0, 1, 1, 1, 0};
+    state.load.disk_force = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, 0, 0, -1e-25};
+    state.contacts = {pair(0, 2), pair(1, 2), pair(4, 6), pair(5, 6)};
+    const double reach = find_candidates(state.packing, 0.82).reach;
+    state.packing.q[7] = state.packing.q[5] + 3 + reach - 2e-11;
+    BOOST_TEST_REQUIRE(find_candidates(state.packing, 0.82).reach == reach);
+    const Certification c = certify(state);
+    BOOST_TEST_REQUIRE(c.claims.gaps.has_value());
+    BOOST_TEST((c.claims.gaps->rung == Rung::double_double));
+    BOOST_TEST(c.claims.gaps->smallest <= reach - 1e-10 * std::sqrt(2.0));
+    BOOST_TEST(c.claims.gaps->smallest >= reach - 1e-9);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -202,16 +202,35 @@ BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_g
 
 BOOST_AUTO_TEST_CASE(a_coordinate_released_next_to_the_stop_goes_the_other_way) {
     // The tube about the stop reaches back beyond the start: that the curve is in it does not mean that it goes there.
-    for (const double before : {0.01, 0.03, 0.1}) {
+    // Near the top y hardly says where the disk is, so that the tube about the start is shorter than that about the
+    // stop.
+    constexpr double top = 1.7;
+    for (const double before : {1e-3, 1e-2}) {
         Rolling rolling;
-        const Known turn = rolling.at(stop_angle - before, Contact{ContactKind::held, 4, 0});
-        const Known stop = rolling.stop();
+        rolling.packing.q[6] = 2 * std::cos(top) - 2 * std::sin(top);
+        rolling.packing.q[7] = 2 * std::sin(top) + 2 * std::cos(top);
+        const Known stop = rolling.at(top, pair(2, 3));
+        const Known turn = rolling.at(top - before, Contact{ContactKind::held, 5, 0});
         const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
         const PowerLoad<2> power{&rolling.load, false, false};
         const auto down = certify_arc(turn.vertex(), ContactId(1), -1, stop.vertex(), power, candidates);
         BOOST_TEST(proved(down), down.reason);
         const auto up = certify_arc(turn.vertex(), ContactId(1), +1, stop.vertex(), power, candidates);
         BOOST_TEST(!proved(up), "released " << before << " before the stop");
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_end_that_may_lie_behind_the_start_is_not_certified) {
+    // Both places are known to 1e-6 only; the coordinate released falls, and the end is 1e-7 before or 1e-4 after it.
+    for (const double ahead : {-1e-7, 1e-4}) {
+        Rolling rolling;
+        Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
+        Known end = rolling.at(1.2 + ahead, Contact{ContactKind::held, 5, 0});
+        turn.enclosure.radius = end.enclosure.radius = 1e-6;
+        const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
+        const PowerLoad<2> power{&rolling.load, false, false};
+        const auto down = certify_arc(turn.vertex(), ContactId(1), -1, end.vertex(), power, candidates);
+        BOOST_TEST(proved(down) == (ahead > 0), down.reason);
     }
 }
 

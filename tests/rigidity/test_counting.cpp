@@ -114,6 +114,30 @@ BOOST_AUTO_TEST_CASE(triangular_patches_have_the_counts_of_the_closed_form) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(the_modular_matrix_has_the_residues_of_the_exact_entries) {
+    for (const State<2>& state : {two_disks(1, 2, 1, 1), three_disks(1, 1.1, 1.3, 1, 1), pile(6, 3)}) {
+        const DofMap<2> dofs(state.packing);
+        const auto matrix = exact_contact_matrix(state.packing, dofs, state.contacts);
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const Contact& c = state.contacts[l];
+            for (auto e = static_cast<std::size_t>(matrix.start[l]); e < static_cast<std::size_t>(matrix.start[l + 1]);
+                 ++e) {
+                // Minus the gradient of the gap, times the distance: x_j - x_i on i and x_i - x_j on j, -1 on what
+                // leaves a lower wall or is one.
+                const int k = dofs.coordinate_of(matrix.row[e]);
+                const int other = k / 2 == c.i ? 2 * c.j + k % 2 : 2 * c.i + k % 2;
+                const bool away = c.kind == ContactKind::lower_wall || k / 2 != c.i;
+                const auto at = [&](int coordinate) {
+                    return exact::residue(state.packing.q[static_cast<std::size_t>(coordinate)]);
+                };
+                BOOST_TEST(matrix.value[e] == (c.kind == ContactKind::disk_disk ? exact::subtract(at(other), at(k))
+                                               : away                           ? exact::subtract(0, 1)
+                                                                                : 1));
+            }
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_contact_taken_away_is_a_mechanism_and_its_release_is_found) {
     State<2> state = two_disks(1, 2, 1, 1);
     state.contacts.pop_back();

@@ -1,3 +1,4 @@
+#include "core/dot.hpp"
 #include "motion/gap_watch.hpp"
 #include "motion/moving_part.hpp"
 #include "motion/power_watch.hpp"
@@ -15,8 +16,6 @@
 namespace isostat {
 
 namespace {
-
-constexpr double up = 1 + 1e-9;
 
 /// How far the true vertex may be from the stored configuration.
 double uncertainty(const VertexEnclosure& vertex) {
@@ -55,6 +54,13 @@ template <int Dim> class Certifier {
 
   private:
     using Piece = CurvePiece<Dim>;
+    /// The piece that the curve has come to, its centre, and where on it the next stretch begins, up to `slack`.
+    struct Front {
+        std::unique_ptr<ArcCentre<Dim>> centre;
+        std::unique_ptr<Piece> piece;
+        double from = 0;
+        double slack = 0;
+    };
 
     bool refuse(std::string reason) {
         certificate_.reason = std::move(reason);
@@ -64,12 +70,15 @@ template <int Dim> class Certifier {
     [[nodiscard]] const Contact& closed() const { return end_.structure.contacts()[slot_]; }
 
     ArcCertificate attempt(bool fresh_ends);
-    bool chain();
+    bool begin();
+    bool place_ends();
+    bool aim_at_end(double to);
+    std::optional<Front> ahead_of(const std::vector<double>& frontier, double open, double to);
+    bool follow();
     bool check_input();
     bool check_vertex(const ArcVertex<Dim>& vertex, const Contact& zero, const char* name);
-    bool prove_longest(Piece& piece, double h);
+    std::unique_ptr<Piece> proved_piece(const ArcCentre<Dim>& centre, double forward);
     bool finish(const Piece& piece, double from, double to);
-    std::unique_ptr<Piece> end_piece(double forward);
     bool arrive(const Piece& last, double from, double joint_slack);
     [[nodiscard]] std::vector<double> moving_coordinates(const Packing<Dim>& at) const;
 
@@ -81,7 +90,10 @@ template <int Dim> class Certifier {
     std::vector<Contact> active_;
     ArcCertificateOptions options_;
     std::unique_ptr<MovingPart<Dim>> part_;
+    InverseBoundCache cache_; ///< of one attempt
+    Front front_;
     std::unique_ptr<ArcCentre<Dim>> end_centre_;
+    std::unique_ptr<Piece> last_; ///< at `end_centre_`
     GapWatch<Dim> watch_;
     const PowerLoad<Dim>& load_;
     PowerWatch<Dim>* power_ = nullptr;
@@ -128,14 +140,17 @@ bool Certifier<Dim>::check_vertex(const ArcVertex<Dim>& vertex, const Contact& z
     return true;
 }
 
-template <int Dim> bool Certifier<Dim>::prove_longest(Piece& piece, double h) {
+/// The piece at a centre with the longest tube that is proved; null: none.
+template <int Dim>
+std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::proved_piece(const ArcCentre<Dim>& centre, double forward) {
+    auto piece = std::make_unique<Piece>(part_->curve(), centre, forward);
     const double floor = options_.smallest_step * start_.packing.min_radius();
-    for (; h > floor; h *= 0.6) {
-        if (piece.prove(h)) {
-            return true;
+    for (double h = piece->natural_reach(); h > floor; h *= 0.6) {
+        if (piece->prove(h)) {
+            return piece;
         }
     }
-    return false;
+    return nullptr;
 }
 
 /// Gaps and power for s in [from, to] of a proved piece.
@@ -163,12 +178,6 @@ template <int Dim> bool Certifier<Dim>::finish(const Piece& piece, double from, 
     }
     power_->look(piece, from, to);
     return true;
-}
-
-template <int Dim> std::unique_ptr<CurvePiece<Dim>> Certifier<Dim>::end_piece(double forward) {
-    auto piece = std::make_unique<Piece>(part_->curve(), end_centre_->packing(), end_centre_->structure(),
-                                         end_centre_->factorisation(), end_centre_->sigma_min(), forward);
-    return prove_longest(*piece, piece->natural_reach()) ? std::move(piece) : nullptr;
 }
 
 /// The end vertex lies on `last`: looks at what is left and at the gaps of the end.
@@ -211,7 +220,9 @@ template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
     active_.clear();
     PowerWatch<Dim> power(load_);
     power_ = &power;
-    if (chain()) {
+    cache_ = {};
+    hopeless_ = !begin();
+    if (!hopeless_ && place_ends() && follow()) {
         certificate_.verdict = Verdict::proved;
         certificate_.witness.whole = part_->whole();
         certificate_.witness.grains = part_->grains();
@@ -223,12 +234,12 @@ template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
     return certificate_;
 }
 
-template <int Dim> bool Certifier<Dim>::chain() {
+/// The moving part, its equations, and the gaps at the start. False: fresh ends would not help either.
+template <int Dim> bool Certifier<Dim>::begin() {
     start_uncertainty_ = uncertainty(start_.enclosure);
     end_uncertainty_ = uncertainty(end_.enclosure);
     part_ = std::make_unique<MovingPart<Dim>>(start_, end_, slot_, start_uncertainty_, end_uncertainty_);
     certificate_.moving = static_cast<int>(part_->curve().contacts.size());
-    hopeless_ = true;
     if (!part_->trouble().empty()) {
         return refuse(part_->trouble());
     }
@@ -240,115 +251,127 @@ template <int Dim> bool Certifier<Dim>::chain() {
     if (!check_vertex(start_, opened(), "start")) {
         return false;
     }
-    hopeless_ = false;
     active_.clear();
     if (opened().kind != ContactKind::held) {
         watch_.starts_at_zero(opened());
     }
-    InverseBoundCache cache;
-    // A released coordinate says in which direction the curve is followed: its row stays.
+    return true;
+}
+
+/// Centres at the two ends, and the piece at the start. A released coordinate says in which direction the curve is
+/// followed: its row stays.
+template <int Dim> bool Certifier<Dim>::place_ends() {
     double rate = opened().kind == ContactKind::held ? static_cast<double>(direction_) : 1.0;
     const auto with_fastest = [&](std::unique_ptr<ArcCentre<Dim>>& vertex, double& forward) {
         ++certificate_.factorisations;
-        vertex = vertex ? part_->with_fastest(*vertex, forward, cache) : nullptr;
+        vertex = vertex ? part_->with_fastest(*vertex, forward, cache_) : nullptr;
     };
-    auto start_centre = part_->at_start(cache);
-    end_centre_ = part_->at_end(cache);
+    front_.centre = part_->at_start(cache_);
+    end_centre_ = part_->at_end(cache_);
     end_rate_ = -1;
     if (fresh_ends_ && opened().kind != ContactKind::held) {
-        with_fastest(start_centre, rate);
+        with_fastest(front_.centre, rate);
     }
     if (fresh_ends_ && closed().kind != ContactKind::held) {
         with_fastest(end_centre_, end_rate_);
     }
-    if (!start_centre || !end_centre_) {
+    if (!front_.centre || !end_centre_) {
         return refuse("the grains that move are not proved isostatic at an end");
     }
-    auto piece = std::make_unique<Piece>(part_->curve(), start_centre->packing(), start_centre->structure(),
-                                         start_centre->factorisation(), start_centre->sigma_min(), rate);
-    if (!prove_longest(*piece, piece->natural_reach())) {
+    front_.piece = proved_piece(*front_.centre, rate);
+    if (!front_.piece) {
         return refuse("no tube around the start");
     }
-    std::unique_ptr<ArcCentre<Dim>> centre; // of the present piece, once it is a fresh one
-    std::unique_ptr<Piece> last;
-    const auto at_start = piece->locate(start_.packing.q, start_uncertainty_);
-    if (!at_start) {
+    const auto place = front_.piece->locate(start_.packing.q, start_uncertainty_);
+    if (!place) {
         return refuse("the start vertex is not proved to lie on the curve");
     }
-    double from = at_start->s - at_start->slack;
-    double slack = at_start->slack;
+    front_.from = place->s - place->slack;
+    front_.slack = place->slack;
+    return true;
+}
+
+/// Sees to it that `last_`, the piece at the end, runs the way in which the present piece reaches it; false: no tube.
+template <int Dim> bool Certifier<Dim>::aim_at_end(double to) {
+    const bool held = closed().kind == ContactKind::held;
+    if (last_ && !(held && last_->forward() != front_.piece->direction_along(*last_, to))) {
+        return true;
+    }
+    if (held) {
+        end_rate_ = last_                                                               ? -last_->forward()
+                    : front_.piece->slope(to)[static_cast<std::size_t>(closed().i)] > 0 ? 1
+                                                                                        : -1;
+    }
+    last_ = proved_piece(*end_centre_, end_rate_);
+    return last_ != nullptr;
+}
+
+/// A fresh centre ahead of the frontier p(to) of the present piece, known up to `open`, whose tube reaches back to it.
+template <int Dim>
+std::optional<typename Certifier<Dim>::Front> Certifier<Dim>::ahead_of(const std::vector<double>& frontier, double open,
+                                                                       double to) {
+    const Piece& piece = *front_.piece;
+    const double floor = options_.smallest_step * start_.packing.min_radius();
+    std::string why = "the curve was not followed";
+    for (double ahead = 0.85 * to; ahead > floor; ahead *= 0.5) {
+        auto at = piece.corrected(to + ahead);
+        if (!at) {
+            continue;
+        }
+        const std::vector<double> velocity = piece.slope(to + ahead);
+        const auto fastest = std::max_element(velocity.begin(), velocity.end(),
+                                              [](double a, double b) { return std::abs(a) < std::abs(b); });
+        ++certificate_.factorisations;
+        Front next;
+        next.centre = part_->centre(std::move(*at), static_cast<int>(fastest - velocity.begin()), cache_);
+        if (!next.centre) {
+            why = "no bound of the inverse on the way";
+            continue;
+        }
+        next.piece = proved_piece(*next.centre, *fastest > 0 ? 1.0 : -1.0);
+        if (!next.piece) {
+            why = "no tube on the way";
+            continue;
+        }
+        const auto place = next.piece->locate(frontier, open);
+        if (place && piece.direction_along(*next.piece, to) == next.piece->forward()) {
+            next.from = place->s - place->slack;
+            next.slack = place->slack;
+            return next;
+        }
+        why = "neighbouring pieces do not meet";
+    }
+    refuse(fmt::format("{} after {} pieces", why, certificate_.pieces));
+    return std::nullopt;
+}
+
+/// From piece to piece, until the end vertex lies on the present one or on one that it meets.
+template <int Dim> bool Certifier<Dim>::follow() {
+    last_.reset();
     while (certificate_.pieces < options_.max_pieces) {
-        const auto target = piece->locate(end_.packing.q, end_uncertainty_);
-        if (target && target->s > from) {
-            return arrive(*piece, from, slack);
+        const Piece& piece = *front_.piece;
+        const auto target = piece.locate(end_.packing.q, end_uncertainty_);
+        if (target && target->s > front_.from) {
+            return arrive(piece, front_.from, front_.slack);
         }
-        const double to = piece->reach() * (1 - 1e-6);
-        const std::vector<double> frontier = piece->point(to);
-        double coordinate = 0;
-        for (const double x : frontier) {
-            coordinate = std::max(coordinate, std::abs(x));
+        const double to = piece.reach() * (1 - 1e-6);
+        const std::vector<double> frontier = piece.point(to);
+        const double open =
+            piece.radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * largest(frontier);
+        if (!aim_at_end(to)) {
+            return refuse("no tube around the end");
         }
-        const double open = piece->radius() + std::sqrt(static_cast<double>(frontier.size())) * 0x1p-50 * coordinate;
-        if (!last || (closed().kind == ContactKind::held && last->forward() != piece->direction_along(*last, to))) {
-            if (closed().kind == ContactKind::held) {
-                end_rate_ = last                                                         ? -last->forward()
-                            : piece->slope(to)[static_cast<std::size_t>(closed().i)] > 0 ? 1
-                                                                                         : -1;
-            }
-            last = end_piece(end_rate_);
-            if (!last) {
-                return refuse("no tube around the end");
-            }
+        const auto joint = last_->locate(frontier, open);
+        if (joint && joint->s + joint->slack < 0 && piece.direction_along(*last_, to) == last_->forward()) {
+            return finish(piece, front_.from, to) && arrive(*last_, joint->s - joint->slack, joint->slack);
         }
-        const auto joint = last->locate(frontier, open);
-        if (joint && joint->s + joint->slack < 0 && piece->direction_along(*last, to) == last->forward()) {
-            return finish(*piece, from, to) && arrive(*last, joint->s - joint->slack, joint->slack);
-        }
-        // A fresh centre ahead of the frontier, whose tube reaches back to it.
-        std::unique_ptr<Piece> next;
-        std::unique_ptr<ArcCentre<Dim>> next_centre;
-        std::optional<typename Piece::Place> place;
-        const double floor = options_.smallest_step * start_.packing.min_radius();
-        std::string why = "the curve was not followed";
-        for (double ahead = 0.85 * to; ahead > floor && !place; ahead *= 0.5) {
-            auto at = piece->corrected(to + ahead);
-            if (!at) {
-                continue;
-            }
-            const std::vector<double> velocity = piece->slope(to + ahead);
-            const auto fastest = std::max_element(velocity.begin(), velocity.end(),
-                                                  [](double a, double b) { return std::abs(a) < std::abs(b); });
-            ++certificate_.factorisations;
-            next_centre = part_->centre(std::move(*at), static_cast<int>(fastest - velocity.begin()), cache);
-            if (!next_centre) {
-                why = "no bound of the inverse on the way";
-                continue;
-            }
-            next = std::make_unique<Piece>(part_->curve(), next_centre->packing(), next_centre->structure(),
-                                           next_centre->factorisation(), next_centre->sigma_min(),
-                                           *fastest > 0 ? 1.0 : -1.0);
-            if (!prove_longest(*next, next->natural_reach())) {
-                why = "no tube on the way";
-                continue;
-            }
-            place = next->locate(frontier, open);
-            if (place && piece->direction_along(*next, to) != next->forward()) {
-                place.reset();
-            }
-            why = "neighbouring pieces do not meet";
-        }
-        if (!place) {
-            return refuse(fmt::format("{} after {} pieces", why, certificate_.pieces));
-        }
-        if (!finish(*piece, from, to)) {
+        auto next = ahead_of(frontier, open, to);
+        if (!next || !finish(piece, front_.from, to)) {
             return false;
         }
-        from = place->s - place->slack;
-        slack = place->slack;
-        piece = std::move(next);
-        centre = std::move(next_centre);
-        certificate_.witness.centres.push_back(
-            {centre->structure().contacts()[part_->curve().slot].i, moving_coordinates(centre->packing())});
+        front_ = std::move(*next);
+        certificate_.witness.centres.push_back({front_.centre->structure().contacts()[part_->curve().slot].i,
+                                                moving_coordinates(front_.centre->packing())});
     }
     return refuse(fmt::format("more than {} pieces", options_.max_pieces));
 }

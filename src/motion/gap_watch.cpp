@@ -1,5 +1,7 @@
 #include "motion/gap_watch.hpp"
 
+#include "motion/geometry.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,9 +10,6 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
-constexpr double up = 1 + 1e-9;
-constexpr double root2 = 1.4142135623731;
 constexpr int max_depth = 60;
 
 } // namespace
@@ -18,36 +17,15 @@ constexpr int max_depth = 60;
 /// Relative position of the two grains of a candidate along p(s), and what the tube adds to it.
 template <int Dim> struct GapWatch<Dim>::Motion {
     Motion(const CurvePiece<Dim>& piece, const Contact& contact) {
-        const Packing<Dim>& at = piece.centre();
-        const auto i = static_cast<std::size_t>(contact.i);
-        const auto j = static_cast<std::size_t>(contact.j);
-        const std::size_t disks = at.radius.size();
         wall = contact.kind != ContactKind::disk_disk;
         components = wall ? 1 : Dim;
-        target = wall ? at.radius[i] : at.radius[i] + at.radius[j];
-        const auto difference = [&](const std::vector<double>& x) {
-            std::array<double, Dim> d{};
-            if (contact.kind == ContactKind::lower_wall) {
-                d[0] = x[Dim * i + j];
-            } else if (contact.kind == ContactKind::upper_wall) {
-                d[0] = x[Dim * disks + j] - x[Dim * i + j];
-            } else {
-                for (std::size_t c = 0; c < Dim; ++c) {
-                    d[c] = x[Dim * j + c] - x[Dim * i + c];
-                }
-            }
-            return d;
-        };
-        a.push_back(difference(at.q));
+        target = touching_distance(piece.centre().radius, contact);
+        a.push_back(separation_over<Dim>(piece.centre().q, contact));
         for (const auto& coefficient : piece.coefficients()) {
-            a.push_back(difference(coefficient));
+            a.push_back(separation_over<Dim>(coefficient, contact));
         }
         for (const auto& d : a) {
-            double square = 0;
-            for (const double c : d) {
-                square += c * c;
-            }
-            size.push_back(std::sqrt(square) * up);
+            size.push_back(std::sqrt(dot(d, d)) * up);
         }
         apart = root2 * (piece.radius() + piece.curve().rest_radius) * up;
         slope_error = root2 * piece.slope_error() * up;
@@ -65,64 +43,74 @@ template <int Dim> struct GapWatch<Dim>::Motion {
     View view(double from, double to) const {
         const double s = 0.5 * (from + to);
         const double half = std::max(to - s, s - from) * (1 + 4 * u);
-        const double h = std::max(std::abs(from), std::abs(to));
+        const Course course = at(s, std::max(std::abs(from), std::abs(to)));
+        return wall ? view_of_wall(course, half) : view_of_disks(course, half);
+    }
+
+  private:
+    /// Relative position and velocity at s, and for |s| <= h: bounds of two derivatives and of roundings.
+    struct Course {
         std::array<double, Dim> x{};
         std::array<double, Dim> v{};
-        double first = 0;  // largest |x'|
-        double second = 0; // largest |x''|
-        double terms = 0;  // sum of the absolute values in x
-        double power = 1;  // h^(k-2)
+        double first = 0;  ///< largest |x'|
+        double second = 0; ///< largest |x''|
+        double rounding = 0;
+        double slope_rounding = 0;
+    };
+    Course at(double s, double h) const {
+        Course course;
         for (std::size_t k = a.size(); k-- > 0;) {
             for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) {
-                x[c] = x[c] * s + a[k][c];
-                v[c] = k > 0 ? v[c] * s + static_cast<double>(k) * a[k][c] : v[c];
+                course.x[c] = course.x[c] * s + a[k][c];
+                course.v[c] = k > 0 ? course.v[c] * s + static_cast<double>(k) * a[k][c] : course.v[c];
             }
         }
+        double terms = 0; // sum of the absolute values in x
+        double power = 1; // h^(k-2)
         for (std::size_t k = 1; k < a.size(); ++k) {
             const auto order = static_cast<double>(k);
             if (k >= 2) {
-                second += order * (order - 1) * power * size[k];
+                course.second += order * (order - 1) * power * size[k];
                 power *= h;
             }
             const double slope_power = k >= 2 ? power : 1;
-            first += order * slope_power * size[k];
+            course.first += order * slope_power * size[k];
             terms += slope_power * h * size[k];
         }
-        first *= up;
-        second *= up;
+        course.first *= up;
+        course.second *= up;
         terms = (terms + size[0]) * up;
-        const double rounding = (2 * static_cast<double>(a.size()) + 24) * u * (terms + target);
-        const double slope_rounding = (2 * static_cast<double>(a.size()) + 8) * u * first;
+        course.rounding = (2 * static_cast<double>(a.size()) + 24) * u * (terms + target);
+        course.slope_rounding = (2 * static_cast<double>(a.size()) + 8) * u * course.first;
+        return course;
+    }
+    View view_of_wall(const Course& c, double half) const {
         View view;
-        if (wall) {
-            view.gap = x[0] - target;
-            view.gap_open = (apart + rounding) * up;
-            const double lost = (half * std::abs(v[0]) + 0.5 * half * half * second) * up;
-            view.gap_low = view.gap - view.gap_open - lost - u * std::abs(view.gap);
-            view.rate = v[0];
-            view.rate_open = (slope_error + slope_rounding) * up;
-            view.rate_spread = half * second * up;
-            return view;
-        }
-        double square = 0;
-        double product = 0;
-        for (std::size_t c = 0; c < Dim; ++c) {
-            square += x[c] * x[c];
-            product += x[c] * v[c];
-        }
-        const double distance = std::sqrt(square);
-        view.gap = distance - target;
-        view.gap_open = (apart + rounding) * up;
-        // A distance is at least its projection on the line of centres in the middle of the stretch.
-        const double projected = std::abs(product) / distance + slope_rounding;
-        const double lost = (half * projected + 0.5 * half * half * second) * up;
+        view.gap = c.x[0] - target;
+        view.gap_open = (apart + c.rounding) * up;
+        const double lost = (half * std::abs(c.v[0]) + 0.5 * half * half * c.second) * up;
         view.gap_low = view.gap - view.gap_open - lost - u * std::abs(view.gap);
-        const double farthest = distance + half * first + rounding;
+        view.rate = c.v[0];
+        view.rate_open = (slope_error + c.slope_rounding) * up;
+        view.rate_spread = half * c.second * up;
+        return view;
+    }
+    View view_of_disks(const Course& c, double half) const {
+        View view;
+        const double product = dot(c.x, c.v);
+        const double distance = std::sqrt(dot(c.x, c.x));
+        view.gap = distance - target;
+        view.gap_open = (apart + c.rounding) * up;
+        // A distance is at least its projection on the line of centres in the middle of the stretch.
+        const double projected = std::abs(product) / distance + c.slope_rounding;
+        const double lost = (half * projected + 0.5 * half * half * c.second) * up;
+        view.gap_low = view.gap - view.gap_open - lost - u * std::abs(view.gap);
+        const double farthest = distance + half * c.first + c.rounding;
         view.rate = product;
-        view.rate_open = (apart * first + slope_error * (farthest + apart) + rounding * first +
-                          slope_rounding * farthest + 8 * u * distance * first) *
+        view.rate_open = (apart * c.first + slope_error * (farthest + apart) + c.rounding * c.first +
+                          c.slope_rounding * farthest + 8 * u * distance * c.first) *
                          up;
-        view.rate_spread = half * (first * first + farthest * second) * up;
+        view.rate_spread = half * (c.first * c.first + farthest * c.second) * up;
         return view;
     }
 

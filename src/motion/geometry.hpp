@@ -44,12 +44,12 @@ template <int Dim> inline double quick_gap(const Packing<Dim>& at, const Contact
 /// Rate of the gap along v (on coordinates) times the length of the line.
 template <int Dim>
 inline double along(const CentreLine<Dim>& line, const Contact& contact, const std::vector<double>& v, double& square) {
-    const std::array<double, Dim> u = separation<Dim>(v, contact);
+    const std::array<double, Dim> relative = separation<Dim>(v, contact);
     double sum = 0;
     square = 0;
     for (std::size_t a = 0; a < Dim; ++a) {
-        sum += line.d[a] * u[a];
-        square += u[a] * u[a];
+        sum += line.d[a] * relative[a];
+        square += relative[a] * relative[a];
     }
     return sum;
 }
@@ -83,6 +83,19 @@ inline double quick_curvature(const Packing<Dim>& at, const Contact& contact, co
         return (square - rate * rate) / line->length;
     }
     return gap_curvature(at, contact, v.data());
+}
+
+/// Separation over a contact of any kind: all components for two disks, else the first one, of a wall or a coordinate.
+template <int Dim>
+inline std::array<double, Dim> separation_over(const std::vector<double>& x, const Contact& contact) {
+    std::array<double, Dim> d{};
+    switch (contact.kind) {
+    case ContactKind::disk_disk: return separation<Dim>(x, contact);
+    case ContactKind::lower_wall:
+    case ContactKind::upper_wall: d[0] = wall_distance<Dim>(x, contact); break;
+    case ContactKind::held: d[0] = x[static_cast<std::size_t>(contact.i)]; break;
+    }
+    return d;
 }
 
 /// Gap, and its first two derivatives along a curve with this velocity and acceleration.

@@ -7,39 +7,6 @@
 
 namespace isostat {
 
-namespace {
-
-constexpr double up = 1 + 1e-9;
-
-} // namespace
-
-template <int Dim>
-std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                     InverseBoundCache& cache) {
-    auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
-    if (!structure.ok()) {
-        return nullptr;
-    }
-    auto centre = std::make_unique<ArcCentre>();
-    centre->packing_ = std::move(packing);
-    centre->own_ = std::make_unique<Own>(std::move(structure.value()));
-    const InverseBound bound = bound_inverse(centre->own_->structure, centre->own_->factorisation, cache);
-    if (bound.verdict != Verdict::proved) {
-        return nullptr;
-    }
-    centre->sigma_min_ = bound.sigma_min;
-    return centre;
-}
-
-template <int Dim> std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::of(const ArcVertex<Dim>& vertex) {
-    auto centre = std::make_unique<ArcCentre>();
-    centre->packing_ = vertex.packing;
-    centre->structure_ = &vertex.structure;
-    centre->factorisation_ = &vertex.factorisation;
-    centre->sigma_min_ = vertex.inverse.sigma_min;
-    return centre;
-}
-
 template <int Dim>
 MovingPart<Dim>::MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end, std::size_t slot,
                             double start_uncertainty, double end_uncertainty)
@@ -245,7 +212,6 @@ bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const Can
     return true;
 }
 
-template class ArcCentre<2>;
 template class MovingPart<2>;
 
 } // namespace isostat

@@ -2,6 +2,7 @@
 /// \file
 /// The grains that move during an arc and their equations: private to the room (statement A7, proofs/arcs.md).
 
+#include "motion/arc_centre.hpp"
 #include "motion/curve_piece.hpp"
 
 #include <isostat/contact/candidates.hpp>
@@ -11,33 +12,6 @@
 #include <string>
 
 namespace isostat {
-
-/// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
-template <int Dim> class ArcCentre {
-  public:
-    /// Nothing when a step fails.
-    static std::unique_ptr<ArcCentre> make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                           InverseBoundCache& cache);
-    /// The vertex itself, nothing copied but the coordinates.
-    static std::unique_ptr<ArcCentre> of(const ArcVertex<Dim>& vertex);
-
-    [[nodiscard]] const Packing<Dim>& packing() const { return packing_; }
-    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
-    [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
-    [[nodiscard]] double sigma_min() const { return sigma_min_; }
-
-  private:
-    struct Own {
-        explicit Own(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
-        IsostaticStructure<Dim> structure;
-        Factorisation factorisation;
-    };
-    Packing<Dim> packing_;
-    std::unique_ptr<Own> own_;
-    const IsostaticStructure<Dim>* structure_ = nullptr;
-    const Factorisation* factorisation_ = nullptr;
-    double sigma_min_ = 0;
-};
 
 /// All grains, or the few that the mechanism at the start moves when the contacts that touch them are as many as their
 /// degrees of freedom.
@@ -87,7 +61,6 @@ template <int Dim> class MovingPart {
     std::string trouble_;
 };
 
-extern template class ArcCentre<2>;
 extern template class MovingPart<2>;
 
 } // namespace isostat

@@ -1,6 +1,6 @@
 #include "motion/power_watch.hpp"
 
-#include <fmt/format.h>
+#include "motion/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,6 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
-constexpr double up = 1 + 1e-9;
 constexpr int max_depth = 40;
 /// Shares of a piece beyond which an end with power 0 is not called that: they are reported whatever they are.
 constexpr double largest_open_start = 1e-2;
@@ -79,25 +77,20 @@ template <int Dim> void PowerWatch<Dim>::walk(const Power& power, double from, d
     walk(power, middle, to, depth + 1);
 }
 
-template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, double from, double to) {
-    if (power_.load == nullptr || (!power_.infinitesimal && power_.load->kind == LoadKind::true_stress)) {
-        reason_ = power_.load == nullptr ? "no load was given" : "true stresses are not dead loads";
-        return;
-    }
-    const Packing<Dim>& at = piece.centre();
-    const KeptCurve<Dim>& curve = piece.curve();
+/// Forces that balance the load at the centre, and what they leave of it.
+template <int Dim> typename PowerWatch<Dim>::Balance PowerWatch<Dim>::balance(const CurvePiece<Dim>& piece) const {
     const IsostaticStructure<Dim>& structure = piece.structure();
     const sparse::Matrix<double>& h = structure.matrix();
     const auto n = static_cast<std::size_t>(structure.size());
     const std::vector<double> load =
-        power_.infinitesimal ? power_.load->infinitesimal : power_.load->external_force(*curve.start);
+        power_.infinitesimal ? power_.load->infinitesimal : power_.load->external_force(*piece.curve().start);
     std::vector<double> force(n, 0.0);
     for (std::size_t mu = 0; mu < n; ++mu) {
         const auto k = static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)));
         force[mu] = k < load.size() ? load[k] : 0;
     }
-    std::vector<double> f = force;
-    piece.factorisation().solve_forces(f);
+    Balance balance{force, 0};
+    piece.factorisation().solve_forces(balance.f);
     std::vector<double> residual = force;
     std::vector<double> size(n);
     std::vector<double> terms(n, 7);
@@ -108,7 +101,7 @@ template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, doub
         for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
             const auto entry = static_cast<std::size_t>(e);
             const auto mu = static_cast<std::size_t>(h.row[entry]);
-            const double term = h.value[entry] * f[l];
+            const double term = h.value[entry] * balance.f[l];
             residual[mu] -= term;
             size[mu] += std::abs(term);
             terms[mu] += 1;
@@ -119,74 +112,70 @@ template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, doub
         const double bound = std::abs(residual[mu]) + 1.001 * terms[mu] * u * size[mu];
         square += bound * bound;
     }
+    balance.residual = std::sqrt(square);
+    return balance;
+}
 
-    Power power;
+/// The part of the free row; returns the largest speed.
+template <int Dim> double PowerWatch<Dim>::add_row(const CurvePiece<Dim>& piece, double force, Power& power) {
     const auto& a = piece.coefficients();
-    const std::size_t order = a.size();
-    power.c.assign(2 * order, 0.0);
-    power.c_open.assign(2 * order, 0.0);
-    power.g.assign(order, 0.0);
-    const GapGradient<Dim>& row = piece.row();
-    const double f_row = f[curve.slot];
     double speed = 0;
     double reach_power = 1;
-    for (std::size_t k = 1; k <= order; ++k, reach_power *= piece.reach()) {
-        double sum = 0;
-        double absolute = 0;
-        for (int e = 0; e < row.count; ++e) {
-            const auto entry = static_cast<std::size_t>(e);
-            const double term = row.value[entry] * a[k - 1][static_cast<std::size_t>(row.coordinate[entry])];
-            sum += term;
-            absolute += std::abs(term);
-        }
+    for (std::size_t k = 1; k <= a.size(); ++k, reach_power *= piece.reach()) {
+        const RoundedSum sum = piece.along_row(a[k - 1]);
         const auto factor = static_cast<double>(k);
-        power.c[k - 1] -= factor * f_row * sum;
-        power.c_open[k - 1] += 24 * u * factor * std::abs(f_row) * absolute;
+        power.c[k - 1] -= factor * force * sum.value;
+        power.c_open[k - 1] += 24 * u * factor * std::abs(force) * sum.absolute;
         double norm = 0;
         for (const double x : a[k - 1]) {
             norm += x * x;
         }
         speed += factor * reach_power * std::sqrt(norm);
     }
+    return speed;
+}
+
+/// The part of a kept contact of two disks.
+template <int Dim>
+void PowerWatch<Dim>::add_contact(const CurvePiece<Dim>& piece, const Contact& contact, double force, Power& power) {
+    const auto& a = piece.coefficients();
+    const std::size_t order = a.size();
+    const auto count = static_cast<double>(piece.structure().size());
+    const auto line = separation<Dim>(piece.centre().q, contact);
     std::vector<std::array<double, Dim>> d(order + 1);
-    for (std::size_t l = 0; l < n; ++l) {
-        const Contact& contact = curve.contacts[l];
-        if (l == curve.slot || contact.kind != ContactKind::disk_disk) {
-            continue;
-        }
-        const auto i = static_cast<std::size_t>(Dim * contact.i);
-        const auto j = static_cast<std::size_t>(Dim * contact.j);
-        double distance = 0;
-        for (std::size_t c = 0; c < Dim; ++c) {
-            const double x = at.q[j + c] - at.q[i + c];
-            distance += x * x;
-            for (std::size_t k = 1; k <= order; ++k) {
-                d[k][c] = a[k - 1][j + c] - a[k - 1][i + c];
-            }
-        }
-        const double weight = f[l] / std::sqrt(distance);
-        power.heaviest = std::max(power.heaviest, std::abs(weight));
-        for (std::size_t k = 1; k <= order; ++k) {
-            double norm = 0;
+    for (std::size_t k = 1; k <= order; ++k) {
+        d[k] = separation<Dim>(a[k - 1], contact);
+    }
+    const double weight = force / std::sqrt(dot(line, line));
+    power.heaviest = std::max(power.heaviest, std::abs(weight));
+    for (std::size_t k = 1; k <= order; ++k) {
+        power.g[k - 1] += weight * weight * dot(d[k], d[k]);
+    }
+    for (std::size_t k = 2; k <= 2 * order; ++k) {
+        RoundedSum sum;
+        for (std::size_t p = k > order ? k - order : 1; p <= std::min(order, k - 1); ++p) {
             for (std::size_t c = 0; c < Dim; ++c) {
-                norm += d[k][c] * d[k][c];
+                sum.add(d[p][c] * d[k - p][c]);
             }
-            power.g[k - 1] += weight * weight * norm;
         }
-        for (std::size_t k = 2; k <= 2 * order; ++k) {
-            double sum = 0;
-            double absolute = 0;
-            for (std::size_t p = k > order ? k - order : 1; p <= std::min(order, k - 1); ++p) {
-                for (std::size_t c = 0; c < Dim; ++c) {
-                    const double term = d[p][c] * d[k - p][c];
-                    sum += term;
-                    absolute += std::abs(term);
-                }
-            }
-            const double factor = 0.5 * static_cast<double>(k) * weight;
-            power.c[k - 1] += factor * sum;
-            power.c_open[k - 1] +=
-                (2 * static_cast<double>(k) + 24 + static_cast<double>(n)) * u * std::abs(factor) * absolute;
+        const double factor = 0.5 * static_cast<double>(k) * weight;
+        power.c[k - 1] += factor * sum.value;
+        power.c_open[k - 1] += (2 * static_cast<double>(k) + 24 + count) * u * std::abs(factor) * sum.absolute;
+    }
+}
+
+template <int Dim> typename PowerWatch<Dim>::Power PowerWatch<Dim>::power_along(const CurvePiece<Dim>& piece) const {
+    const KeptCurve<Dim>& curve = piece.curve();
+    const Balance forces = balance(piece);
+    const std::size_t order = piece.coefficients().size();
+    Power power;
+    power.c.assign(2 * order, 0.0);
+    power.c_open.assign(2 * order, 0.0);
+    power.g.assign(order, 0.0);
+    const double speed = add_row(piece, forces.f[curve.slot], power);
+    for (std::size_t l = 0; l < curve.contacts.size(); ++l) {
+        if (curve.bends(l)) {
+            add_contact(piece, curve.contacts[l], forces.f[l], power);
         }
     }
     for (double& x : power.g) {
@@ -195,10 +184,17 @@ template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, doub
     const double spread = std::sqrt(2 * std::max(curve.degree, 1.0));
     power.apart = (spread * piece.radius() + curve.rest_residual) * up;
     power.slope_apart = spread * piece.slope_error() * up;
-    power.residual = std::sqrt(square) * (speed + piece.slope_error()) * up;
+    power.residual = forces.residual * (speed + piece.slope_error()) * up;
+    return power;
+}
 
+template <int Dim> void PowerWatch<Dim>::look(const CurvePiece<Dim>& piece, double from, double to) {
+    if (power_.load == nullptr || (!power_.infinitesimal && power_.load->kind == LoadKind::true_stress)) {
+        reason_ = power_.load == nullptr ? "no load was given" : "true stresses are not dead loads";
+        return;
+    }
     open_.clear();
-    walk(power, from, to, 0);
+    walk(power_along(piece), from, to, 0);
     ++pieces_;
     inner_open_ = inner_open_ || last_open_ > 0; // the piece before was not the last one
     last_open_ = 0;

@@ -7,6 +7,8 @@
 #include <isostat/motion/arc_certificate.hpp>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace isostat {
 
@@ -20,6 +22,14 @@ template <int Dim> class PowerWatch {
 
   private:
     struct Power;
+    struct Balance {
+        std::vector<double> f; ///< per contact
+        double residual = 0;   ///< bound of |load - H f| (2-norm)
+    };
+    [[nodiscard]] Balance balance(const CurvePiece<Dim>& piece) const;
+    [[nodiscard]] Power power_along(const CurvePiece<Dim>& piece) const;
+    static double add_row(const CurvePiece<Dim>& piece, double force, Power& power);
+    static void add_contact(const CurvePiece<Dim>& piece, const Contact& contact, double force, Power& power);
     /// Longest end [s, to] and start [from, s] on which the power is proved positive.
     void walk(const Power& power, double from, double to, int depth);
 

@@ -242,8 +242,7 @@ BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
     InverseBoundCache cache;
     const auto centre = part.at_start(cache);
     BOOST_TEST_REQUIRE((centre != nullptr));
-    CurvePiece<2> piece(part.curve(), centre->packing(), centre->structure(), centre->factorisation(),
-                        centre->sigma_min(), 1);
+    CurvePiece<2> piece(part.curve(), *centre, 1);
     constexpr double h = 1e-6;
     BOOST_TEST_REQUIRE(piece.prove(h));
     for (const double share : {0.0, 0.25, 0.49, 0.5001, 0.6, 1.0, 1.9}) { // of the reach, that the disk has moved since

@@ -4,7 +4,6 @@
 #include "motion/power_watch.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <boost/test/unit_test.hpp>
 
@@ -18,10 +17,8 @@ namespace {
 /// polynomial; `axis` of disk 1 in the free row. Disk 2, if any, is fixed too.
 struct OnCircle {
     Packing<2> packing;
-    std::optional<IsostaticStructure<2>> structure;
-    std::optional<Factorisation> factorisation;
+    std::unique_ptr<ArcCentre<2>> centre;
     std::optional<KeptCurve<2>> curve;
-    double sigma = 0;
 
     OnCircle(double angle, int axis, double off = 0, std::array<double, 3> obstacle = {}) {
         packing.walls = Walls<2>::none();
@@ -35,15 +32,12 @@ struct OnCircle {
         }
         snap_to_grid(packing);
         const std::vector<Contact> contacts{{ContactKind::disk_disk, 0, 1}, {ContactKind::held, 2 + axis, 0}};
-        auto proved = IsostaticStructure<2>::prove(packing, contacts);
-        BOOST_REQUIRE(proved.ok());
-        structure.emplace(std::move(proved.value()));
-        factorisation.emplace(*structure);
         InverseBoundCache cache;
-        sigma = bound_inverse(*structure, *factorisation, cache).sigma_min;
+        centre = ArcCentre<2>::make(packing, contacts, cache);
+        BOOST_REQUIRE(centre != nullptr);
         curve.emplace(packing, contacts, 1, 0.0);
     }
-    CurvePiece<2> piece() { return {*curve, packing, *structure, *factorisation, sigma, 1}; }
+    CurvePiece<2> piece() { return {*curve, *centre, 1}; }
 };
 
 } // namespace
@@ -109,8 +103,13 @@ BOOST_AUTO_TEST_CASE(points_are_located_on_their_own_curve_only) {
 
 BOOST_AUTO_TEST_CASE(a_bound_of_the_inverse_that_is_not_there_proves_no_tube) {
     OnCircle on(0.8, 0);
-    on.sigma = 0;
-    BOOST_TEST(!on.piece().prove(1e-6));
+    const InverseBound unknown;
+    const VertexEnclosure enclosure;
+    const auto centre =
+        ArcCentre<2>::of({on.packing, on.centre->structure(), on.centre->factorisation(), unknown, enclosure});
+    CurvePiece<2> piece(*on.curve, *centre, 1);
+    BOOST_TEST(!piece.prove(1e-6));
+    BOOST_TEST(on.piece().prove(1e-6));
 }
 
 BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
@@ -146,7 +145,7 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
     CurvePiece<2> piece = off.piece();
     BOOST_TEST_REQUIRE(piece.prove(1e-9));
     const double ratio = 1e-3 / 2;
-    const double beta = (1 + 2 * ratio) / off.sigma;
+    const double beta = (1 + 2 * ratio) / off.centre->sigma_min();
     const double residual = (2.001 * 2.001 - 4) / 4;
     within(1 / (piece.unique() * off.curve->lipschitz), beta, 1e-4);
     within(piece.radius(), 2 * beta * residual, 1e-2);

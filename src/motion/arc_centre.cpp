@@ -1,0 +1,34 @@
+#include "motion/arc_centre.hpp"
+
+namespace isostat {
+
+template <int Dim>
+std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                                     InverseBoundCache& cache) {
+    auto structure = IsostaticStructure<Dim>::prove(packing, std::move(contacts));
+    if (!structure.ok()) {
+        return nullptr;
+    }
+    auto centre = std::make_unique<ArcCentre>();
+    centre->packing_ = std::move(packing);
+    centre->own_ = std::make_unique<Own>(std::move(structure.value()));
+    const InverseBound bound = bound_inverse(centre->own_->structure, centre->own_->factorisation, cache);
+    if (bound.verdict != Verdict::proved) {
+        return nullptr;
+    }
+    centre->sigma_min_ = bound.sigma_min;
+    return centre;
+}
+
+template <int Dim> std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::of(const ArcVertex<Dim>& vertex) {
+    auto centre = std::make_unique<ArcCentre>();
+    centre->packing_ = vertex.packing;
+    centre->structure_ = &vertex.structure;
+    centre->factorisation_ = &vertex.factorisation;
+    centre->sigma_min_ = vertex.inverse.sigma_min;
+    return centre;
+}
+
+template class ArcCentre<2>;
+
+} // namespace isostat

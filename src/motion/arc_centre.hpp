@@ -1,0 +1,40 @@
+#pragma once
+// Where a piece of an arc is developed: private to the room.
+
+#include <isostat/motion/arc_certificate.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace isostat {
+
+/// A configuration whose contact matrix (moving grains only) was proved regular, factorised and bounded.
+template <int Dim> class ArcCentre {
+  public:
+    /// Nothing when a step fails.
+    static std::unique_ptr<ArcCentre> make(Packing<Dim> packing, std::vector<Contact> contacts,
+                                           InverseBoundCache& cache);
+    /// The vertex itself, nothing copied but the coordinates.
+    static std::unique_ptr<ArcCentre> of(const ArcVertex<Dim>& vertex);
+
+    [[nodiscard]] const Packing<Dim>& packing() const { return packing_; }
+    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
+    [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
+    [[nodiscard]] double sigma_min() const { return sigma_min_; }
+
+  private:
+    struct Own {
+        explicit Own(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
+        IsostaticStructure<Dim> structure;
+        Factorisation factorisation;
+    };
+    Packing<Dim> packing_;
+    std::unique_ptr<Own> own_;
+    const IsostaticStructure<Dim>* structure_ = nullptr;
+    const Factorisation* factorisation_ = nullptr;
+    double sigma_min_ = 0;
+};
+
+extern template class ArcCentre<2>;
+
+} // namespace isostat

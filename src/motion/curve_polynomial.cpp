@@ -1,0 +1,201 @@
+#include "motion/curve_polynomial.hpp"
+
+#include "core/dot.hpp"
+#include "motion/geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Share of sigma_min that the change of the derivative over a piece may take. Cost only.
+constexpr double share = 0.7;
+constexpr int max_order = 14;
+constexpr double longest_reach = 0.2; ///< in units of the smallest radius
+
+template <int Dim>
+std::vector<std::array<double, Dim>> separations(const std::vector<double>& x, const std::vector<Contact>& contacts) {
+    std::vector<std::array<double, Dim>> list(contacts.size());
+    std::transform(contacts.begin(), contacts.end(), list.begin(),
+                   [&](const Contact& contact) { return separation_over<Dim>(x, contact); });
+    return list;
+}
+
+} // namespace
+
+template <int Dim>
+CurvePolynomial<Dim>::CurvePolynomial(const KeptCurve<Dim>& curve, const ArcCentre<Dim>& centre, double forward)
+    : curve_(&curve), at_(&centre), forward_(forward) {
+    row_ = gap_gradient(centre.packing(), centre.structure().contacts()[curve.slot]);
+    double ratio = 0; // |gap| / D of the kept contacts and of the one in the free row
+    for (std::size_t l = 0; l < curve.contacts.size(); ++l) {
+        const Contact& c = centre.structure().contacts()[l];
+        if (c.kind == ContactKind::disk_disk && l != curve.slot) {
+            ratio = std::max(ratio, std::abs(gap(centre.packing(), c)) / curve.target[l]);
+        }
+    }
+    if (!(centre.sigma_min() > 0) || !(ratio < 1e-3)) {
+        return;
+    }
+    inverse_ = (1 + 2 * ratio + 8 * u) / centre.sigma_min() * up;
+    expand();
+}
+
+template <int Dim> std::vector<double> CurvePolynomial<Dim>::solved(std::vector<double> rhs) const {
+    factorisation().solve_velocities(rhs);
+    std::vector<double> y(centre().q.size(), 0.0);
+    const DofMap<Dim>& dofs = structure().dofs();
+    for (std::size_t mu = 0; mu < rhs.size(); ++mu) {
+        y[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] = rhs[mu];
+    }
+    return y;
+}
+
+/// Tangent at the centre, 1 in its fastest coordinate. False: it is no good.
+template <int Dim> bool CurvePolynomial<Dim>::first_coefficient() {
+    std::vector<double> rhs(curve_->contacts.size(), 0.0);
+    rhs[curve_->slot] = -forward_; // approach velocity: minus the rate of the row
+    std::vector<double> a = solved(rhs);
+    const double scale = 1 / largest(a);
+    if (!std::isfinite(scale) || !(scale > 0)) {
+        return false;
+    }
+    for (double& x : a) {
+        x *= scale;
+    }
+    a_.push_back(std::move(a));
+    return true;
+}
+
+/// From the first coefficient over the contacts: how far the derivative of the equations may turn.
+template <int Dim> void CurvePolynomial<Dim>::choose_reach(const std::vector<std::array<double, Dim>>& first) {
+    std::vector<double> e(first.size(), 0.0);
+    for (std::size_t l = 0; l < first.size(); ++l) {
+        if (curve_->bends(l)) {
+            e[l] = std::sqrt(dot(first[l], first[l])) / curve_->target[l];
+        }
+    }
+    const double turning = curve_->norm_of(e);
+    // No longer than what a candidate list allows.
+    const double longest = longest_reach * centre().min_radius();
+    reach_ = turning > 0 ? std::min(share / (inverse_ * turning), longest) : longest;
+}
+
+/// Coefficient k of |d|^2 = D^2 along p: 2 line . a_k + sum of a_i . a_(k-i) = 0 over every kept disk contact.
+template <int Dim> void CurvePolynomial<Dim>::expand() {
+    if (!first_coefficient()) {
+        return;
+    }
+    const auto& contacts = curve_->contacts;
+    const std::size_t n = contacts.size();
+    const auto line = separations<Dim>(centre().q, contacts);
+    std::vector<std::vector<std::array<double, Dim>>> d{separations<Dim>(a_[0], contacts)}; // of a_k, from k = 1
+    choose_reach(d[0]);
+    const double negligible = 0x1p-60 * centre().min_radius();
+    std::vector<double> rhs(n, 0.0);
+    for (std::size_t k = 2; k <= max_order; ++k) {
+        for (std::size_t l = 0; l < n; ++l) {
+            if (!curve_->bends(l)) {
+                rhs[l] = 0;
+                continue;
+            }
+            double sum = 0;
+            for (std::size_t i = 1; i < k; ++i) {
+                sum += dot(d[i - 1][l], d[k - i - 1][l]);
+            }
+            rhs[l] = 0.5 * sum / std::sqrt(dot(line[l], line[l]));
+        }
+        a_.push_back(solved(rhs));
+        const double size = largest(a_.back()) * std::pow(reach_, static_cast<int>(k));
+        if (!std::isfinite(size)) {
+            a_.pop_back();
+            break;
+        }
+        if (size < negligible) {
+            break;
+        }
+        d.push_back(separations<Dim>(a_.back(), contacts));
+    }
+}
+
+template <int Dim> std::vector<double> CurvePolynomial<Dim>::point(double s) const {
+    std::vector<double> x = centre().q;
+    for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
+        const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
+        double sum = 0;
+        for (std::size_t order = a_.size(); order > 0; --order) {
+            sum = (sum + a_[order - 1][k]) * s;
+        }
+        x[k] += sum;
+    }
+    return x;
+}
+
+template <int Dim> std::vector<double> CurvePolynomial<Dim>::slope(double s) const {
+    std::vector<double> v(centre().q.size(), 0.0);
+    for (std::size_t mu = 0; mu < static_cast<std::size_t>(structure().size()); ++mu) {
+        const auto k = static_cast<std::size_t>(structure().dofs().coordinate_of(static_cast<int>(mu)));
+        for (std::size_t order = a_.size(); order > 0; --order) {
+            v[k] = v[k] * s + static_cast<double>(order) * a_[order - 1][k];
+        }
+    }
+    return v;
+}
+
+template <int Dim> std::optional<Packing<Dim>> CurvePolynomial<Dim>::corrected(double s) const {
+    Packing<Dim> at = centre();
+    at.q = point(s);
+    const std::vector<double> guess = at.q;
+    const double rounding = 2 * grid_step(at);
+    std::vector<double> rhs(curve_->contacts.size());
+    double previous = infinity;
+    for (int k = 0; k < 40; ++k) {
+        for (std::size_t l = 0; l < rhs.size(); ++l) {
+            const Contact& c = curve_->contacts[l];
+            const auto i = static_cast<std::size_t>(c.i);
+            rhs[l] = l == curve_->slot ? 0.0 : c.kind == ContactKind::held ? at.q[i] - curve_->start->q[i] : gap(at, c);
+        }
+        const std::vector<double> y = solved(rhs);
+        const double size = largest(y);
+        if (!(size < infinity) || (k > 2 && size > 0.9 * previous && size > 1e-9 * at.min_radius())) {
+            return std::nullopt;
+        }
+        for (std::size_t c = 0; c < y.size(); ++c) {
+            at.q[c] += y[c];
+        }
+        if (size <= rounding || (k > 2 && size > 0.5 * previous)) {
+            break;
+        }
+        previous = size;
+    }
+    for (std::size_t c = 0; c < guess.size(); ++c) {
+        if (!(std::abs(at.q[c] - guess[c]) <= 0.2 * std::abs(s))) {
+            return std::nullopt; // perhaps another branch
+        }
+    }
+    for (std::size_t l = 0; l < rhs.size(); ++l) {
+        const Contact& c = curve_->contacts[l];
+        if (c.kind == ContactKind::held && l != curve_->slot) {
+            at.q[static_cast<std::size_t>(c.i)] = curve_->start->q[static_cast<std::size_t>(c.i)];
+        }
+    }
+    snap_to_grid(at);
+    return at;
+}
+
+template <int Dim> RoundedSum CurvePolynomial<Dim>::along_row(const std::vector<double>& v) const {
+    RoundedSum sum;
+    for (int g = 0; g < row_.count; ++g) {
+        const auto e = static_cast<std::size_t>(g);
+        sum.add(row_.value[e] * v[static_cast<std::size_t>(row_.coordinate[e])]);
+    }
+    return sum;
+}
+
+template class CurvePolynomial<2>;
+
+} // namespace isostat

@@ -1,0 +1,62 @@
+#pragma once
+/// \file
+/// A stretch of the curve on which kept gaps stay 0, as a polynomial: private to the room (proofs/arcs.md).
+
+#include "motion/arc_centre.hpp"
+#include "motion/kept_curve.hpp"
+#include "motion/rounding.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace isostat {
+
+/// p(s) = centre + sum_k s^k a_k, the derivatives of the curve at a place near it. Nothing is proved of it here.
+template <int Dim> class CurvePolynomial {
+  public:
+    /// Derivatives of the curve at a centre with the contacts of `curve`, but for the free row. `forward` = +1 or -1:
+    /// sign of the rate of the free row for growing s. \pre the curve and the centre outlive it
+    CurvePolynomial(const KeptCurve<Dim>& curve, const ArcCentre<Dim>& centre, double forward);
+
+    /// Largest |s| worth trying (an estimate; 0: the centre is no good).
+    [[nodiscard]] double natural_reach() const { return reach_; }
+    /// Upper bound of |DPhi(centre)^-1|; 0: unknown, and no coefficients.
+    [[nodiscard]] double inverse_norm() const { return inverse_; }
+    /// Sign of the rate of the own row.
+    [[nodiscard]] int forward() const { return forward_ > 0 ? 1 : -1; }
+
+    /// Rounded p(s) on all coordinates; error per coordinate below 2^-51 times the largest coordinate for |s| <= reach.
+    [[nodiscard]] std::vector<double> point(double s) const;
+    [[nodiscard]] std::vector<double> slope(double s) const;
+    /// The point of the curve near p(s), by chord iterations, on the grid; nothing when they do not converge.
+    [[nodiscard]] std::optional<Packing<Dim>> corrected(double s) const;
+    /// row . v, and the sum of the absolute values of its terms.
+    [[nodiscard]] RoundedSum along_row(const std::vector<double>& v) const;
+
+    [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
+    [[nodiscard]] const Packing<Dim>& centre() const { return at_->packing(); }
+    [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return at_->structure(); }
+    [[nodiscard]] const Factorisation& factorisation() const { return at_->factorisation(); }
+    /// a_1 ... a_K on all coordinates (0 at rest).
+    [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
+
+  private:
+    [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;
+    void expand();
+    bool first_coefficient();
+    void choose_reach(const std::vector<std::array<double, Dim>>& first);
+
+    const KeptCurve<Dim>* curve_;
+    const ArcCentre<Dim>* at_;
+    double forward_;
+    double inverse_ = 0;
+    GapGradient<Dim> row_;
+    std::vector<std::vector<double>> a_;
+    double reach_ = 0;
+};
+
+extern template class CurvePolynomial<2>;
+
+} // namespace isostat

@@ -1,0 +1,44 @@
+#pragma once
+// What the bounds of arcs share (statement A8, proofs/arcs.md): private to the room.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace isostat {
+
+inline constexpr double u = 0x1p-53;
+/// Sums of up to 10^6 terms, their roots and a few products: relative rounding below 1e-9 (proofs/bounds.md).
+inline constexpr double up = 1 + 1e-9;
+inline constexpr double root2 = 1.4142135623731; ///< above the square root of 2
+
+template <std::size_t size> inline double dot(const std::array<double, size>& x, const std::array<double, size>& y) {
+    double sum = 0;
+    for (std::size_t c = 0; c < size; ++c) {
+        sum += x[c] * y[c];
+    }
+    return sum;
+}
+
+/// A sum of products, and of their absolute values: what its rounding is a share of.
+struct RoundedSum {
+    double value = 0;
+    double absolute = 0;
+
+    void add(double term) {
+        value += term;
+        absolute += std::abs(term);
+    }
+    template <std::size_t size> void add(const std::array<double, size>& x, const std::array<double, size>& y) {
+        double sum = 0;
+        double terms = 0;
+        for (std::size_t c = 0; c < size; ++c) {
+            sum += x[c] * y[c];
+            terms += std::abs(x[c] * y[c]);
+        }
+        value += sum;
+        absolute += terms;
+    }
+};
+
+} // namespace isostat

@@ -3,6 +3,7 @@
 #include <qd/dd_real.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -117,14 +118,16 @@ template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& 
     return work;
 }
 
+template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal) {
+    return infinitesimal || load.kind == LoadKind::nominal ||
+           std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f == 0; });
+}
+
 template <int Dim>
 Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
                              bool infinitesimal) {
-    const auto loaded = [](double f) { return f != 0; };
+    assert(has_potential(load, infinitesimal));
     const bool phi = load.kind == LoadKind::true_stress && !infinitesimal;
-    if (phi && std::any_of(load.disk_force.begin(), load.disk_force.end(), loaded)) {
-        return {0, std::numeric_limits<double>::infinity()};
-    }
     const auto between = [&](const Place<Dim>& a, const Place<Dim>& b) {
         return phi ? decrease_of_phi(from, a, b, load) : work(from, a, b, load, infinitesimal);
     };
@@ -147,6 +150,7 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
 }
 
 template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
+template bool has_potential<2>(const Load<2>&, bool);
 template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);
 
 } // namespace isostat

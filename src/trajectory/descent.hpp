@@ -5,10 +5,13 @@
 
 namespace isostat {
 
+/// Dead loads have one, and so have true stresses without forces on disks, and whatever moves rattlers only.
+template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal);
+
 /// Of dead loads W(from) - W(to), W = -F.q; of true stresses Phi(from) - Phi(to), Phi = sum sigma_a ln L_a over the
 /// movable walls; when `infinitesimal` (only rattlers moved) -g.q in place of W, whatever the finite load. `value` is
 /// the decrease between the two true vertices, to within `radius`. Climbs to double-double while the sign is open.
-/// True stresses with forces on disks have no potential: radius infinite. \pre both enclosures proved.
+/// \pre `has_potential`, and both enclosures proved.
 /// Cost: O(n); in double-double two solves at each end.
 template <int Dim>
 Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal);
@@ -22,6 +25,7 @@ struct WorkOfArc {
 template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to);
 
 extern template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
+extern template bool has_potential<2>(const Load<2>&, bool);
 extern template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);
 
 } // namespace isostat

@@ -142,13 +142,15 @@ template <int Dim>
 std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
                                             const Load<Dim>& load) {
     const Vertex<Dim>& to = *proof.vertex;
-    const Enclosure decrease = potential_decrease(from, to, load, opening.infinitesimal);
     proof.record.work = work_of(load, from.packing, to.packing).value;
+    if (!has_potential(load, opening.infinitesimal)) {
+        return std::nullopt;
+    }
+    const Enclosure decrease = potential_decrease(from, to, load, opening.infinitesimal);
     proof.descends = decrease.positive();
     // A way of length O(eps) ends where it began: first-order terms decide there.
     const bool at_once = from.perturbed && from.packing.q == to.packing.q;
-    const bool has_potential = std::isfinite(decrease.radius);
-    if (!has_potential || proof.descends || at_once) {
+    if (proof.descends || at_once) {
         return std::nullopt;
     }
     return Failure{FailureKind::undecided,

@@ -96,6 +96,23 @@ BOOST_AUTO_TEST_CASE(two_disks_with_the_tightest_claims) {
 }
 
 // The distance to the true vertex is known in closed form: both sides of it are told apart.
+// Disks 3 and 4 stand at gaps 1 and 1 + d from disk 2, which rests exactly on two fixed ones; pairs of fixed disks do
+// not count.
+BOOST_AUTO_TEST_CASE(the_pair_named_is_the_nearest_to_2_to_the_minus_46_of_the_largest_coordinate) {
+    for (const auto& [units, verdict] : {std::pair(-1, Verdict::proved), std::pair(1, Verdict::proved),
+                                         std::pair(3, Verdict::refuted), std::pair(100, Verdict::refuted)}) {
+        State<2> state = small_states::between_two(1);
+        state.packing.radius = {3, 3, 2, 1, 1};
+        state.packing.q = {-3, 0, 3, 0, 0, 4, 0, 8, 4 + units * 0x1p-47 * 8, 4, 0, 0};
+        state.packing.fixed = {1, 1, 0, 1, 1};
+        state.load.disk_force = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0};
+        state.load.infinitesimal.clear();
+        Certificate certificate = maker::certificate(state);
+        certificate.claims.gaps = GapsClaim{1 - 0x1p-40, crafted::pair(2, 4), Rung::exact};
+        BOOST_TEST((verdict_of(verify(certificate), "gaps") == verdict), units);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_is_known_from_both_sides) {
     State<2> state = crafted::two_disks(1, 2, 1, 1.5);
     const double shift = 0x1p-12;

@@ -6,6 +6,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+#include <limits>
 #include <set>
 
 using namespace isostat;
@@ -67,6 +69,37 @@ BOOST_AUTO_TEST_CASE(forces_that_share_one_support_vanish_as_a_structural_class)
         };
         BOOST_TEST(key(limit.value().opens) <= key(l));
     }
+}
+
+// D3: every other force is positive on all of [stress - error, stress + error].
+BOOST_AUTO_TEST_CASE(forces_at_a_limit_are_known_no_better_than_the_limit) {
+    int told = 0; // where this is what the margin says
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        Loaded loaded(prepared(50, seed));
+        for (const int direction : {+1, -1}) {
+            const auto found = find_limit(loaded.statics, loaded.sigma(), direction);
+            BOOST_TEST_REQUIRE(found.ok());
+            const LoadLimit& limit = found.value();
+            double with = std::numeric_limits<double>::infinity();
+            double without = with;
+            for (int l = 0; l < loaded.structure.size() && !limit.unbounded; ++l) {
+                const ContactId id(l);
+                const bool member = std::count(limit.tie_class.begin(), limit.tie_class.end(), id) > 0;
+                if (member || loaded.statics.is_structural_zero(id)) {
+                    continue;
+                }
+                const Enclosure f = loaded.statics.force(id, limit.stress);
+                const Enclosure b = loaded.statics.slope(id);
+                const double radius = f.radius + (std::abs(b.value) + b.radius) * limit.stress_error;
+                BOOST_TEST(f.value > radius);
+                with = std::min(with, f.value / radius);
+                without = std::min(without, f.value / f.radius);
+            }
+            BOOST_TEST(limit.margin <= with * (1 + 1e-9));
+            told += limit.margin >= with * (1 - 1e-9) && with < 0.9 * without ? 1 : 0;
+        }
+    }
+    BOOST_TEST(told > 0);
 }
 
 BOOST_AUTO_TEST_CASE(classes_of_prepared_packings_vanish_together_and_nothing_else_does) {

@@ -145,9 +145,12 @@ std::string recognise_format(const std::string& marked) {
         start.emplace_back(line, rows.number(), &source);
     }
     const auto is_count = [](const Line& line) {
-        return line.size() == 1 && line.field(0).find_first_not_of("0123456789") == std::string_view::npos;
+        return line.size() >= 1 && line.field(0).find_first_not_of("0123456789") == std::string_view::npos;
     };
-    if (start.size() == 2 && is_count(start[0])) {
+    if (!start.empty() && is_count(start[0]) && start[0].size() > 1 && start[0].field(1) == "x") {
+        return "vertex";
+    }
+    if (start.size() == 2 && is_count(start[0]) && start[0].size() == 1) {
         const bool numbers = start[1].size() == 5 && foreign::to_number(start[1].field(0)).has_value();
         return numbers || (!start[1].text().empty() && start[1].text().starts_with('#')) ? "vertex" : "xyz";
     }

@@ -18,6 +18,7 @@ class Row {
     /// A finite number, all of the field. \pre field < size()
     [[nodiscard]] double number(std::size_t field, const std::string& name) const;
     [[nodiscard]] long integer(std::size_t field, const std::string& name, long lowest, long highest) const;
+    [[nodiscard]] std::string_view text(std::size_t field) const { return fields_[field]; }
     [[nodiscard]] std::size_t size() const { return fields_.size(); }
 
   private:

@@ -49,24 +49,33 @@ template <int Dim> std::vector<double> vectors(const Field& document, const char
     return values;
 }
 
-template <int Dim> Packing<Dim> packing_of(const Field& document) {
-    Packing<Dim> packing;
+/// Version 1 has rows [radius, x, y], version 2 [x, y, radius].
+template <int Dim> void read_disks(const Field& document, Packing<Dim>& packing) {
+    const bool radius_first = document.at("version").integer() == 1;
+    const char* const order = radius_first ? "[radius, x, y]" : "[x, y, radius]";
+    const std::size_t first = radius_first ? 1 : 0;
+    const std::size_t size = radius_first ? 0 : Dim;
     const Field disks = document.at("disks");
     if (disks.size() == 0) {
-        disks.fail("at least one disk [radius, x, y]");
+        disks.fail(fmt::format("at least one disk {}", order));
     }
     for (std::size_t i = 0; i < disks.size(); ++i) {
         const Field row = disks.at(i);
-        row.require_size(1 + Dim, "[radius, x, y]");
-        const double radius = row.at(std::size_t{0}).number();
+        row.require_size(1 + Dim, order);
+        const double radius = row.at(size).number();
         if (!(radius > 0)) {
-            row.at(std::size_t{0}).fail("a positive radius");
+            row.at(size).fail("a positive radius");
         }
         packing.radius.push_back(radius);
         for (std::size_t a = 0; a < Dim; ++a) {
-            packing.q.push_back(row.at(1 + a).number());
+            packing.q.push_back(row.at(first + a).number());
         }
     }
+}
+
+template <int Dim> Packing<Dim> packing_of(const Field& document) {
+    Packing<Dim> packing;
+    read_disks(document, packing);
     const Field length = document.at("length");
     length.require_size(Dim, "one length per axis");
     for (std::size_t a = 0; a < Dim; ++a) {
@@ -151,8 +160,8 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     if (document.at("format").string() != "isostat-state") {
         document.at("format").fail("\"isostat-state\"");
     }
-    if (document.at("version").integer() != 1) {
-        document.at("version").fail("1, the version that this program reads");
+    if (const long version = document.at("version").integer(); version != 1 && version != 2) {
+        document.at("version").fail("1 or 2, the versions that this program reads");
     }
     document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks",
                    "fixed", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});

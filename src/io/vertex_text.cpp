@@ -8,10 +8,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace isostat {
 
 namespace {
+
+constexpr long most = 100'000'000;
 
 /// Types of the format: 0 disk-disk, then the walls.
 constexpr std::array<Contact, 4> wall_of_type{{{ContactKind::lower_wall, 0, 0},
@@ -34,22 +38,42 @@ Contact contact_of(const Row& row, int disks) {
     return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
 }
 
+/// The first row: the number of disks, and the names of the columns when the radius is not the first of them.
+struct Head {
+    int disks;
+    bool radius_first;
+};
+
+Head head_of(RowReader& rows) {
+    constexpr std::array<std::string_view, 5> names{"x", "y", "r", "gx", "gy"};
+    const Row row = rows.next("the number of disks", 0);
+    const Head head{static_cast<int>(row.integer(0, "number of disks", 1, most)), row.size() == 1};
+    for (std::size_t k = 1; k < row.size(); ++k) {
+        if (row.size() != 1 + names.size() || row.text(k) != names[k - 1]) {
+            row.fail(k, "name of a column",
+                     "the number of disks alone (rows radius x y gx gy), or x y r gx gy after it");
+        }
+    }
+    return head;
+}
+
 } // namespace
 
 State<2> parse_vertex_text(const std::string& text, const std::string& source) {
-    constexpr long most = 100'000'000;
     RowReader rows(text, source);
     State<2> state;
-    const auto disks = static_cast<int>(rows.next("the number of disks", 1).integer(0, "number of disks", 1, most));
+    const auto [disks, radius_first] = head_of(rows);
+    const std::size_t size = radius_first ? 0 : 2, first = radius_first ? 1 : 0;
+    const char* const order = radius_first ? "radius x y gx gy" : "x y r gx gy";
     for (int i = 0; i < disks; ++i) {
-        const Row row = rows.next(fmt::format("disk {} of {}: radius x y gx gy", i, disks), 5);
-        const double radius = row.number(0, fmt::format("radius of disk {}", i));
+        const Row row = rows.next(fmt::format("disk {} of {}: {}", i, disks, order), 5);
+        const double radius = row.number(size, fmt::format("radius of disk {}", i));
         if (!(radius > 0)) {
-            row.fail(0, fmt::format("radius of disk {}", i), "a positive number");
+            row.fail(size, fmt::format("radius of disk {}", i), "a positive number");
         }
         state.packing.radius.push_back(radius);
-        state.packing.q.push_back(row.number(1, fmt::format("x of disk {}", i)));
-        state.packing.q.push_back(row.number(2, fmt::format("y of disk {}", i)));
+        state.packing.q.push_back(row.number(first, fmt::format("x of disk {}", i)));
+        state.packing.q.push_back(row.number(first + 1, fmt::format("y of disk {}", i)));
         state.load.infinitesimal.push_back(row.number(3, fmt::format("gx of disk {}", i)));
         state.load.infinitesimal.push_back(row.number(4, fmt::format("gy of disk {}", i)));
     }

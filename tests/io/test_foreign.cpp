@@ -232,6 +232,7 @@ BOOST_AUTO_TEST_CASE(more_rows_in_a_data_file_than_atoms_are_refused) {
 
 BOOST_AUTO_TEST_CASE(our_own_formats_are_recognised) {
     BOOST_TEST(recognise_format(scratch::read(scratch::data("vertex100.txt"))) == "vertex");
+    BOOST_TEST(recognise_format("# new order\n2 x y r gx gy\n1 1 1 0 0\n") == "vertex");
     BOOST_TEST(recognise_format("{\"format\": \"isostat-state\"}") == "state");
     BOOST_TEST(recognise_format(scratch::read(std::string(ISOSTAT_EXAMPLES) + "/packings/wedge.toml")) == "packing");
 }

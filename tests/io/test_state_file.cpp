@@ -61,6 +61,23 @@ void refuses(const std::string& text, const std::vector<std::string>& words) {
 
 BOOST_AUTO_TEST_SUITE(io)
 
+BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
+    const auto text = [](const std::string& version, const std::string& disks) {
+        return R"({"format": "isostat-state", "version": )" + version + R"(, "length": [12, 11], "disks": [)" + disks +
+               R"(], "contacts": [[0, "left"]]})";
+    };
+    const Packing<2> packing = parse_state<2>(text("2", "[3, 4, 1], [9, 5, 2]"), "s").state.packing;
+    BOOST_TEST((packing.radius == std::vector<double>{1, 2}));
+    BOOST_TEST((packing.q == std::vector<double>{3, 4, 9, 5, 12, 11}));
+    const Packing<2> old = parse_state<2>(text("1", "[1, 3, 4], [2, 9, 5]"), "s").state.packing;
+    BOOST_TEST((old.radius == packing.radius));
+    BOOST_TEST((old.q == packing.q));
+    refuses(text("2", "[3, 4, 0]"), {"disks[0][2]", "positive radius"});
+    refuses(text("2", "[3, 4]"), {"disks[0]", "[x, y, radius]"});
+    refuses(text("1", "[0, 3, 4]"), {"disks[0][0]", "positive radius"});
+    refuses(text("3", "[3, 4, 1]"), {"version", "3", "1 or 2"});
+}
+
 BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
     State<2> state = crafted::two_disks(1, 2, 0.1, 1.0 / 3);
     state.load.infinitesimal = {5e-324, -0.0, 1e308, std::nextafter(0.3, 1.0)};
@@ -157,7 +174,7 @@ BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected
     const std::string text = two_disk_text();
     refuses("[1]", {"isostat-state"});
     refuses(replaced(text, "isostat-state", "isostat-run"), {"format", "isostat-run"});
-    refuses(replaced(text, "\"version\": 1", "\"version\": 2"), {"version", "2"});
+    refuses(replaced(text, "\"version\": 1", "\"version\": 3"), {"version", "3"});
     refuses(replaced(text, "\"contacts\"", "\"contcts\""), {"unknown field 'contcts'"});
     refuses(replaced(text, "\"disks\"", "\"disk_force\""), {"'disks' is missing"});
     refuses(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"dimension", "3"});

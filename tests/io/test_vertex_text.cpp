@@ -54,6 +54,20 @@ BOOST_AUTO_TEST_CASE(rows_mean_what_the_format_says) {
     BOOST_TEST((state.contacts == expected));
 }
 
+BOOST_AUTO_TEST_CASE(names_after_the_number_of_disks_put_the_radius_last) {
+    const std::string named = replaced(replaced(replaced(two_disks, "2\n1 1 1", "2 x y r gx gy\n1 1 1"),
+                                                "2 3.8284271247461903 2 0.2", "3.8284271247461903 2 2 0.2"),
+                                       "# two disks\n", "");
+    const State<2> state = parse_vertex_text(named, "v.txt"), old = parse_vertex_text(two_disks, "v.txt");
+    BOOST_TEST((state.packing.radius == old.packing.radius));
+    BOOST_TEST((state.packing.q == old.packing.q));
+    BOOST_TEST((state.load.infinitesimal == old.load.infinitesimal));
+    BOOST_TEST((state.contacts == old.contacts));
+    refuses(replaced(named, "x y r gx", "x y d gx"), {"v.txt:1:", "'d'", "x y r gx gy"});
+    refuses(replaced(named, " gy", ""), {"v.txt:1:", "x y r gx gy"});
+    refuses(replaced(named, "1 1 1 0.1", "1 1 0 0.1"), {"v.txt:2:", "radius of disk 0", "'0'", "positive"});
+}
+
 BOOST_AUTO_TEST_CASE(bad_rows_are_named_with_their_line) {
     refuses(replaced(two_disks, "2\n1 1", "two\n1 1"), {"v.txt:2:", "number of disks", "'two'", "integer"});
     refuses(replaced(two_disks, "2\n1 1", "0\n1 1"), {"v.txt:2:", "'0'"});

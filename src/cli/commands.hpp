@@ -106,6 +106,28 @@ struct PlateauArguments {
 /// nowhere proved, and not everywhere refuted.
 int plateau(const PlateauArguments& arguments);
 
+struct ImportArguments {
+    Common common;
+    std::string file, output;
+    ForeignArguments foreign;
+    std::string contacts = "plateau"; ///< or "nearest", or a file
+    std::string contact_columns;
+    std::optional<double> threshold;
+    std::string stress = "1,1", load = "nominal", moved;
+    std::uint64_t seed = 1;
+    double jitter = 0;
+};
+/// A packing made elsewhere -> the vertex next to it, as a state. 0: certified; 1: there is none with the contacts of
+/// the file; 2: undecided.
+int import(const ImportArguments& arguments);
+
+struct ExportArguments {
+    Common common;
+    std::string input, output, format;
+};
+/// A state, or the states of a run, as other programs read them.
+int export_states(const ExportArguments& arguments);
+
 struct GenericityArguments {
     Common common;
     std::string file, csv;

@@ -72,6 +72,8 @@ struct Program {
     VerifyArguments verify_arguments;
     PlateauArguments plateau_arguments;
     GenericityArguments genericity_arguments;
+    ImportArguments import_arguments;
+    ExportArguments export_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -89,6 +91,8 @@ struct Program {
         add_plan(line);
         add_report(line);
         add_convert(line);
+        add_import(line);
+        add_export(line);
         add_verify(line);
         add_plateau(line);
         add_genericity(line);
@@ -316,6 +320,75 @@ struct Program {
         command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");
+    }
+
+    void add_import(const std::string& line) {
+        ImportArguments& a = import_arguments;
+        CLI::App& command = add(
+            "import", "a packing of another program -> the equilibrium next to it, as a state",
+            "Reads what plateau reads. Soft grains overlap: linear programmes and Newton's method end at the vertex "
+            "downhill from the file,\n"
+            "under the stresses given, and certify proves it. Its force-carrying contacts must be those of the file: "
+            "where a plateau of\n"
+            "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local. A "
+            "crafted packing (TOML) is\n"
+            "rounded to doubles and keeps its contacts and its load.\n"
+            "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
+            "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
+            "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
+            "'c_1[1],c_1[2],c_2[2]' -o start.json");
+        command.add_option("file", a.file, "packing")->required()->type_name("FILE");
+        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+        CLI::Option* contacts =
+            command
+                .add_option("--contacts", a.contacts,
+                            "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; "
+                            "or a dump of style local with forces (default: plateau)")
+                ->type_name("plateau|nearest|FILE");
+        command.add_option("--contact-columns", a.contact_columns, "columns of that dump: two ids and the force")
+            ->type_name("I,J,FORCE");
+        command.add_option("--threshold", a.threshold, "pairs with this gap or less are the contacts")
+            ->excludes(contacts);
+        command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1)")->type_name("S1,S2");
+        command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
+            ->check(CLI::IsMember({"nominal", "true"}));
+        command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)");
+        command.add_option("--jitter", a.jitter, "radii R_i (1 + jitter rho_i), rho_i in [-1, 1) at random")
+            ->check(CLI::Range(0.0, 0.1));
+        command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
+            ->type_name("FILE.csv");
+        add_foreign(command, a.foreign);
+        add_threads(command, a.common);
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
+            todo = [&a] { return import(a); };
+        });
+    }
+
+    void add_export(const std::string& line) {
+        ExportArguments& a = export_arguments;
+        CLI::App& command = add(
+            "export", "a state, or the states of a run, for other programs",
+            "LAMMPS data (.data), extended XYZ for OVITO (.xyz), CSV (.csv): disks and box; contacts and load have no "
+            "place there. Of the\n"
+            "folder of a run: XYZ has a frame for each state stored, with the displacement from the first; the others "
+            "the last state.\n"
+            "ParaView files: isostat report --vtk.\n"
+            "Examples: isostat export start.json -o start.data\n          isostat export out -o out.xyz");
+        command.add_option("input", a.input, "state file, vertex text, or folder of a run")
+            ->required()
+            ->type_name("STATE|DIR");
+        command.add_option("-o,--output", a.output, "file to write")->required()->type_name("FILE");
+        command
+            .add_option("--format", a.format, "lammps-data, xyz, csv (default: from the end of the name of the file)")
+            ->check(CLI::IsMember({"lammps-data", "xyz", "csv"}));
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return export_states(a); };
+        });
     }
 
     void add_genericity(const std::string& line) {

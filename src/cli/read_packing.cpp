@@ -90,6 +90,10 @@ ForeignOptions options_of(const ForeignArguments& a) {
 
 } // namespace
 
+std::vector<std::string> parse_list(const std::string& text) {
+    return split(text, ',');
+}
+
 std::array<double, 2> parse_range(const std::string& text, const std::string& option) {
     const auto ends = split(text, ':');
     const auto low = number_in(ends[0]), high = ends.size() == 2 ? number_in(ends[1]) : std::nullopt;
@@ -106,7 +110,8 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const bool own = format == "state" || format == "vertex" || format == "packing";
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
-        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes)};
+        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes),
+                std::move(foreign.ids)};
     }
     if (options.size || options.box || !arguments.walls.empty() || !options.columns.empty() || options.frame ||
         options.not_periodic) {
@@ -117,13 +122,14 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     }
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
-        ReadPacking out{crafted::approximate(crafted.packing), format, {}};
+        ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}};
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;
     }
     ReadPacking out{format == "state" ? parse_state<2>(text, file).state.packing
                                       : parse_vertex_text(text, file).packing,
                     format,
+                    {},
                     {}};
     out.notes.emplace_back("the contact list of the file is not used");
     return out;

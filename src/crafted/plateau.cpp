@@ -167,6 +167,17 @@ class Sequence {
         return order_.threshold_of(items_[static_cast<std::size_t>(m)]);
     }
 
+    [[nodiscard]] std::vector<Contact> backbone_contacts(int m) const {
+        std::vector<Contact> out;
+        for (std::size_t l = 0; l < static_cast<std::size_t>(m); ++l) {
+            if (peeling_.contact_from[l] <= m) {
+                out.push_back(contacts_[l]);
+            }
+        }
+        std::sort(out.begin(), out.end());
+        return out;
+    }
+
     /// One step per list; `thresholds` has one entry per list.
     [[nodiscard]] std::vector<PlateauStep> steps(const std::vector<int>& lists, const std::vector<double>& thresholds) {
         backbone_stress_->at_all(lists);
@@ -345,17 +356,6 @@ class Sequence {
         return rest;
     }
 
-    [[nodiscard]] std::vector<Contact> backbone_contacts(int m) const {
-        std::vector<Contact> out;
-        for (std::size_t l = 0; l < static_cast<std::size_t>(m); ++l) {
-            if (peeling_.contact_from[l] <= m) {
-                out.push_back(contacts_[l]);
-            }
-        }
-        std::sort(out.begin(), out.end());
-        return out;
-    }
-
     /// Maximal runs of ends that `holds` takes.
     template <class Holds> void add_ranges(std::vector<PlateauRange>& out, Holds holds) const {
         for (std::size_t e = 0; e < ends_.size(); ++e) {
@@ -484,6 +484,11 @@ Plateau plateau(const Packing<2>& packing, double first, double last, int rows) 
     out.steps = sequence.steps(lists, thresholds);
     out.ranks_computed = sequence.ranks_computed();
     return out;
+}
+
+std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold) {
+    const Sequence sequence(packing, threshold);
+    return sequence.backbone_contacts(sequence.below(threshold));
 }
 
 } // namespace isostat::crafted

@@ -197,6 +197,7 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
     }
     check_boundaries(raw, source, options);
     out.notes = raw.notes;
+    out.ids = raw.ids;
     if (!text.ends_with('\n')) {
         out.notes.emplace_back("the last line has no end: was the file cut there?");
     }

@@ -190,9 +190,9 @@ void Rows::add(const Line& line, Raw& raw) {
         z_ = z;
     }
     if (columns_.id >= 0) {
-        ids_.emplace_back(
-            line.integer(static_cast<std::size_t>(columns_.id), fmt::format("id of disk {}", disk), 0, 1L << 62),
-            line.number());
+        raw.ids.push_back(
+            line.integer(static_cast<std::size_t>(columns_.id), fmt::format("id of disk {}", disk), 0, 1L << 62));
+        ids_.emplace_back(raw.ids.back(), line.number());
     }
     double size = columns_.constant;
     const std::string name = columns_.meaning == SizeMeaning::radius ? "radius" : "diameter";

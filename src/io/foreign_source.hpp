@@ -73,6 +73,7 @@ enum class Boundary { open, periodic, unknown };
 /// What a reader found, before walls and checks.
 struct Raw {
     std::vector<double> x, y, size;
+    std::vector<long> ids; ///< one per disk, or none
     SizeMeaning meaning = SizeMeaning::radius;
     std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};

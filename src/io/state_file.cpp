@@ -5,6 +5,7 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/io/vertex_text.hpp>
 
@@ -212,7 +213,17 @@ template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) 
     if (content[content.find_first_not_of(" \t\r\n")] == '{') {
         return parse_state<Dim>(text, path.string());
     }
-    return {parse_vertex_text(text, path.string()), {}};
+    try {
+        return {parse_vertex_text(text, path.string()), {}};
+    } catch (const Error& error) {
+        const std::string format = recognise_format(text);
+        if (format == "state" || format == "vertex") {
+            throw;
+        }
+        throw Error(error.kind(), fmt::format("{} (neither a state nor a vertex text; isostat import makes a state of "
+                                              "a packing of another program: {}?)",
+                                              error.what(), format));
+    }
 }
 
 template StateFile<2> json::state_from_json<2>(const Field&, const std::string&);

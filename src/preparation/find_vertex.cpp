@@ -62,8 +62,9 @@ template <int Dim> void require_sensible(const Packing<Dim>& start, const Prepar
             ErrorKind::bad_input,
             "start of the linear programmes: expected a box with two fixed and two movable walls and no fixed disk");
     }
-    for (const auto& [name, value] :
-         {std::pair{"stress", options.stress}, {"weight of the infinitesimal loads", options.infinitesimal_weight}}) {
+    for (const auto& [name, value] : {std::pair{"stress", options.stress},
+                                      {"ratio of the stresses", options.ratio},
+                                      {"weight of the infinitesimal loads", options.infinitesimal_weight}}) {
         if (!(value > 0) || !std::isfinite(value)) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("preparation: {} is {}: expected a positive finite number", name, value));
@@ -80,6 +81,7 @@ template <int Dim> class VertexSearch {
         report_.infinitesimal_seed = derived_seed(options.seed, Stream::infinitesimal);
         load_.kind = options.load;
         load_.stress.fill(options.stress);
+        load_.stress[Dim - 1] *= options.ratio;
         load_.infinitesimal = generic_infinitesimal<Dim>(radius_, report_.infinitesimal_seed);
     }
 
@@ -90,7 +92,8 @@ template <int Dim> class VertexSearch {
                                        : packing_.disk_count() > options_.newton_above
                                            ? ProgrammeMethod::interior
                                            : ProgrammeMethod::interior_first;
-        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), method, options_.stop);
+        ContactProgramme<Dim> programme(g, trust_in_radii * scale_.mean_radius(), method, options_.stop,
+                                        options_.ratio);
         double weight = options_.infinitesimal_weight;
         bool divided = false;
         if (large && options_.max_programmes > 0) {

@@ -101,6 +101,10 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     for (std::size_t i = 0; i < options.radii.size(); ++i) {
         require_positive(fmt::format("radius of disk {}", i).c_str(), options.radii[i]);
     }
+    if (options.ratio != 1) {
+        bad(fmt::format("ratio of the stresses is {}: expected 1, the packing is compressed isotropically",
+                        options.ratio));
+    }
     if (!(options.jitter >= 0 && options.jitter < 1)) {
         bad(fmt::format("jitter is {}: expected a number from 0 to below 1", options.jitter));
     }

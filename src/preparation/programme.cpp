@@ -43,8 +43,8 @@ class StopHandler : public ClpEventHandler {
 
 template <int Dim>
 ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
-                                        const std::atomic<bool>* stop)
-    : infinitesimal_(&infinitesimal), trust_(trust), stop_(stop), method_(method),
+                                        const std::atomic<bool>* stop, double ratio)
+    : infinitesimal_(&infinitesimal), trust_(trust), ratio_(ratio), stop_(stop), method_(method),
       inside_(method != ProgrammeMethod::simplex) {}
 
 template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
@@ -78,7 +78,7 @@ BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const R
     for (int a = 0; a < Dim; ++a) {
         const std::size_t k = disks + static_cast<std::size_t>(a);
         programme.bound[k] *= wall_trust;
-        programme.cost[k] = objective_scale;
+        programme.cost[k] = a == Dim - 1 ? objective_scale * ratio_ : objective_scale;
         for (int b = 0; b < Dim; ++b) {
             programme.cost[k] *= b == a ? 1.0 : packing.length(b);
         }

@@ -42,12 +42,13 @@ struct ProgrammeStep {
 /// multipliers eps g of rattlers.
 template <int Dim> class ContactProgramme {
   public:
-    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step.
+    /// `infinitesimal`: Dim*n loads g. `trust`: largest displacement of a disk along an axis in one step. `ratio`: of
+    /// the stress on the last axis to that on the others.
     ContactProgramme(const std::vector<double>& infinitesimal, double trust, ProgrammeMethod method,
-                     const std::atomic<bool>* stop);
+                     const std::atomic<bool>* stop, double ratio = 1);
 
-    /// Minimises sum_a F_a dL_a - eps g.dx, F_a = product of the other lengths, over displacements within the trust
-    /// bounds.
+    /// Minimises sum_a F_a dL_a - eps g.dx, F_a = product of the other lengths (times `ratio` on the last axis), over
+    /// displacements within the trust bounds.
     ///
     /// First call: pairs that overlap are taken as contacts with gap 0 (their overlap stays, the next call removes it)
     /// and as the starting basis: from a relaxed soft packing this basis is wrong in a few places only, and the primal
@@ -85,6 +86,7 @@ template <int Dim> class ContactProgramme {
 
     const std::vector<double>* infinitesimal_;
     double trust_;
+    double ratio_;
     const std::atomic<bool>* stop_;
     ProgrammeMethod method_;
     bool first_ = true;

@@ -4,6 +4,7 @@
 #include "support/scratch.hpp"
 
 #include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>
 
@@ -12,6 +13,7 @@
 namespace {
 
 using namespace isostat;
+using scratch::replaced;
 
 const std::string dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n-0.5 0.5\n"
                          "ITEM: ATOMS id x y radius\n1 0.5 0.5 0.5\n"
@@ -264,6 +266,51 @@ BOOST_AUTO_TEST_CASE(a_first_row_that_is_no_row_of_names_is_a_disk) {
     const ForeignPacking two = read("px py rad" + rest, columns);
     BOOST_TEST(two.packing.radius.size() == 2U);
     BOOST_TEST(says(two, "line 1 (px py rad) is taken for names"));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_written_for_other_programs_is_read_bit_for_bit) {
+    const State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    ForeignOptions options;
+    options.walls = ForeignWalls::box;
+    const auto same = [&](const std::string& text, const char* format) {
+        const ForeignPacking back = parse_foreign(text, "written", options);
+        BOOST_TEST(back.format == format);
+        BOOST_TEST((back.packing.radius == state.packing.radius));
+        BOOST_TEST((back.packing.q == state.packing.q));
+        BOOST_TEST(back.ids.size() == 100U);
+    };
+    same(lammps_data_text(state.packing, "a title\nof two lines"), "lammps-data");
+    same(xyz_text(state.packing, {}), "xyz");
+    same(xyz_text(state.packing, state.packing.q), "xyz");
+    options.box = {0, state.packing.length(0), 0, state.packing.length(1)};
+    same(csv_text(state.packing), "table");
+}
+
+BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
+    const scratch::Folder folder;
+    const std::string head = "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ENTRIES\n";
+    const std::string box = "ITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\nITEM: ENTRIES i j f\n";
+    const std::string first = head + "1\n" + box + "7 9 1\n";
+    const auto pairs = [&](const std::string& text, std::optional<long> frame) {
+        scratch::write(folder / "p.dump", text);
+        return read_local_dump(folder / "p.dump", {"i", "j", "f"}, {9, 8, 7}, frame);
+    };
+    const std::vector<Contact> outer{{ContactKind::disk_disk, 0, 2}},
+        both{{ContactKind::disk_disk, 0, 1}, {ContactKind::disk_disk, 1, 2}};
+    const std::string two = first + head + "4\n" + box + "8 7 2\n7 8 2\n8 9 1e-9\n9 7 0\n";
+    BOOST_TEST((pairs(two, 0) == outer));
+    BOOST_TEST((pairs(two, std::nullopt) == both));
+    const auto refused = [&](const std::string& text, std::optional<long> frame,
+                             const std::vector<std::string>& words) {
+        expect_bad_input([&] { (void)pairs(text, frame); }, words);
+    };
+    refused(two, 2, {"after 2 frames", "frame 2"});
+    refused(replaced(first, "7 9 1", "7 6 1"), 0, {"p.dump:10:", "j", "'6'", "id of a disk"});
+    refused(replaced(first, "7 9 1", "7 7 1"), 0, {"p.dump:10:", "another disk"});
+    refused(replaced(first, "7 9 1", "7 9 nan"), 0, {"p.dump:10:", "f", "nan"});
+    refused(replaced(first, "i j f", "i j g"), 0, {"p.dump:9:", "no column 'f'", "i, j, g"});
+    refused(replaced(first, "ENTRIES\n1", "ENTRIES\n2"), 0, {"p.dump", "entry 2 of 2"});
+    refused(replaced(first, "ENTRIES i", "ATOMS i"), 0, {"p.dump:9:", "style local"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -79,4 +79,7 @@ Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds
 /// the ranges. `first` and `last` are always among them.
 Plateau plateau(const Packing<2>& packing, double first, double last, int rows);
 
+/// The contacts that `PlateauStep::backbone` counts at a threshold, sorted.
+std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold);
+
 } // namespace isostat::crafted

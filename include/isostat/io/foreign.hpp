@@ -2,6 +2,7 @@
 /// \file
 /// Packings of disks written by other programs.
 
+#include <isostat/contact/contact.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <array>
@@ -39,8 +40,9 @@ struct ForeignOptions {
 };
 
 struct ForeignPacking {
-    Packing<2> packing; ///< disks in the order of the file; with walls, shifted so that the lower ones are at 0
-    std::string format; ///< a name of `foreign_formats()`
+    Packing<2> packing;    ///< disks in the order of the file; with walls, shifted so that the lower ones are at 0
+    std::string format;    ///< a name of `foreign_formats()`
+    std::vector<long> ids; ///< those of the file, one per disk; none: it has no column of them
     /// What was done to the numbers and what the file left open, one sentence each: which column gave the size, whether
     /// scaled or shifted coordinates were rounded and by how much, boundaries that are not known.
     std::vector<std::string> notes;
@@ -70,6 +72,25 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
 
 /// The same from a file.
 ForeignPacking read_foreign(const std::filesystem::path& path, const ForeignOptions& options);
+
+/// Names of the columns of a LAMMPS dump of style local: two ids and the force between them, positive when it repels.
+struct PairColumns {
+    std::string first, second, force;
+};
+
+/// The pairs of disks with a positive force in a frame (from 0; none: the last) of a dump of style local (`compute
+/// property/local`, `compute pair/local`), sorted, each once. \p ids: of the disks. Throws `Error(bad_input)` with
+/// file, line, value and what was expected: also for columns and ids that are not there.
+std::vector<Contact> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
+                                     const std::vector<long>& ids, std::optional<long> frame);
+
+/// The texts that other programs read, every number in the shortest form that gives the same double back: a LAMMPS
+/// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (Dim*n
+/// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls.
+/// Contacts and loads have no place there.
+std::string lammps_data_text(const Packing<2>& packing, const std::string& title);
+std::string xyz_text(const Packing<2>& packing, const std::vector<double>& displacement);
+std::string csv_text(const Packing<2>& packing);
 
 /// The format of the text, or empty: "lammps-data", ..., and "state", "vertex", "packing" for the formats of this
 /// program (`read_state`, `crafted::read_packing`). From the content only.

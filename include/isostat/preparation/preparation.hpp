@@ -31,7 +31,8 @@ struct PreparationOptions {
     std::vector<double> radii; ///< a given list, in the order of the disks
     double jitter = 0;         ///< `with_jitter`, of drawn radii and of a list
     std::uint64_t seed = 1;    ///< of radii, jitter, positions and infinitesimal loads (derived streams)
-    double stress = 1;         ///< sigma_1 = sigma_2 > 0
+    double stress = 1;         ///< sigma_1 > 0
+    double ratio = 1;          ///< sigma_2 / sigma_1 > 0 of `find_vertex`; `prepare` takes 1 only
     double aspect = 1;         ///< Ly / Lx of the loose box; the final box is free
     LoadKind load = LoadKind::nominal;
 
@@ -101,11 +102,11 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
 /// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls (small
 /// overlaps are allowed).
 ///
-/// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma Ly, F2 = sigma Lx of the current
-/// box, subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step within the trust bounds can bring into
-/// contact. Since |d + dx| >= n.(d + dx), a step never makes an overlap. The contacts are the rows with a multiplier in
-/// the basis (Clp, warm starts); once no trust bound is in the basis there are exactly N_f = 2n + 2 of them, and Newton
-/// solves gaps = 0.
+/// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma_1 Ly, F2 = sigma_2 Lx of the
+/// current box, subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step within the trust bounds can bring
+/// into contact. Since |d + dx| >= n.(d + dx), a step never makes an overlap. The contacts are the rows with a
+/// multiplier in the basis (Clp, warm starts); once no trust bound is in the basis there are exactly N_f = 2n + 2 of
+/// them, and Newton solves gaps = 0.
 ///
 /// The multipliers of Clp say nothing below its tolerances, 1e-9: when Newton or the proofs fail at a converged basis,
 /// exchanges of one contact at a time at the true vertex (gaps and forces in double-double) go on from there, so that
@@ -113,10 +114,10 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
 ///
 /// \post On success: N_f contacts, sorted, from the basis; coordinates on the grid; rank proved for the stored
 /// coordinates; a true vertex within a proved distance; every other gap proved positive there; every force proved
-/// positive, lexicographically in (f0, f1), under stress_1 = stress_2 = options.stress with the *final* lengths as
-/// reference lengths. Any of these that cannot be proved is a failure (`tie`, `undecided`, `not_isostatic`,
-/// `not_converged`), never a state. Uses of `options`: seed, stress, load, stop, progress, infinitesimal_weight,
-/// max_programmes.
+/// positive, lexicographically in (f0, f1), under options.stress on the first axis and options.ratio times that on the
+/// last, with the *final* lengths as reference lengths. Any of these that cannot be proved is a failure (`tie`,
+/// `undecided`, `not_isostatic`, `not_converged`), never a state. Uses of `options`: seed, stress, ratio, load, stop,
+/// progress, infinitesimal_weight, max_programmes.
 template <int Dim>
 Result<State<Dim>> find_vertex(const Packing<Dim>& start, const PreparationOptions& options,
                                PreparationReport<Dim>& report);

@@ -1,0 +1,102 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+namespace isostat::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string format_of(const ExportArguments& a) {
+    if (!a.format.empty()) {
+        return a.format;
+    }
+    const std::string end = fs::path(a.output).extension().string();
+    for (const auto& [extension, format] :
+         {std::pair{".data", "lammps-data"}, {".lmp", "lammps-data"}, {".xyz", "xyz"}, {".csv", "csv"}}) {
+        if (end == extension) {
+            return format;
+        }
+    }
+    throw Error(ErrorKind::usage,
+                fmt::format("--output is '{}': expected a name that ends in .data, .xyz or .csv, or --format{}",
+                            a.output, end == ".vtk" ? " (isostat report --vtk writes ParaView files)" : ""));
+}
+
+/// The stored states of a run in their order, or the one state.
+std::vector<fs::path> states_of(const std::string& input) {
+    if (!fs::is_directory(input)) {
+        return {input};
+    }
+    std::vector<fs::path> files;
+    const fs::path folder = fs::path(input) / "states";
+    if (fs::is_directory(folder)) {
+        for (const auto& entry : fs::directory_iterator(folder)) {
+            const std::string name = entry.path().filename().string();
+            if (name.starts_with("eq_") && name.ends_with(".json")) {
+                files.push_back(entry.path());
+            }
+        }
+    }
+    if (files.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: has no states/eq_*.json: expected the folder of a run, or a state", input));
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::string series(const std::vector<fs::path>& files) {
+    std::string text;
+    std::vector<double> first;
+    for (const fs::path& file : files) {
+        const Packing<2> packing = read_state<2>(file).state.packing;
+        if (first.empty()) {
+            first = packing.q;
+        }
+        std::vector<double> displacement;
+        for (std::size_t k = 0; files.size() > 1 && k < first.size() && k < packing.q.size(); ++k) {
+            displacement.push_back(packing.q[k] - first[k]);
+        }
+        text += xyz_text(packing, displacement);
+    }
+    return text;
+}
+
+} // namespace
+
+int export_states(const ExportArguments& arguments) {
+    const std::string format = format_of(arguments);
+    std::vector<fs::path> files = states_of(arguments.input);
+    std::string text;
+    if (format == "xyz") {
+        text = series(files);
+    } else {
+        files = {files.back()};
+        const Packing<2> packing = read_state<2>(files.front()).state.packing;
+        text =
+            format == "csv"
+                ? csv_text(packing)
+                : lammps_data_text(packing, fmt::format("{} of {}", files.front().filename().string(), program_name()));
+    }
+    write_atomically(arguments.output, text);
+    if (arguments.common.json) {
+        print_json(Json{{"file", arguments.output}, {"format", format}, {"states", files.size()}});
+    } else {
+        fmt::print("{}: {}, {} state{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s");
+    }
+    return done;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,207 @@
+// isostat import and isostat export, as a user runs them.
+#include "cli/program.hpp"
+
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+using namespace program;
+using namespace isostat;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
+
+/// The sample of 100 disks as soft grains would leave it: every length but the radii is shorter by this part.
+struct Soft {
+    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    Packing<2> packing = state.packing;
+    std::string box;
+
+    explicit Soft(double part) {
+        for (double& x : packing.q) {
+            x *= 1 - part;
+        }
+        box = fmt::format("0:{},0:{}", packing.length(0), packing.length(1));
+    }
+    /// Rows with ids 1, 2, ..., the last disk first.
+    [[nodiscard]] std::string table() const {
+        std::string text = "id,x,y,radius\n";
+        for (std::size_t i = packing.radius.size(); i-- > 0;) {
+            text += fmt::format("{},{},{},{}\n", i + 1, packing.q[2 * i], packing.q[2 * i + 1], packing.radius[i]);
+        }
+        return text;
+    }
+    /// The contacts as a dump of style local, with a force 0 where disks only nearly touch; `left_out` of them.
+    [[nodiscard]] std::string forces(std::size_t left_out) const {
+        std::string rows;
+        int count = 0;
+        for (const Contact& c : state.contacts) {
+            if (c.kind == ContactKind::disk_disk && left_out-- != 0) {
+                rows += fmt::format("{} {} {} 0.5\n", ++count, c.j + 1, c.i + 1);
+            }
+        }
+        return fmt::format("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS ff ff pp\n0 1\n0 1\n0 1\n"
+                           "ITEM: ENTRIES index c_i[1] c_i[2] c_f\n{}{} 1 50 0\n",
+                           count + 1, rows, count + 1);
+    }
+};
+
+/// Runs import on a text; nothing is written unless the status is 0.
+Outcome import_text(const scratch::Folder& folder, const std::string& text, std::vector<std::string> options) {
+    scratch::write(folder / "p.txt", text);
+    options.insert(options.begin(), {"import", (folder / "p.txt").string(), "-o", (folder / "s.json").string()});
+    fs::remove(folder / "s.json");
+    Outcome outcome = run(options);
+    BOOST_TEST(fs::exists(folder / "s.json") == (outcome.status == 0));
+    BOOST_TEST(!fs::exists(folder / "s.json.part"));
+    return outcome;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli_import)
+
+BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
+    for (const double part : {1e-12, 1e-6, 1e-4}) {
+        BOOST_TEST_CONTEXT("overlap " << part) {
+            const scratch::Folder folder;
+            const Soft soft(part);
+            const std::string moved = (folder / "moved.csv").string();
+            const Outcome outcome = import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved});
+            expect(outcome, 0);
+            const json answer = json::parse(outcome.out);
+            BOOST_TEST(answer.at("verdict") == "proved");
+            BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
+            const double backbone = answer.at("moved").at("backbone").get<double>();
+            BOOST_TEST(backbone < 25 * part + 1e-11);
+            BOOST_TEST(backbone > 5 * part);
+            const std::string rows = scratch::read(moved);
+            BOOST_TEST(std::count(rows.begin(), rows.end(), '\n') == 101);
+            // The vertex is that of the sample: its file has the disks in the opposite order.
+            const Packing<2> found = read_state<2>(folder / "s.json").state.packing;
+            for (std::size_t a = 0; a < 2; ++a) {
+                BOOST_TEST(std::abs(found.length(static_cast<int>(a)) -
+                                    soft.state.packing.length(static_cast<int>(a))) < 1e-11);
+            }
+            expect(run({"certify", (folder / "s.json").string(), "-o", (folder / "c.json").string()}), 0);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(an_imported_state_runs_under_its_load) {
+    const scratch::Folder folder;
+    const Soft soft(1e-6);
+    expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "2,2.01", "--load", "true"}), 0);
+    const State<2> state = read_state<2>(folder / "s.json").state;
+    BOOST_TEST(state.load.stress[0] == 2.0);
+    BOOST_TEST(state.load.stress[1] == 2 * (2.01 / 2));
+    BOOST_TEST((state.load.kind == LoadKind::true_stress));
+    scratch::write(folder / "s.toml", scene_from("s.json", "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+}
+
+BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
+    const scratch::Folder folder;
+    const Soft soft(1e-6);
+    const std::string dump = (folder / "pairs.dump").string();
+    const std::vector<std::string> options{
+        "--box", soft.box, "--contacts", dump, "--contact-columns", "c_i[1],c_i[2],c_f"};
+    scratch::write(dump, soft.forces(1000));
+    const Outcome all = import_text(folder, soft.table(), options);
+    expect(all, 0);
+    BOOST_TEST(contains(all.out, "188 carry a force, those of the file"));
+    scratch::write(dump, soft.forces(100));
+    expect(import_text(folder, soft.table(), options), 1,
+           {"other contacts than the file", "; with ", "--contacts nearest"});
+    scratch::write(dump, scratch::replaced(soft.forces(1000), "1 50 0\n", "1 501 0\n"));
+    expect(import_text(folder, soft.table(), options), 65, {"pairs.dump:", "c_i[2]", "501", "id of a disk"});
+    expect(import_text(folder, soft.table(), {"--box", soft.box, "--contacts", dump, "--contact-columns", "a,b,c"}), 65,
+           {"no column 'a'", "c_i[1]"});
+    expect(import_text(folder, soft.table(), {"--box", soft.box, "--contacts", dump}), 64, {"--contact-columns"});
+}
+
+BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
+    const scratch::Folder folder;
+    const Soft soft(1e-6);
+    expect(import_text(folder, soft.table(), {"--box", "0:20,0:20"}), 65, {"no disk is near the right wall", "--box"});
+    expect(import_text(folder, soft.table(), {"--box", "0:9,0:9"}), 65, {"centre between the walls"});
+    expect(import_text(folder, soft.table(), {}), 65, {"walls", "--box"});
+    const Soft deep(0.2);
+    expect(import_text(folder, deep.table(), {"--box", deep.box}), 65, {"overlap by", "expected at most"});
+    expect(import_text(folder, "x,y\n1,1\n", {"--box", "0:2,0:2"}), 65, {"--radius"});
+    std::string lattice = "x,y,r\n";
+    for (int k = 0; k < 9; ++k) {
+        lattice += fmt::format("{},{},1\n", 1 + 2 * (k % 3), 1 + 2 * (k / 3));
+    }
+    expect(import_text(folder, lattice, {"--box", "0:6,0:6"}), 1, {"isostatic at no threshold", "--contacts nearest"});
+    expect(import_text(folder, lattice, {"--box", "0:6,0:6", "--threshold", "0"}), 1, {"h = 4", "isostatic one"});
+    expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "1"}), 64, {"--stress", "S1,S2"});
+    expect(import_text(folder, soft.table(), {"--box", soft.box, "--walls", "fixed"}), 64, {"--walls", "box"});
+    expect(import_text(folder, state_text(soft.state), {}), 65, {"is a state of this program", "convert"});
+}
+
+BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
+    const scratch::Folder folder;
+    const std::string lattice = "x,y,r\n1,1,1\n3,1,1\n1,3,1\n3,3,1\n";
+    expect(import_text(folder, lattice, {"--box", "0:4,0:4", "--contacts", "nearest", "--jitter", "1e-3"}), 0);
+    const State<2> state = read_state<2>(folder / "s.json").state;
+    BOOST_TEST(state.packing.radius[0] != state.packing.radius[1]);
+    BOOST_TEST(std::abs(state.packing.radius[0] - 1) <= 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "s.json").string();
+    expect(run({"import", packings + "two_disks.toml", "-o", out}), 0);
+    expect(run({"inspect", out}), 0);
+    BOOST_TEST(read_state<2>(out).state.contacts.size() == 6U);
+    fs::remove(out);
+    expect(run({"import", packings + "square_lattice_2.toml", "-o", out}), 1, {"h = 2", "isostatic"});
+    expect(run({"import", packings + "two_disks_past_the_limit.toml", "-o", out}), 1, {"force", "1-bottom"});
+    BOOST_TEST(!fs::exists(out));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
+    const scratch::Folder folder;
+    const std::string from = scratch::data("vertex100.txt"), back = (folder / "back.json").string();
+    const State<2> state = read_state<2>(from).state;
+    const std::string box = fmt::format("0:{},0:{}", state.packing.length(0), state.packing.length(1));
+    for (const std::string end : {"data", "xyz", "csv"}) {
+        BOOST_TEST_CONTEXT(end) {
+            const std::string file = (folder / ("a." + end)).string();
+            expect(run({"export", from, "-o", file}), 0);
+            const Outcome outcome = run({"import", file, "--box", box, "-o", back, "--json"});
+            expect(outcome, 0);
+            BOOST_TEST(json::parse(outcome.out).at("moved").at("backbone").get<double>() < 1e-11);
+            expect(run({"inspect", file}), 65, {"isostat import"});
+        }
+    }
+    expect(run({"export", from, "-o", (folder / "a.vtk").string()}), 64, {"report --vtk"});
+    expect(run({"export", folder.path().string(), "-o", (folder / "b.xyz").string()}), 65, {"states/eq_"});
+}
+
+BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml",
+                   scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
+    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+    expect(run({"export", (folder / "run").string(), "-o", (folder / "run.xyz").string()}), 0);
+    const std::string text = scratch::read(folder / "run.xyz");
+    const std::size_t second = text.find("\n100\n");
+    BOOST_REQUIRE(second != std::string::npos);
+    BOOST_TEST(text.find("\n100\n", second + 1) == std::string::npos);
+    BOOST_TEST(contains(text, ":displacement:R:3"));
+    const Packing<2> last = read_state<2>(folder / "run/states/eq_000002.json").state.packing;
+    ForeignOptions options;
+    options.walls = ForeignWalls::box;
+    const Packing<2> read = read_foreign(folder / "run.xyz", options).packing;
+    BOOST_TEST((read.q == last.q));
+    BOOST_TEST((read.radius == last.radius));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,6 +1,6 @@
 #include "certificate/exact_counting.hpp"
-#include "certificate/pairs.hpp"
 #include "certificate/true_vertex.hpp"
+#include "contact/other_pairs.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/contact/candidates.hpp>

@@ -1,6 +1,7 @@
 // The vertices of a replay and what the rule opens there.
 #include "checker/replay.hpp"
 
+#include "checker/bounds.hpp"
 #include "checker/gaps.hpp"
 #include "checker/strut.hpp"
 
@@ -9,6 +10,9 @@
 namespace isostat::checker {
 
 namespace {
+
+/// Roundings of the quotient that is written as the stress at a limit.
+constexpr double limit_rounding = 0x1p-50;
 
 bool contains(const std::vector<int>& sorted, std::size_t value) {
     return std::binary_search(sorted.begin(), sorted.end(), static_cast<int>(value));
@@ -45,6 +49,14 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
 }
 
 } // namespace
+
+double largest_force(const std::vector<Range>& forces) {
+    double size = 0;
+    for (const Range& force : forces) {
+        size = std::max({size, std::abs(force.lower.get_d()), std::abs(force.upper.get_d())});
+    }
+    return size;
+}
 
 const std::vector<Gap>& Place::gaps() const {
     if (!gaps_) {
@@ -128,6 +140,11 @@ Objections decide(const Place& place, Decision& decision) {
 
 namespace {
 
+/// The largest bound of an end of the supported interval that is accepted.
+double loosest_end(const Place& place, const Bounded& stress) {
+    return force_tolerance * std::max(std::abs(place.stress()), std::abs(stress.value));
+}
+
 /// First-order term of the stress at which the force of a contact vanishes, from its first-order term there.
 Range limit_rate(const Range& first, const Range& slope) {
     return Range(Rational(0)) - first / slope;
@@ -135,7 +152,40 @@ Range limit_rate(const Range& first, const Range& slope) {
 
 } // namespace
 
-Objections check_limit_at(const Place& place, double stress, std::size_t opened, ExactLoad& at_limit) {
+Objections compare(const char* name, const Bounded& said, const Range& found, double loosest) {
+    const auto [value, bound] = said;
+    if (!std::isfinite(value) || !(bound >= 0)) {
+        return Objection{true, fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
+    }
+    if (!(bound <= loosest)) {
+        return Objection{false, fmt::format("{} is {} +- {}: a bound that says too little (at most {:.3g} is accepted)",
+                                            name, value, bound, loosest)};
+    }
+    const Rational lower = Rational(value) - Rational(bound);
+    const Rational upper = Rational(value) + Rational(bound);
+    if (found.lower >= lower && found.upper <= upper) {
+        return {};
+    }
+    return Objection{found.upper < lower || found.lower > upper,
+                     fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
+}
+
+Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction) {
+    const Evidence& e = *place.evidence;
+    const LoadEndClaim claim{false,
+                             {next_below(stress.value - stress.bound), next_above(stress.value + stress.bound)},
+                             place.state->contacts[opened]};
+    std::string text;
+    const Verdict verdict = judge_load_end(e, claim, direction, text);
+    if (verdict != Verdict::proved) {
+        return Objection{verdict == Verdict::refuted,
+                         fmt::format("the stress is {} +- {}, found {}", stress.value, stress.bound, text)};
+    }
+    const Range found = Range(Rational(place.stress())) - e.forces[opened] / e.slopes()[opened];
+    return compare("the stress", stress, found, loosest_end(place, stress));
+}
+
+Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
     const Range& slope = e.slopes()[opened];
     if (slope.has_zero()) {
@@ -143,10 +193,9 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
     }
     const Range step = Range(Rational(0)) - e.forces[opened] / slope;
     const Range found = Range(Rational(place.stress())) + place.load.shift + step;
-    const Rational around = Rational(record_tolerance) * Rational(std::max(1.0, std::abs(stress)));
-    if (found.lower > Rational(stress) + around || found.upper < Rational(stress) - around) {
-        return Objection{true, fmt::format("the stress is {}, the force of {} vanishes at {}", stress, e.name(opened),
-                                           shown(found))};
+    if (Objections wrong = compare("the stress", stress, found, loosest_end(place, stress))) {
+        wrong->text += fmt::format(" ({} opens)", e.name(opened));
+        return wrong;
     }
     const int direction = slope.negative() ? 1 : -1;
     if (direction > 0 ? step.negative() : step.positive()) {
@@ -157,7 +206,7 @@ Objections check_limit_at(const Place& place, double stress, std::size_t opened,
         there.push_back(e.forces[l] + step * e.slopes()[l]);
     }
     const std::vector<Range> first = place.first->forces(there);
-    at_limit.shift = found - Range(Rational(stress));
+    at_limit.shift = found - Range(Rational(stress.value));
     at_limit.rate = limit_rate(first[opened], slope);
     std::vector<int> together{static_cast<int>(opened)};
     for (std::size_t l = 0; l < there.size(); ++l) {
@@ -343,11 +392,7 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
     const Evidence& e = *place.evidence;
     const auto held = static_cast<std::size_t>(place.fresh);
     const std::vector<Range>& forces = rattles ? e.infinitesimal() : e.forces;
-    Rational largest = 0;
-    for (const Range& force : forces) {
-        largest = std::max<Rational>(largest, std::max<Rational>(abs(force.lower), abs(force.upper)));
-    }
-    const Rational room = Rational(turn_tolerance) * largest;
+    const Rational room = Rational(turn_tolerance) * Rational(largest_force(forces));
     if (forces[held].lower > room || forces[held].upper < -room) {
         return Objection{true,
                          fmt::format("the power of the load does not vanish where {} is held: its multiplier is in "
@@ -368,24 +413,19 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
     return {};
 }
 
-Objections check_limit(const Place& place, const EventRecord& event, std::size_t opened, ExactLoad& at_limit) {
+Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
+                       ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
-    if (place.first) {
-        if (std::abs(event.force) > record_tolerance) {
-            return Objection{true, fmt::format("the force at a limit is {}, not 0", event.force)};
-        }
-        return check_limit_at(place, event.stress, opened, at_limit);
-    }
-    const double around = record_tolerance * std::max(1.0, std::abs(event.stress));
-    const LoadEndClaim claim{false, {event.stress - around, event.stress + around}, place.state->contacts[opened]};
-    std::string text;
-    const int direction = event.stress > place.stress() ? 1 : -1;
-    const Verdict verdict = judge_load_end(e, claim, direction, text);
-    if (verdict != Verdict::proved) {
-        return Objection{verdict == Verdict::refuted, fmt::format("limit of the load at {}", text)};
-    }
-    if (std::abs(event.force) > record_tolerance) {
+    if (event.force != 0) {
         return Objection{true, fmt::format("the force at a limit is {}, not 0", event.force)};
+    }
+    // The row says the same with the digits of an earlier rung.
+    const Bounded limit{event.stress, bound + limit_rounding * std::abs(event.stress)};
+    if (place.first) {
+        return check_limit_at(place, limit, opened, at_limit);
+    }
+    if (Objections wrong = check_load_end(place, limit, opened, event.stress > place.stress() ? 1 : -1)) {
+        return wrong;
     }
     // Forces that vanish together: the infinitesimal loads decide which one comes first.
     const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes()[opened];
@@ -455,11 +495,9 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     if (!contains(decision.candidates, opened)) {
         return Objection{true, fmt::format("{} opens, but its force is in {}", e.name(opened), shown(chosen))};
     }
-    Rational largest = 0;
     for (const int l : decision.candidates) {
         const auto other = static_cast<std::size_t>(l);
         const Range& force = forces[other];
-        largest = std::max<Rational>(largest, std::max<Rational>(-force.lower, force.upper));
         if (other == opened) {
             continue;
         }
@@ -486,7 +524,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
         }
     }
     const double difference = std::abs(event.force - chosen.lower.get_d());
-    if (!(difference <= 100 * record_tolerance * std::max(1.0, largest.get_d()))) {
+    if (!(difference <= (event.estimated ? 100 : 1) * record_tolerance * largest_force(forces))) {
         return Objection{true,
                          fmt::format("the force of {} is {}, found in {}", e.name(opened), event.force, shown(chosen))};
     }

@@ -19,8 +19,11 @@ struct Objection {
 };
 using Objections = std::optional<Objection>;
 
-/// Records hold numbers that were computed in double: they are compared to this relative size.
+/// Records hold numbers that were computed in double: those without a bound are compared to this relative size, and no
+/// bound of a length, a strain or the potential may be larger.
 inline constexpr double record_tolerance = 1e-9;
+/// The same for bounds of forces and of ends of intervals, which are what the structure is conditioned to.
+inline constexpr double force_tolerance = 1e-3;
 /// A power turn is located in double: the power there, and how fast the coordinate held is, are compared to this.
 inline constexpr double turn_tolerance = 1e-6;
 
@@ -30,6 +33,18 @@ struct ExactLoad {
     Range shift{Rational(0)};
     Range rate{Rational(0)};
 };
+
+/// A number of a record with its bound beside it.
+struct Bounded {
+    double value = 0;
+    double bound = 0;
+};
+
+/// The number found lies within the bound; undecided when the bound is above `loosest`.
+Objections compare(const char* name, const Bounded& said, const Range& found, double loosest);
+
+/// The largest magnitude.
+double largest_force(const std::vector<Range>& forces);
 
 /// A vertex at a load. The state stays where it is: the evidence refers to it. Forces are those at the exact load.
 struct Place {
@@ -71,10 +86,14 @@ struct Decision {
 };
 Objections decide(const Place& place, Decision& decision);
 
-/// The opening of an arc: `opened` is its position in the contact list.
-Objections check_limit(const Place& place, const EventRecord& event, std::size_t opened, ExactLoad& at_limit);
-/// The same for an end of the supported interval of a run that settles ties at first order.
-Objections check_limit_at(const Place& place, double stress, std::size_t opened, ExactLoad& at_limit);
+/// The opening of an arc: `opened` is its position in the contact list, `bound` that of the end of the interval in the
+/// row of the equilibrium.
+Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
+                       ExactLoad& at_limit);
+/// An end of the supported interval, at which that contact opens.
+Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction);
+/// The same in a run that settles ties at first order.
+Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit);
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule);
 
 /// No overlap at the end of an arc, the potential fell along it, and the record's strain, work and power are those.

@@ -10,7 +10,7 @@ namespace isostat::checker {
 
 namespace {
 
-/// Strains are differences of lengths that are known to a few units in the last place: compared to 1e-12.
+/// Of a strain whose record has no bound: a difference of lengths that are known to a few units in the last place.
 constexpr double strain_size = 1e-3;
 /// In both columns of a contact that there is not.
 constexpr double no_contact = -9;
@@ -24,11 +24,22 @@ Objections compare(const char* name, double recorded, const Range& found, double
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, shown(found))};
 }
 
+/// A column with its column `_bound`.
+Objections compare(const char* name, const EquilibriumLine& line, const Range& found, double size) {
+    return compare(name, Bounded{line.at(name), line.bound(name)}, found, record_tolerance * size);
+}
+
 Objections compare(const char* name, int recorded, int found) {
     if (recorded == found) {
         return {};
     }
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, found)};
+}
+
+/// 0 without a length of reference.
+Range strain_of(const Place& place, int axis) {
+    const Range reference{Rational(place.state->load.reference_length[static_cast<std::size_t>(axis)])};
+    return reference.positive() ? (reference - place.length(axis)) / reference : Range(Rational(0));
 }
 
 /// Work of a load between two vertices.
@@ -44,14 +55,6 @@ Range work(const Place& from, const Place& to, const Forces& load, double& size)
         size += std::abs(load[j].lower.get_d() * to.coordinate(k).lower.get_d());
     }
     return sum;
-}
-
-double largest(const std::vector<Range>& forces) {
-    double size = 0;
-    for (const Range& force : forces) {
-        size = std::max({size, std::abs(force.lower.get_d()), std::abs(force.upper.get_d())});
-    }
-    return size;
 }
 
 int rattlers(const Place& place) {
@@ -74,16 +77,14 @@ int rattlers(const Place& place) {
 Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
     const std::vector<Gap>& near = place.gaps();
     const auto pair = contact_of_columns(line.at("min_gap_i"), line.at("min_gap_j"), place.state->packing);
-    const bool none = !pair && line.at("min_gap_i") == line.at("min_gap_j");
-    if (none && std::isinf(line.at("min_gap"))) {
-        return {}; // a run looks at near pairs only, and there was none
-    }
+    const bool none = line.at("min_gap_i") == no_contact && line.at("min_gap_j") == no_contact;
     if (near.empty()) {
-        return none ? Objections() : Objections(Objection{true, "min_gap is said to be of a pair, but there is none"});
+        const bool infinite = std::isinf(line.at("min_gap")) && line.bound("min_gap") == 0;
+        return none && infinite ? Objections() : Objection{true, "min_gap is said to be of a pair, but there is none"};
     }
     for (const Gap& gap : near) {
         if (pair && gap.pair == *pair) {
-            return compare("min_gap", line.at("min_gap"), gap.value, place.state->packing.max_radius());
+            return compare("min_gap", line, gap.value, place.state->packing.max_radius());
         }
     }
     return Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
@@ -100,10 +101,12 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
         }
     }
     if (!smallest) {
-        return {};
+        const bool none = std::isinf(line.at("min_force")) && line.at("min_force_i") == no_contact;
+        return none ? Objections() : Objection{true, "min_force is said of a contact, but none carries a force"};
     }
-    const double size = 100 * largest(e.forces);
-    if (Objections wrong = compare("min_force", line.at("min_force"), e.forces[*smallest], size)) {
+    const Bounded said{line.at("min_force"), line.at("force_bound")};
+    const double loosest = force_tolerance * largest_force(e.forces);
+    if (Objections wrong = compare("min_force", said, e.forces[*smallest], loosest)) {
         return wrong;
     }
     const auto named = contact_of_columns(line.at("min_force_i"), line.at("min_force_j"), place.state->packing);
@@ -112,50 +115,52 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
     if (at == contacts.end()) {
         return Objection{true, "min_force is said to be of what is no contact"};
     }
-    return compare("min_force", line.at("min_force"), e.forces[static_cast<std::size_t>(at - contacts.begin())], size);
+    return compare("min_force", said, e.forces[static_cast<std::size_t>(at - contacts.begin())], loosest);
 }
 
-Objections check_load_end(const Place& place, const EquilibriumLine& line, bool high) {
-    const double stress = line.at(high ? "sigma2_high" : "sigma2_low");
+Objections check_interval(const Place& place, const EquilibriumLine& line, bool high) {
+    const char* name = high ? "sigma2_high" : "sigma2_low";
+    const Bounded stress{line.at(name), line.bound(name)};
     const auto opens = contact_of_columns(line.at(high ? "opens_high_i" : "opens_low_i"),
                                           line.at(high ? "opens_high_j" : "opens_low_j"), place.state->packing);
     const bool named = line.at(high ? "opens_high_i" : "opens_low_i") != no_contact ||
                        line.at(high ? "opens_high_j" : "opens_low_j") != no_contact;
-    if (std::isfinite(stress) != opens.has_value() || (!opens && named)) {
+    if (std::isfinite(stress.value) != opens.has_value() || (!opens && named)) {
         return Objection{true, "an end of the supported interval has a contact exactly when it is bounded"};
     }
-    if (opens && place.first) {
-        const auto& contacts = place.state->contacts;
-        const auto at = std::find(contacts.begin(), contacts.end(), *opens);
-        if (at == contacts.end()) {
-            return Objection{true,
-                             fmt::format("{} ends the supported interval, but is no contact", to_string<2>(*opens))};
-        }
-        ExactLoad unused;
-        return check_limit_at(place, stress, static_cast<std::size_t>(at - contacts.begin()), unused);
+    const int direction = high ? 1 : -1;
+    if (!opens) {
+        std::string text;
+        const Verdict verdict = judge_load_end(*place.evidence, {true, {}, {}}, direction, text);
+        const bool infinite = stress.value == direction * std::numeric_limits<double>::infinity() && stress.bound == 0;
+        return verdict == Verdict::proved && infinite
+                   ? Objections()
+                   : Objection{!infinite || verdict == Verdict::refuted,
+                               fmt::format("{} = {} +- {}: found {}", name, stress.value, stress.bound, text)};
     }
-    LoadEndClaim claim{true, {}, {}};
-    if (opens) {
-        const double around = record_tolerance * std::max(1.0, std::abs(stress));
-        claim = {false, {stress - around, stress + around}, *opens};
+    const auto& contacts = place.state->contacts;
+    const auto at = std::find(contacts.begin(), contacts.end(), *opens);
+    if (at == contacts.end()) {
+        return Objection{true, fmt::format("{} ends the supported interval, but is no contact", to_string<2>(*opens))};
     }
-    std::string text;
-    const Verdict verdict = judge_load_end(*place.evidence, claim, high ? 1 : -1, text);
-    if (verdict == Verdict::proved) {
-        return {};
+    const auto opened = static_cast<std::size_t>(at - contacts.begin());
+    ExactLoad unused;
+    Objections wrong =
+        place.first ? check_limit_at(place, stress, opened, unused) : check_load_end(place, stress, opened, direction);
+    if (wrong) {
+        wrong->text = fmt::format("{}: {}", name, wrong->text);
     }
-    return Objection{verdict == Verdict::refuted,
-                     fmt::format("{} = {}: found {}", high ? "sigma2_high" : "sigma2_low", stress, text)};
+    return wrong;
 }
 
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     const Load<2>& load = to.state->load;
-    const auto axis = static_cast<std::size_t>(load.loaded_axis);
-    const Rational reference(load.reference_length[axis]);
-    const Range strain = (Range(reference) - to.length(load.loaded_axis)) / Range(reference);
-    if (Objections wrong = compare("eps2", event.strain, strain, strain_size)) {
+    const Range strain = strain_of(to, load.loaded_axis);
+    if (Objections wrong = std::isnan(event.strain_bound)
+                               ? compare("eps2", event.strain, strain, strain_size)
+                               : compare("eps2", Bounded{event.strain, event.strain_bound}, strain, record_tolerance)) {
         return wrong;
     }
     for (const Gap& gap : to.gaps()) {
@@ -178,7 +183,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     const bool stays =
         std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
     if (event.power_turn) {
-        const double room = turn_tolerance * std::max(1e-300, largest(to.evidence->forces));
+        const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces));
         if (!(std::abs(event.power) <= room)) {
             return Objection{true, fmt::format("the power is {} at a power turn: expected 0", event.power)};
         }
@@ -195,7 +200,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
             return Objection{power.negative(),
                              fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
         }
-        Objections wrong = compare("power", event.power, power, 100 * largest(forces));
+        Objections wrong = compare("power", event.power, power, 100 * largest_force(forces));
         if (wrong && !event.estimated) {
             return wrong;
         }
@@ -252,10 +257,6 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     }
     const auto loaded = static_cast<std::size_t>(load.loaded_axis);
     const std::size_t other = 1 - loaded;
-    const auto strain = [&](std::size_t a) {
-        const Range reference{Rational(load.reference_length[a])};
-        return (reference - place.length(static_cast<int>(a))) / reference;
-    };
     Range potential(Rational(0));
     double size = 0;
     for (std::size_t j = 0; j < e.finite_load.size(); ++j) {
@@ -267,19 +268,24 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     }
     const double box = std::max(place.state->packing.length(0), place.state->packing.length(1));
     const Range stress{Rational(load.stress[loaded])};
-    const std::vector<std::tuple<const char*, Range, double>> numbers{
-        {"eps1", strain(other), strain_size},
-        {"eps2", strain(loaded), strain_size},
-        {"L1", place.length(static_cast<int>(other)), box},
-        {"L2", place.length(static_cast<int>(loaded)), box},
+    const std::vector<std::tuple<const char*, Range, double>> without_bound{
         {"sigma2", stress, std::abs(load.stress[loaded])},
-        {"ratio", stress / Range(Rational(load.stress[other])), std::abs(load.stress[loaded] / load.stress[other])},
-        {"potential", potential, size}};
-    for (const auto& [name, found, scale] : numbers) {
-        if (load.kind != LoadKind::nominal && name == std::string("potential")) {
-            continue;
-        }
+        {"ratio", stress / Range(Rational(load.stress[other])), std::abs(load.stress[loaded] / load.stress[other])}};
+    for (const auto& [name, found, scale] : without_bound) {
         if (Objections wrong = compare(name, line.at(name), found, scale)) {
+            return wrong;
+        }
+    }
+    std::vector<std::tuple<const char*, Range, double>> with_bound{
+        {"eps1", strain_of(place, static_cast<int>(other)), 1},
+        {"eps2", strain_of(place, load.loaded_axis), 1},
+        {"L1", place.length(static_cast<int>(other)), box},
+        {"L2", place.length(static_cast<int>(loaded)), box}};
+    if (load.kind == LoadKind::nominal) {
+        with_bound.emplace_back("potential", potential, size);
+    }
+    for (const auto& [name, found, scale] : with_bound) {
+        if (Objections wrong = compare(name, line, found, scale)) {
             return wrong;
         }
     }
@@ -293,7 +299,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
         }
     }
     for (const bool high : {false, true}) {
-        if (Objections wrong = check_load_end(place, line, high)) {
+        if (Objections wrong = check_interval(place, line, high)) {
             return wrong;
         }
     }
@@ -369,7 +375,7 @@ Objections check_stored_forces(const Place& place, const std::vector<double>& fo
     if (!forces.empty() && forces.size() != e.forces.size()) {
         return Objection{true, fmt::format("{} forces for {} contacts", forces.size(), e.forces.size())};
     }
-    const double size = 100 * largest(e.forces);
+    const double size = 100 * largest_force(e.forces);
     for (std::size_t l = 0; l < forces.size(); ++l) {
         if (Objections wrong = compare(("the stored force of " + e.name(l)).c_str(), forces[l], e.forces[l], size)) {
             return wrong;

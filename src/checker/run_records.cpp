@@ -51,7 +51,16 @@ const std::vector<const char*> needed_columns{"number",
                                               "min_gap_j",
                                               "proved",
                                               "certified",
-                                              "solid_fraction"};
+                                              "solid_fraction",
+                                              "force_bound",
+                                              "eps1_bound",
+                                              "eps2_bound",
+                                              "L1_bound",
+                                              "L2_bound",
+                                              "sigma2_low_bound",
+                                              "sigma2_high_bound",
+                                              "potential_bound",
+                                              "min_gap_bound"};
 
 std::vector<std::string> split(std::string_view line, char separator) {
     std::vector<std::string> parts;
@@ -94,6 +103,7 @@ EventRecord event_of(const std::string& line, const std::string& where) {
     event.power_turn = field.at("power_turn").boolean();
     event.stress = number("sigma2");
     event.strain = number("eps2");
+    event.strain_bound = number("eps2_bound");
     event.force = number("force");
     event.power = number("power");
     event.work = number("work");

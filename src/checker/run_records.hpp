@@ -29,7 +29,7 @@ struct EventRecord {
     std::string kind;
     std::string opened, closed; ///< names of contacts, as in messages
     bool power_turn = false;
-    double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
+    double stress = 0, strain = 0, strain_bound = 0, force = 0, power = 0, work = 0, displacement = 0;
     bool estimated = false;        ///< level plain: what is said of the power on the way has no bound
     std::optional<double> held_at; ///< of power turns
     std::vector<TieRecord> ties;
@@ -40,6 +40,8 @@ struct EquilibriumLine {
     std::string where;
     std::map<std::string, double> value;
     [[nodiscard]] double at(const char* name) const { return value.at(name); }
+    /// Of the column with that name.
+    [[nodiscard]] double bound(const char* name) const { return value.at(std::string(name) + "_bound"); }
     /// Throws `Error(bad_input)` when it is none.
     [[nodiscard]] int integer(const char* name) const;
 };

@@ -123,6 +123,7 @@ class Replay {
             stopped()) {
             return;
         }
+        before_ = &records_.equilibria[static_cast<std::size_t>(previous)];
         if (here_number_ != previous || !here_.state) {
             here_ = {};
             const std::optional<State<2>>& from = reached_[static_cast<std::size_t>(previous)];
@@ -180,7 +181,8 @@ class Replay {
             return judged(Objection{false, "the record does not say where the coordinate is held"}, event.where);
         }
         ExactLoad load = here_.load;
-        const bool opening = judged(event.kind == "limit" ? check_limit(here_, event, position, load)
+        const double bound = before_->bound(event.stress > here_.stress() ? "sigma2_high" : "sigma2_low");
+        const bool opening = judged(event.kind == "limit" ? check_limit(here_, event, bound, position, load)
                                                           : check_rule(here_, event, position, records_.rule),
                                     event.where);
         if (stopped()) {
@@ -315,6 +317,7 @@ class Replay {
     Foresight foresight_;
     Place here_; ///< empty: lost
     int here_number_ = -1;
+    const EquilibriumLine* before_ = nullptr; ///< where the rearrangement started
     std::size_t event_ = 0;
     std::vector<std::optional<State<2>>> reached_;
     std::vector<ExactLoad> reached_load_;

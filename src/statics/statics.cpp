@@ -197,8 +197,11 @@ template <int Dim> Order Statics<Dim>::compare(const ForceExpression& a, const F
 }
 
 template <int Dim> double Statics<Dim>::bound(double sigma) const {
-    return ladder_.solution(present).bound +
-           (sigma == sigma_ ? 0.0 : std::abs(sigma - sigma_) * ladder_.solution(unit).bound);
+    double largest = 0;
+    for (std::size_t l = 0; l < backbone_.size(); ++l) {
+        largest = std::max(largest, force(ContactId(l), sigma).radius);
+    }
+    return largest;
 }
 
 template <int Dim> double Statics<Dim>::residual(double sigma) const {

@@ -195,9 +195,8 @@ Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, cons
     record.backbone = vertex.statics.backbone_count();
     record.gap_residual = vertex.enclosure.max_gap;
     record.sigma_min_bound = vertex.inverse.sigma_min;
-    if (gaps.ok()) {
-        record.min_gap = gaps.value().smallest;
-        record.min_gap_contact = gaps.value().where;
+    if (gaps.ok() && !gaps.value().negative) {
+        record_smallest_gap(record, vertex, vertex.enclosure, candidates);
     }
     return inspection;
 }

@@ -1,5 +1,7 @@
 #include "trajectory/record.hpp"
 
+#include "contact/other_pairs.hpp"
+
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
@@ -209,6 +211,7 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     record.balance = vertex.statics.residual(sigma);
     record.virtual_power = virtual_power_error(vertex, sigma);
     record.min_force = std::numeric_limits<double>::infinity();
+    record.min_force_contact = {ContactKind::disk_disk, -1, -1};
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const ContactId id(l);
         if (vertex.statics.is_structural_zero(id) || contacts[l].kind == ContactKind::held) {
@@ -224,14 +227,29 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
 }
 
 template <int Dim>
-void record_smallest_gap(Description<Dim>& description, const Packing<Dim>& packing, const Contact& where,
-                         double about) {
-    EquilibriumRecord<Dim>& record = description.record;
-    const bool known = about > 0 && std::isfinite(about); // else a tie, or no pair at all
-    const Enclosure gap = known ? gap_at_vertex(packing, description.vertex, where) : Enclosure{about, 0};
-    record.min_gap = gap.value;
-    record.min_gap_bound = gap.radius;
-    record.min_gap_contact = where;
+void record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex, const VertexEnclosure& at,
+                         const CandidateList<Dim>& candidates) {
+    const auto look = [&](const std::vector<Contact>& pairs) {
+        record.min_gap_contact = {ContactKind::disk_disk, -1, -1};
+        Enclosure smallest{std::numeric_limits<double>::infinity(), 0};
+        for (const Contact& pair : pairs) {
+            const Enclosure h = gap_at_vertex(vertex.packing, at, pair);
+            if (h.value < smallest.value) {
+                smallest = h;
+                record.min_gap_contact = pair;
+            }
+        }
+        return smallest;
+    };
+    const std::vector<Contact>& contacts = vertex.structure.contacts();
+    Enclosure gap = look(without(candidates.contacts, contacts, vertex.packing.disk_count()));
+    // Pairs that are not listed are further apart than that, or all are looked for.
+    if (!candidates.covers(vertex.packing, 0.5 * (gap.value + gap.radius) + 1.001 * at.distance())) {
+        gap = look(other_pairs(vertex.packing, contacts).near);
+    }
+    const bool touches = !gap.positive(); // decided by more digits, or at first order: it is not negative
+    record.min_gap = touches ? 0 : gap.value;
+    record.min_gap_bound = touches ? gap.value + gap.radius : gap.radius;
 }
 
 template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load) {
@@ -250,7 +268,8 @@ template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path
     record.steps = path.steps;
 }
 
-template void record_smallest_gap<2>(Description<2>&, const Packing<2>&, const Contact&, double);
+template void record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
+                                     const CandidateList<2>&);
 template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);

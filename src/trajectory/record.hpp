@@ -23,10 +23,11 @@ template <int Dim> struct Description {
 /// decided, or a check fails.
 template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
 
-/// The smallest gap at the true vertex of a description, into its record: `about` is the gap as it was decided.
+/// The smallest gap of all pairs that are not contacts, at the true vertex `at`, into a record; infinity and i = -1
+/// where there is no such pair. No gap is negative there. `candidates`: saves the search where they tell.
 template <int Dim>
-void record_smallest_gap(Description<Dim>& description, const Packing<Dim>& packing, const Contact& where,
-                         double about);
+void record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex, const VertexEnclosure& at,
+                         const CandidateList<Dim>& candidates);
 
 /// eps_2 at the end of an arc, with its bound.
 template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load);
@@ -41,7 +42,8 @@ template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
 template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load);
 
 extern template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
-extern template void record_smallest_gap<2>(Description<2>&, const Packing<2>&, const Contact&, double);
+extern template void record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
+                                            const CandidateList<2>&);
 extern template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 extern template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 extern template std::vector<int> rattlers<2>(const Vertex<2>&);

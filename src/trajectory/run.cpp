@@ -117,8 +117,6 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         }
         touching = touching || !gaps.value().zero.empty();
     }
-    record_.min_gap = gaps.value().smallest;
-    record_.min_gap_contact = gaps.value().where;
     return resumed() ? resume() : first_equilibrium(gaps.value(), touching);
 }
 
@@ -166,8 +164,6 @@ template <int Dim> std::optional<Failure> Run<Dim>::resume() {
     if (!described.ok()) {
         return located(described.failure(), "start");
     }
-    described.value().record.min_gap = record_.min_gap;
-    described.value().record.min_gap_contact = record_.min_gap_contact;
     record_ = described.value().record;
     limits_ = described.value().limit;
     return std::nullopt;
@@ -322,8 +318,6 @@ std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, const std::st
     Reached<Dim>& there = reached.value();
     next_ = std::move(there.next);
     vertex_ = std::move(there.proof.vertex);
-    record_.min_gap = there.proof.gaps.smallest;
-    record_.min_gap_contact = there.proof.gaps.where;
     state_.load = load;
     state_.packing = vertex_->packing;
     state_.contacts = vertex_->structure.contacts();
@@ -337,7 +331,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     }
     EquilibriumRecord<Dim>& record = described.value().record;
     limits_ = described.value().limit;
-    record_smallest_gap(described.value(), vertex_->packing, record_.min_gap_contact, record_.min_gap);
+    record_smallest_gap(record, *vertex_, described.value().vertex, prover_.candidates());
     if (auto failure = check(record)) {
         return failure;
     }

@@ -139,7 +139,6 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
     }
     const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;
-    gaps.smallest = std::numeric_limits<double>::infinity();
     gaps.margin = std::numeric_limits<double>::infinity();
     std::vector<Contact> doubtful;
     const auto look = [&](const Contact& contact) {
@@ -151,10 +150,6 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             return;
         }
         gaps.margin = std::min(gaps.margin, h.margin());
-        if (h.value < gaps.smallest) {
-            gaps.smallest = h.value;
-            gaps.where = contact;
-        }
     };
     for (std::size_t k = 0; k < is_kept.size(); ++k) {
         if (is_kept[k] == 0) {
@@ -176,21 +171,13 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
         if (order.decided && order.sign != 0) {
             gaps.rung = std::max(gaps.rung, order.rung);
             gaps.margin = std::min(gaps.margin, order.margin);
-            const double h = gap_at_vertex(packing, enclosure, contact).value;
             if (order.sign < 0) {
                 gaps.negative = contact;
-            } else if (h < gaps.smallest) {
-                gaps.smallest = std::max(h, 0.0);
-                gaps.where = contact;
             }
             continue;
         }
         if (ties_are_values && is_tie(order, packing.min_radius())) {
             gaps.zero.emplace_back(contact, order);
-            if (gaps.smallest > 0) {
-                gaps.smallest = 0;
-                gaps.where = contact;
-            }
             continue;
         }
         names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),

@@ -70,8 +70,6 @@ template <int Dim> class Vertex {
 
     /// Signs of the gaps of all candidates at the true vertex.
     struct Gaps {
-        double smallest = 0;
-        Contact where;
         double margin = 0;
         Rung rung = Rung::double_bound;
         std::optional<Contact> negative;             ///< proved to overlap: it closed before

@@ -1,5 +1,6 @@
 // A catalogue of forged runs. Whoever forges a record computes the digests too, so they do not help: each forgery must
 // be refuted or left undecided, but for numbers that proofs/checker.md lists as not checked.
+#include "checker/run_records.hpp"
 #include "support/crafted.hpp"
 #include "support/forger.hpp"
 #include "support/same_sequence.hpp"
@@ -166,7 +167,10 @@ void events(const fs::path& run, std::vector<Forgery>& list) {
                                        [=](Json& e) { e[name] = value * factor; }));
             }
         }
-        for (const char* name : {"eps2_bound", "margin", "displacement", "steps", "decided_by", "certificate"}) {
+        for (const double bound : {0.0, 1.0}) {
+            list.push_back(in_line(file, k, "eps2_bound", [=](Json& e) { e["eps2_bound"] = bound; }));
+        }
+        for (const char* name : {"margin", "displacement", "steps", "decided_by", "certificate"}) {
             list.push_back(in_line(
                 file, k, name, [=](Json& e) { e[name] = e[name].is_number() ? Json(1) : e[name]; }, Expected::listed));
         }
@@ -228,28 +232,25 @@ void events(const fs::path& run, std::vector<Forgery>& list) {
 }
 
 const std::vector<std::string>& unchecked_columns() {
-    static const std::vector<std::string> columns = [] {
-        std::vector<std::string> names{"segment", "balance",    "virtual_power", "gap_residual",
-                                       "margin",  "decided_by", "seconds"};
-        for (const std::string& name : equilibria_columns()) {
-            if (name.ends_with("_bound")) {
-                names.push_back(name);
-            }
-        }
-        return names;
-    }();
+    static const std::vector<std::string> columns{"segment",      "balance", "virtual_power", "sigma_min_bound",
+                                                  "gap_residual", "margin",  "decided_by",    "seconds"};
     return columns;
+}
+
+std::vector<std::string> fields_of(const fs::path& run, std::size_t row) {
+    std::vector<std::string> fields;
+    std::istringstream in(lines_of(run / "equilibria.csv")[row]);
+    for (std::string field; std::getline(in, field, ',');) {
+        fields.push_back(field);
+    }
+    return fields;
 }
 
 /// Writes into one field of equilibria.csv, `otherwise` when it says so already.
 void set_field(const fs::path& run, std::size_t row, std::size_t column, const std::string& value,
                const std::string& otherwise) {
     std::vector<std::string> text = lines_of(run / "equilibria.csv");
-    std::vector<std::string> fields;
-    std::istringstream in(text[row]);
-    for (std::string field; std::getline(in, field, ',');) {
-        fields.push_back(field);
-    }
+    std::vector<std::string> fields = fields_of(run, row);
     fields[column] = fields[column] == value ? otherwise : value;
     text[row].clear();
     for (const std::string& field : fields) {
@@ -418,6 +419,48 @@ BOOST_AUTO_TEST_CASE(forged_records_are_refused_or_undecided_and_whatever_is_not
     BOOST_TEST(forgeries >= 200);
 }
 
+// A bound that is too small is wrong; one so large that nothing follows from it leaves the row undecided.
+BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
+    const scratch::Folder folder;
+    play(crafted::prepared(8, 3), {one(1, 2)}, folder / "eight");
+    const std::vector<std::string>& names = equilibria_columns();
+    const auto column = [&names](const std::string& name) {
+        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    const std::vector<std::string> fields = fields_of(folder / "eight", 2);
+    const std::vector<std::pair<std::string, std::string>> pairs{{"eps1", "eps1_bound"},
+                                                                 {"eps2", "eps2_bound"},
+                                                                 {"L1", "L1_bound"},
+                                                                 {"L2", "L2_bound"},
+                                                                 {"sigma2_low", "sigma2_low_bound"},
+                                                                 {"sigma2_high", "sigma2_high_bound"},
+                                                                 {"potential", "potential_bound"},
+                                                                 {"min_gap", "min_gap_bound"},
+                                                                 {"min_force", "force_bound"}};
+    for (const auto& [value, bound] : pairs) {
+        const auto said = [&, of = column(value), by = column(bound)](const std::string& number,
+                                                                      const std::string& error) {
+            bool refuted = false;
+            const auto alter = [&](const fs::path& run) {
+                set_field(run, 2, of, number, number);
+                set_field(run, 2, by, error, error);
+            };
+            return said_of(folder / "eight", {value, alter}, refuted);
+        };
+        const std::string number = fields[column(value)];
+        const std::string error = fields[column(bound)];
+        const double beside =
+            std::max(std::stod(number) + 2 * std::stod(error), std::nextafter(std::stod(number), 1e9));
+        BOOST_TEST_CONTEXT(value << " is " << number << " +- " << error) {
+            BOOST_TEST(said(number, error) == "proved");
+            BOOST_TEST(said(Json(beside).dump(), error) == "refuted");
+            BOOST_TEST(said(number, "0") == "refuted");
+            BOOST_TEST(said(number, "1e300") == "undecided");
+            BOOST_TEST(said(number, "inf") == "undecided");
+        }
+    }
+}
+
 // The fifth disk is moved into the way of disk 0, in every file: the ends of the arc, the forces and the certificates
 // are those of the run in which it is not there, and overlap is nowhere but on the way.
 BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
@@ -438,9 +481,18 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
         }
     }
     const std::vector<std::string>& names = equilibria_columns();
-    const auto column = static_cast<std::size_t>(std::find(names.begin(), names.end(), "min_gap") - names.begin());
-    const State<2> end = read_state<2>(run / "states/eq_000001.json").state;
-    set_field(run, 2, column, Json(gap(end.packing, crafted::pair(0, 4))).dump(), "");
+    const auto column = [&names](const char* name) {
+        return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    for (const std::size_t row : {1, 2}) {
+        const State<2> state = read_state<2>(run / ("states/eq_00000" + std::to_string(row - 1) + ".json")).state;
+        const std::vector<std::string> fields = fields_of(run, row);
+        const auto nearest = isostat::checker::contact_of_columns(
+            std::stod(fields[column("min_gap_i")]), std::stod(fields[column("min_gap_j")]), state.packing);
+        BOOST_REQUIRE(nearest.has_value());
+        set_field(run, row, column("min_gap"), Json(gap(state.packing, *nearest)).dump(), "");
+        set_field(run, row, column("min_gap_bound"), "1e-12", "");
+    }
     forger::seal(run);
     const RunVerification forged = verify_run(run);
     BOOST_TEST(words(forged) != "proved");

@@ -181,7 +181,12 @@ BOOST_AUTO_TEST_CASE(an_equilibrium_at_another_load_keeps_the_smallest_gap_of_it
         BOOST_TEST(record.min_gap == records.equilibria[0].min_gap);
         BOOST_TEST((record.min_gap_contact == records.equilibria[0].min_gap_contact));
     }
-    BOOST_TEST(records.equilibria[0].min_gap > 0);
+    // Further apart than any list of candidates reaches.
+    BOOST_TEST((records.equilibria[0].min_gap_contact == left(1)));
+    BOOST_TEST(std::abs(records.equilibria[0].min_gap - (2 * std::sqrt(2.0) - 1)) <= 1e-14);
+    const EquilibriumRecord<2> alone = play(one_disk(1, 1), +1, 1).records.equilibria.front();
+    BOOST_TEST(std::isinf(alone.min_gap));
+    BOOST_TEST(alone.min_gap_contact.i == -1);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,4 +1,4 @@
-#include "certificate/pairs.hpp"
+#include "contact/other_pairs.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/contact/contact_set.hpp>
@@ -32,17 +32,18 @@ template <int Dim> std::vector<Contact> all_pairs(const Packing<Dim>& packing) {
 
 } // namespace
 
+std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Contact>& contacts, int disk_count) {
+    const ContactSet kept(contacts, disk_count);
+    std::erase_if(pairs, [&kept](const Contact& pair) { return kept.contains(pair); });
+    return pairs;
+}
+
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    const ContactSet kept(contacts, packing.disk_count());
-    const auto without_contacts = [&kept](std::vector<Contact> pairs) {
-        std::erase_if(pairs, [&kept](const Contact& pair) { return kept.contains(pair); });
-        return pairs;
-    };
     constexpr double fraction = 0.82; // the largest that the theorem allows
     CandidateList<Dim> candidates = find_candidates(packing, fraction);
-    OtherPairs pairs{without_contacts(std::move(candidates.contacts)), candidates.reach};
+    OtherPairs pairs{without(std::move(candidates.contacts), contacts, packing.disk_count()), candidates.reach};
     if (pairs.near.empty()) {
-        pairs = {without_contacts(all_pairs(packing)), std::numeric_limits<double>::infinity()};
+        pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};
     }
     return pairs;
 }

@@ -15,6 +15,9 @@ struct OtherPairs {
         0; ///< every pair that is not in `near` has a gap >= reach in the packing; infinity: none was left out
 };
 
+/// Those of a list that are not contacts.
+std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Contact>& contacts, int disk_count);
+
 /// Candidates of the triangulation (T5, T6) without the contacts; when that leaves none, all pairs (O(n^2), in small
 /// packings only). Pairs that cannot move relative to each other do not count.
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts);

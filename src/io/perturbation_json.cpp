@@ -54,11 +54,10 @@ template <int Dim> Json perturbation_to_json(const RadiusPerturbation& perturbat
 template <int Dim> RadiusPerturbation perturbation_from_json(const Field& field, const Packing<Dim>& packing) {
     field.only({"seed", "rho", "load_zero", "stress_rate", "open", "zero"});
     RadiusPerturbation perturbation;
-    const long seed = field.at("seed").integer();
-    if (seed < 0) {
-        field.at("seed").fail("a seed that is not negative");
+    if (!field.at("seed").value().is_number_unsigned()) {
+        field.at("seed").fail("an integer from 0 to 2^64 - 1");
     }
-    perturbation.seed = static_cast<unsigned long long>(seed);
+    perturbation.seed = field.at("seed").value().get<std::uint64_t>();
     const Field rho = field.at("rho");
     rho.require_size(packing.radius.size(), "one number per disk");
     for (std::size_t i = 0; i < rho.size(); ++i) {

@@ -223,7 +223,8 @@ template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
     // The ends of a straight strut carry one force at a power turn: only a proof orders them.
     const auto chosen = arc.record.power_turn ? std::optional<Opening>()
                                               : here_->choose(options_.rule, bits_for(options_.rule_seed, start_.step));
-    if (!chosen) {
+    // What the errors of doubles leave open takes a proof; here it is made at every end, behind.
+    if (!chosen || (!for_proofs_ && !here_->resolves(*chosen, options_.rule))) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
         arc.last = SteeredEnd<Dim>{here_->packing, structure_->contacts(), hold, candidates_.triangulation};
         return;

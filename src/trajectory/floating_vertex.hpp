@@ -141,6 +141,17 @@ template <int Dim> class FloatingVertex {
         const auto chosen = stage(true, rule, random_bits);
         return chosen ? chosen : stage(false, rule, random_bits);
     }
+    /// Whether the errors of the forces leave that choice as it is; else it takes a proof. What `steepest` compares
+    /// besides signs is not looked at.
+    [[nodiscard]] bool resolves(const Opening& chosen, OpeningRule rule) {
+        const double finite_error = std::max(error_, accuracy * largest(force));
+        if (chosen.infinitesimal) {
+            const std::vector<double>& f = infinitesimal();
+            return signs_are_clear(true, force, finite_error) &&
+                   is_clear(false, f, accuracy * largest(f), chosen.contact.index(), rule);
+        }
+        return is_clear(true, force, finite_error, chosen.contact.index(), rule);
+    }
     /// The force in a contact whose opening at unit rate moves the grains at `velocity` (on coordinates): f + v . (F -
     /// H f), whose error is the product of those of f and v.
     [[nodiscard]] double better_force(std::size_t l, const std::vector<double>& velocity) const {
@@ -192,6 +203,39 @@ template <int Dim> class FloatingVertex {
         }
         for (std::size_t l = 0; l < f.size(); ++l) {
             if (l != chosen && signed_size(structure.contacts()[l], f[l]) <= bar && !is_structural_zero(l)) {
+                return false;
+            }
+        }
+        return true;
+    }
+    static double largest(const std::vector<double>& f) {
+        double size = 0;
+        for (const double x : f) {
+            size = std::max(size, std::abs(x));
+        }
+        return size;
+    }
+    [[nodiscard]] bool signs_are_clear(bool finite, const std::vector<double>& f, double error) const {
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            if (is_structural_zero(l) != finite && !(std::abs(f[l]) > error)) {
+                return false;
+            }
+        }
+        return true;
+    }
+    [[nodiscard]] bool is_clear(bool finite, const std::vector<double>& f, double error, std::size_t chosen,
+                                OpeningRule rule) const {
+        const bool most = rule == OpeningRule::most_negative;
+        if (!(std::abs(f[chosen]) > error) || (!most && !signs_are_clear(finite, f, error))) {
+            return false;
+        }
+        const auto& contacts = structure.contacts();
+        const double size = signed_size(contacts[chosen], f[chosen]);
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            const double difference = signed_size(contacts[l], f[l]) - size;
+            const bool rival = l != chosen && is_structural_zero(l) != finite;
+            if (rival && ((most && difference <= 2 * error) ||
+                          (rule == OpeningRule::least_negative && std::abs(difference) <= 2 * error))) {
                 return false;
             }
         }

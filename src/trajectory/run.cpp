@@ -379,6 +379,12 @@ template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer) {
     require_floating_point();
+    const double stress = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    if (segment.to_stress && segment.direction * (*segment.to_stress - stress) < 0) {
+        return {false, Failure{FailureKind::no_limit, fmt::format("the stress {:.17g} to reach lies behind the load, "
+                                                                  "which is {:.17g}",
+                                                                  *segment.to_stress, stress)}};
+    }
     return Run<Dim>(state, segment, segment_number, {options, counters, observer}).run();
 }
 

@@ -71,10 +71,12 @@ template <int Dim> struct EquilibriumRecord {
     int held = 0;         ///< held coordinates (0 in an ordinary equilibrium)
     double min_force = 0; ///< smallest backbone force
     Contact min_force_contact;
-    double min_gap = 0; ///< smallest gap of a pair that is not a contact, at the true vertex
+    /// Smallest gap of all pairs that are not contacts and can move relative to each other, at the true vertex;
+    /// infinity, and no contact (i = -1), when there is none.
+    double min_gap = 0;
     double min_gap_bound = 0;
     Contact min_gap_contact;
-    double force_bound = 0;     ///< proved bound on the error of every force
+    double force_bound = 0;     ///< proved bound on the error of every force as recorded
     double sigma_min_bound = 0; ///< proved lower bound of the smallest singular value of H
     double balance = 0;         ///< max |H f - F_ext| (double-double residual)
     double virtual_power = 0;   ///< |f.(G v) - F.v| for a recorded random v, relative

@@ -20,7 +20,8 @@ namespace isostat {
 struct Segment {
     int direction = +1;              ///< +1: up, -1: down
     std::optional<int> equilibria;   ///< stop after this many new equilibria
-    std::optional<double> to_stress; ///< stop when sigma_2 has reached this value (inside a supported interval)
+    std::optional<double> to_stress; ///< stop when sigma_2 has reached this value (inside a supported interval), in
+                                     ///< that direction from the state's: else nothing is done, and `no_limit`
     std::optional<int> from;         ///< start from this equilibrium of the run instead of the last one
     std::string name;                ///< for records: "up", "down", "cycle 10"...
 };

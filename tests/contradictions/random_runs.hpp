@@ -1,0 +1,223 @@
+#pragma once
+// Runs drawn at random: the start, the programme, the settings, and where they are killed.
+
+#include "certificate/state_certifier.hpp"
+#include "contradictions/states.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace contradictions {
+
+namespace fs = std::filesystem;
+using namespace isostat;
+
+struct RandomRun {
+    State<2> start;
+    std::vector<Segment> segments;
+    std::vector<double> change; ///< per segment: to which part more of its first load it goes; 0: equilibria count
+    RunOptions options;
+    int states_every = 1;
+    long killed_at = 0; ///< during this arc, and resumed; 0: never
+
+    [[nodiscard]] std::string text() const {
+        static constexpr std::array<const char*, 4> rules{"most_negative", "steepest", "random", "least_negative"};
+        return fmt::format("{} disks, rule {}, level {}, ties {}, {} segments, states_every {}, killed at {}",
+                           start.packing.disk_count(), rules[static_cast<std::size_t>(options.rule)],
+                           to_string(options.certify), options.ties == TiePolicy::stop ? "stop" : "perturb",
+                           segments.size(), states_every, killed_at);
+    }
+};
+
+/// The records of a run as the program handed them out.
+struct Recorded {
+    EquilibriumRecord<2> record;
+    State<2> state;
+    std::vector<double> forces;
+};
+
+namespace detail {
+
+/// Of equal radii, of radii that differ by 1e-2 to 1e-15, or from 1 to 2.
+inline std::vector<double> random_radii(int disks, Random& random) {
+    const bool near = random.integer(2) == 0;
+    const double spread = near ? std::pow(10, -random.real(2, 15)) : 1;
+    std::vector<double> radii;
+    for (int i = 0; i < disks; ++i) {
+        radii.push_back(0.5 * (1 + spread * random.real()));
+    }
+    return radii;
+}
+
+inline std::optional<State<2>> prepared_start(Random& random) {
+    PreparationOptions options;
+    const int most = random.integer(4) == 0 ? 60 : 14;
+    options.disks = 2 + random.integer(most - 1);
+    options.radii = random_radii(options.disks, random);
+    options.seed = random.bits() >> 12;
+    options.load = random.integer(5) == 0 ? LoadKind::true_stress : LoadKind::nominal;
+    PreparationReport<2> report;
+    auto made = prepare<2>(options, report);
+    return made.ok() ? std::optional(made.value()) : std::nullopt;
+}
+
+/// A pile, perhaps with fixed disks and forces on disks: rearrangements may end with "every load is supported".
+inline std::optional<State<2>> piled_start(Random& random) {
+    PileOptions options;
+    options.disks = 2 + random.integer(7);
+    options.fixed = random.integer(3);
+    options.same = random.integer(2) == 0 ? 0.5 : 0;
+    auto state = pile(options, random);
+    if (!state) {
+        return {};
+    }
+    if (random.integer(2) == 0) {
+        return load(state, random, random.integer(2));
+    }
+    for (std::size_t a = 0; a < 2; ++a) {
+        state->load.stress[a] = random.real(0.1, 2);
+    }
+    return state;
+}
+
+/// Up or down by some equilibria, or to a stress inside or beyond what is supported: near ones need no arc.
+inline void add_segment(RandomRun& run, Random& random) {
+    Segment segment;
+    segment.direction = random.integer(3) == 0 ? -1 : 1;
+    run.change.push_back(random.integer(3) == 0 ? std::pow(10, -random.real(0.5, 8)) : 0);
+    if (run.change.back() == 0) {
+        segment.equilibria = 1 + random.integer(4);
+    }
+    run.segments.push_back(segment);
+}
+
+/// Hands the records on, keeps those of equilibria, and stops during an arc.
+class Keeper final : public RunObserver<2> {
+  public:
+    Keeper(RunObserver<2>& next, std::vector<Recorded>& records, std::atomic<bool>& stop, long at)
+        : next_(next), records_(records), stop_(stop), at_(at) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        next_.on_arc(arc);
+        stop_ = stop_ || arc.step == at_;
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& forces) override {
+        records_.push_back({record, state, forces});
+        next_.on_equilibrium(record, state, forces);
+    }
+    [[nodiscard]] std::optional<Failure> objection() const override { return next_.objection(); }
+
+  private:
+    RunObserver<2>& next_;
+    std::vector<Recorded>& records_;
+    std::atomic<bool>& stop_;
+    long at_;
+};
+
+inline RunHeader header_of(const RandomRun& run) {
+    static constexpr std::array<const char*, 4> rules{"most_negative", "steepest", "random", "least_negative"};
+    RunHeader header;
+    header.program = "test";
+    header.settings = fmt::format(R"({{"run":{{"rule":"{}","certify":"{}"}}}})",
+                                  rules[static_cast<std::size_t>(run.options.rule)], to_string(run.options.certify));
+    header.states_every = run.states_every;
+    header.witnesses = run.options.certify == CertifyLevel::arcs;
+    header.checkpoint_seconds = 0;
+    return header;
+}
+
+} // namespace detail
+
+/// Nothing: the draw gave no start that a run takes.
+inline std::optional<RandomRun> random_run(std::uint64_t seed) {
+    Random random(seed);
+    auto start = random.integer(3) == 0 ? detail::piled_start(random) : detail::prepared_start(random);
+    if (!start) {
+        return {};
+    }
+    try {
+        check_start<2>(*start, "start");
+    } catch (const Error&) {
+        return {};
+    }
+    RandomRun run;
+    snap_to_grid(start->packing);
+    run.start = *start;
+    run.options.rule = static_cast<OpeningRule>(random.integer(2) == 0 ? 0 : random.integer(4));
+    run.options.rule_seed = random.bits();
+    run.options.certify = static_cast<CertifyLevel>(random.integer(4));
+    run.options.max_strain = 1e3;
+    run.options.max_arcs = 400;
+    if (run.options.certify != CertifyLevel::plain && random.integer(5) == 0) {
+        run.options.ties = TiePolicy::perturb;
+        run.options.ties_seed = random.bits();
+    }
+    for (int k = 1 + random.integer(3); k > 0; --k) {
+        detail::add_segment(run, random);
+    }
+    run.states_every = 1 + 2 * random.integer(2);
+    run.killed_at = random.integer(4) == 0 ? 1 + random.integer(12) : 0;
+    return run;
+}
+
+/// Plays it into a folder, from its checkpoint if it has one; `stop_at`: killed during that arc (0: not). False:
+/// killed.
+inline bool play(RandomRun& run, const fs::path& folder, long stop_at, std::vector<Recorded>& records) {
+    RunCounters counters;
+    const bool resumes = fs::exists(folder);
+    RunDirectory directory(folder, detail::header_of(run),
+                           resumes ? RunDirectory::Mode::resume : RunDirectory::Mode::fresh, counters);
+    State<2> state = run.start;
+    std::size_t first = 0;
+    int made = 0;
+    if (const auto& point = directory.checkpoint()) {
+        state = point->state;
+        counters = point->counters;
+        first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
+        made = point->segment_done ? 0 : point->made;
+        records.resize(static_cast<std::size_t>(counters.equilibria) + 1);
+    } else {
+        records.clear();
+    }
+    std::atomic<bool> stop{false};
+    RunOptions options = run.options;
+    options.stop = &stop;
+    std::optional<StateCertifier> certifier;
+    if (options.certify >= CertifyLevel::states) {
+        certifier.emplace(folder, "test", counters, directory);
+    }
+    RunObserver<2>& next = certifier ? static_cast<RunObserver<2>&>(*certifier) : directory;
+    detail::Keeper keeper(next, records, stop, stop_at);
+    for (std::size_t s = first; s < run.segments.size(); ++s, made = 0) {
+        if (run.change[s] > 0 && !run.segments[s].to_stress) {
+            run.segments[s].to_stress = state.load.stress[1] * (1 + run.segments[s].direction * run.change[s]);
+        }
+        Segment segment = run.segments[s];
+        directory.begin_segment(static_cast<int>(s), segment, made, state.equilibrium);
+        if (segment.equilibria) {
+            *segment.equilibria -= made;
+        }
+        const SegmentOutcome outcome = run_segment<2>(state, segment, static_cast<int>(s), options, counters, keeper);
+        if (!outcome.completed && outcome.failure->kind == FailureKind::interrupted) {
+            return false; // no farewell: as after a kill
+        }
+        if (!outcome.completed) {
+            const bool open =
+                outcome.failure->kind == FailureKind::tie || outcome.failure->kind == FailureKind::undecided;
+            directory.finish(open ? RunStatus::undecided : RunStatus::failed, outcome.failure->message);
+            return true;
+        }
+    }
+    directory.finish(RunStatus::completed, "");
+    return true;
+}
+
+} // namespace contradictions

@@ -1,0 +1,205 @@
+// Runs drawn at random: `verify` refutes none, a run that was killed and resumed leaves the records of one that was
+// not, and every recorded number lies within its bound of the truth to 200 digits. ISOSTAT_LONG=1: a thousand runs;
+// ISOSTAT_RUNS=N: as many as one likes; ISOSTAT_RUN=N: that one alone; ISOSTAT_FOLDER=...: where its
+// records are left.
+#include "contradictions/random_runs.hpp"
+
+#include <isostat/checker/verify_run.hpp>
+
+#include <Eigen/Dense>
+#include <boost/test/unit_test.hpp>
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+
+using namespace isostat;
+using namespace contradictions;
+
+namespace {
+
+struct Results {
+    long runs = 0, resumed = 0, arcs = 0, equilibria = 0, numbers = 0, wrong = 0;
+    std::map<std::string, long> answers;
+};
+
+/// The numbers of one record against the truth.
+class Comparison {
+  public:
+    Comparison(const Recorded& recorded, const Truth& truth, Results& results)
+        : e_(recorded.record), state_(recorded.state), forces_(recorded.forces), truth_(truth), results_(results) {}
+
+    void all() {
+        geometry();
+        forces();
+        end("sigma2_low", e_.stress_low, e_.stress_low_bound, e_.opens_low, truth_.low);
+        end("sigma2_high", e_.stress_high, e_.stress_high_bound, e_.opens_high, truth_.high);
+        singular_value();
+    }
+    /// Ties are settled at first order: forces, and what follows from them, are not those of the stored load.
+    void geometry() {
+        const Load<2>& load = state_.load;
+        Real potential = 0;
+        for (std::size_t a = 0; a < 2; ++a) {
+            const Real length = truth_.q[2 * state_.packing.radius.size() + a];
+            const Real reference = load.reference_length[a];
+            within("L", e_.length[a], e_.length_bound[a], length);
+            within("eps", e_.strain[a], e_.strain_bound[a], (reference - length) / reference);
+            if (state_.packing.walls.upper[a] == WallKind::movable) {
+                potential += Real(load.stress[a]) * Real(load.reference_length[1 - a]) * length;
+            }
+        }
+        for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
+            potential -= Real(load.disk_force[k]) * truth_.q[k];
+        }
+        if (load.kind == LoadKind::nominal) {
+            within("potential", e_.potential, e_.potential_bound, potential);
+        }
+        const OtherPair* nearest = truth_.nearest();
+        expect((nearest == nullptr) == std::isinf(e_.min_gap), "min_gap is infinite, or should be");
+        if (nearest != nullptr) {
+            within("min_gap", e_.min_gap, e_.min_gap_bound, nearest->gap);
+            within("gap of the pair named", e_.min_gap, e_.min_gap_bound, truth_.gap(e_.min_gap_contact));
+        }
+    }
+
+  private:
+    void expect(bool holds, const std::string& what) {
+        ++results_.numbers;
+        results_.wrong += holds ? 0 : 1;
+        BOOST_TEST(holds, "equilibrium " << e_.number << ": " << what);
+    }
+    void within(const std::string& name, double value, double bound, const Real& truth) {
+        const Real off = abs(truth - Real(value));
+        expect(off <= Real(bound) + negligible,
+               fmt::format("{} is {} +- {}, off by {}", name, value, bound, static_cast<double>(off)));
+    }
+    void forces() {
+        std::optional<std::size_t> smallest;
+        for (std::size_t l = 0; l < forces_.size(); ++l) {
+            within("force of " + to_string<2>(state_.contacts[l]), forces_[l], e_.force_bound, truth_.force[l]);
+            if (sign_of(truth_.force[l], truth_.force_scale) != 0 &&
+                (!smallest || truth_.force[l] < truth_.force[*smallest])) {
+                smallest = l;
+            }
+        }
+        expect(smallest.has_value() == std::isfinite(e_.min_force), "min_force is infinite, or should be");
+        if (smallest && std::isfinite(e_.min_force)) {
+            within("min_force", e_.min_force, e_.force_bound, truth_.force[*smallest]);
+        }
+    }
+    void end(const char* name, double value, double bound, const Contact& opens, const End& real) {
+        expect(real.unbounded == std::isinf(value), std::string(name) + " is infinite, or should be");
+        if (!real.unbounded && std::isfinite(value)) {
+            within(name, value, bound, real.stress);
+            const bool right = std::any_of(real.opens.begin(), real.opens.end(), [&](int l) {
+                return state_.contacts[static_cast<std::size_t>(l)] == opens;
+            });
+            expect(right, std::string(name) + " opens another contact than " + to_string<2>(opens));
+        }
+    }
+    void singular_value() {
+        const Dense h = truth_.contact_matrix();
+        Eigen::MatrixXd m(h.size(), h.size());
+        for (std::size_t i = 0; i < h.size(); ++i) {
+            for (std::size_t j = 0; j < h.size(); ++j) {
+                m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = static_cast<double>(h(i, j));
+            }
+        }
+        const double smallest = Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues().minCoeff();
+        expect(e_.sigma_min_bound <= smallest * (1 + 1e-9) + 1e-14, "sigma_min_bound is above the singular value");
+    }
+
+    const EquilibriumRecord<2>& e_;
+    const State<2>& state_;
+    const std::vector<double>& forces_;
+    const Truth& truth_;
+    Results& results_;
+};
+
+void compare(const RandomRun& run, const std::vector<Recorded>& records, Results& results) {
+    constexpr std::size_t most = 14; // disks: the cost is their third power
+    std::size_t compared = 0;
+    for (const Recorded& recorded : records) {
+        if (recorded.state.packing.radius.size() > most && compared++ > 0) {
+            continue; // the first only
+        }
+        const Truth truth(recorded.state);
+        BOOST_TEST_REQUIRE(truth.known, truth.why);
+        Comparison comparison(recorded, truth, results);
+        run.options.ties == TiePolicy::perturb ? comparison.geometry() : comparison.all();
+        ++results.equilibria;
+    }
+}
+
+void same_records(const fs::path& a, const fs::path& b) {
+    BOOST_TEST(scratch::read(a / "events.jsonl") == scratch::read(b / "events.jsonl"));
+    BOOST_TEST(scratch::without_times(scratch::read(a / "equilibria.csv")) ==
+               scratch::without_times(scratch::read(b / "equilibria.csv")));
+}
+
+void try_one(RandomRun& run, Results& results) {
+    const scratch::Folder own;
+    const char* kept = std::getenv("ISOSTAT_FOLDER");
+    const fs::path folder = kept != nullptr ? fs::path(kept) : own.path();
+    std::vector<Recorded> records;
+    BOOST_REQUIRE(play(run, folder / "whole", 0, records));
+    ++results.runs;
+    if (records.empty()) {
+        ++results.answers["no equilibrium"];
+        return;
+    }
+    compare(run, records, results);
+    const RunVerification answer = verify_run(folder / "whole");
+    results.arcs += answer.arcs;
+    ++results.answers[words(answer)];
+    results.wrong += answer.wrong.empty() ? 0 : 1;
+    BOOST_TEST(answer.wrong == "");
+    if (run.killed_at > 0) {
+        std::vector<Recorded> again;
+        if (!play(run, folder / "killed", run.killed_at, again)) {
+            BOOST_TEST(words(verify_run(folder / "killed")) == "not finished");
+            BOOST_TEST(play(run, folder / "killed", 0, again));
+            ++results.resumed;
+        }
+        same_records(folder / "whole", folder / "killed");
+    }
+}
+
+long number_of(const char* name, long otherwise) {
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::atol(text) : otherwise;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(contradictions_of_runs)
+
+BOOST_AUTO_TEST_CASE(no_run_is_refuted_and_no_recorded_number_is_outside_its_bound) {
+    const auto begin = std::chrono::steady_clock::now();
+    const long asked = number_of("ISOSTAT_RUNS", std::getenv("ISOSTAT_LONG") != nullptr ? 1000 : 40);
+    const long only = number_of("ISOSTAT_RUN", -1);
+    constexpr std::uint64_t seed = 2100;
+    Results results;
+    for (long k = std::max(only, 0L); results.runs < (only < 0 ? asked : 1); ++k) {
+        auto run = random_run(seed + 1'000'003ULL * static_cast<std::uint64_t>(k));
+        if (!run) {
+            continue;
+        }
+        BOOST_TEST_CONTEXT("run " << k << ": " << run->text()) {
+            try_one(*run, results);
+        }
+    }
+    std::cout << "seed " << seed << ": " << results.runs << " runs, " << results.resumed << " killed and resumed, "
+              << results.arcs << " arcs, " << results.equilibria << " equilibria with " << results.numbers
+              << " numbers compared; " << results.wrong << " wrong; verify:";
+    for (const auto& [answer, count] : results.answers) {
+        std::cout << " " << answer << " " << count << ",";
+    }
+    std::cout << " " << std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() << " s\n";
+    BOOST_TEST(results.wrong == 0);
+    BOOST_TEST((only >= 0 || results.numbers > 10 * results.runs));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -170,6 +170,21 @@ Objections compare(const char* name, const Bounded& said, const Range& found, do
                      fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
 }
 
+Objections compare(const char* name, const Bounded& said, const Range& found, double loosest, const EventRecord& event,
+                   double size) {
+    if (!std::isnan(said.bound)) {
+        return compare(name, said, found, loosest);
+    }
+    if (!event.estimated) {
+        return Objection{false, fmt::format("{} is {}, without a bound", name, said.value)};
+    }
+    Objections off = compare(name, {said.value, record_tolerance * size}, found, record_tolerance * size);
+    if (off) {
+        off->wrong = false;
+    }
+    return off;
+}
+
 Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction) {
     const Evidence& e = *place.evidence;
     const LoadEndClaim claim{false,
@@ -229,10 +244,10 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
             continue; // it grows from a force that is not negative
         }
         const Range later = (limit_rate(first[l], e.slopes()[l]) - at_limit.rate) * Range(Rational(direction));
-        if (later.negative()) {
-            return Objection{true,
-                             fmt::format("the forces of {} and {} vanish at one load, and that of {} first: by {} "
-                                         "at first order",
+        if (later.negative()) { // a run has more digits to tell the two loads apart
+            return Objection{false,
+                             fmt::format("the forces of {} and {} vanish at one load as far as is seen, and that of {} "
+                                         "first: by {} at first order",
                                          e.name(l), e.name(opened), e.name(l), shown(later))};
         }
         if (!later.positive()) {
@@ -416,11 +431,13 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
 Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
                        ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
-    if (event.force != 0) {
-        return Objection{true, fmt::format("the force at a limit is {}, not 0", event.force)};
+    if (event.force != 0 || !(event.force_bound == 0 || event.estimated)) {
+        return Objection{true,
+                         fmt::format("the force at a limit is {} +- {}, not 0 +- 0", event.force, event.force_bound)};
     }
     // The row says the same with the digits of an earlier rung.
-    const Bounded limit{event.stress, bound + limit_rounding * std::abs(event.stress)};
+    const double size = std::abs(event.stress) + std::abs(place.stress());
+    const Bounded limit{event.stress, bound + limit_rounding * size};
     if (place.first) {
         return check_limit_at(place, limit, opened, at_limit);
     }
@@ -455,7 +472,8 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
 namespace {
 
 /// Order of two contacts by what the rule compares: -1 when `a` has the smaller key, 0 when it is not known.
-int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b) {
+/// `at_first_order`: the finite forces did not tell.
+int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b, bool& at_first_order) {
     const Evidence& e = *place.evidence;
     const auto key = [&](std::size_t l, bool first) {
         const Range& force = finite ? e.forces[l] : e.infinitesimal()[l];
@@ -464,7 +482,8 @@ int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b) 
         return flipped ? Range(Rational(0)) - value : value;
     };
     Range difference = key(a, false) - key(b, false);
-    if (difference.has_zero() && finite && place.first) {
+    at_first_order = difference.has_zero() && finite && place.first;
+    if (at_first_order) {
         difference = key(a, true) - key(b, true);
     }
     return difference.negative() ? -1 : difference.positive() ? 1 : 0;
@@ -502,7 +521,8 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             continue;
         }
         const bool most = rule == "most_negative";
-        int sign = compare_keys(place, decision.kind != "rattler", other, opened);
+        bool at_first_order = false; // where a run has more digits to tell the forces apart
+        int sign = compare_keys(place, decision.kind != "rattler", other, opened, at_first_order);
         if (decision.kind != "rattler" && same_at_turn(place, opened, other)) {
             // Finite forces tell only where the turn was rounded to.
             sign = strut_order(place, other, opened).value_or(0);
@@ -515,18 +535,19 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
                                          e.name(opened), shown(chosen), rule, e.name(other), shown(force))};
         }
         if (comes_first) {
-            return Objection{true, fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),
-                                               shown(chosen), rule, e.name(static_cast<std::size_t>(l)), shown(force))};
+            return Objection{!at_first_order,
+                             fmt::format("{} opens with {}, but the rule '{}' takes {} with {}", e.name(opened),
+                                         shown(chosen), rule, e.name(static_cast<std::size_t>(l)), shown(force))};
         }
         if (sign == 0 && (most || rule == "least_negative")) {
             return Objection{false, fmt::format("the rule cannot order {} and {}", e.name(opened),
                                                 e.name(static_cast<std::size_t>(l)))};
         }
     }
-    const double difference = std::abs(event.force - chosen.lower.get_d());
-    if (!(difference <= (event.estimated ? 100 : 1) * record_tolerance * largest_force(forces))) {
-        return Objection{true,
-                         fmt::format("the force of {} is {}, found in {}", e.name(opened), event.force, shown(chosen))};
+    const double size = largest_force(forces);
+    if (Objections wrong =
+            compare("force", {event.force, event.force_bound}, chosen, force_tolerance * size, event, 100 * size)) {
+        return wrong;
     }
     if (rule != "most_negative" && rule != "least_negative") {
         return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule)};

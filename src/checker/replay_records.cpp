@@ -10,8 +10,6 @@ namespace isostat::checker {
 
 namespace {
 
-/// Of a strain whose record has no bound: a difference of lengths that are known to a few units in the last place.
-constexpr double strain_size = 1e-3;
 /// In both columns of a contact that there is not.
 constexpr double no_contact = -9;
 /// A recorded number against what was found, to `record_tolerance` of `size`.
@@ -158,9 +156,7 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     const Load<2>& load = to.state->load;
     const Range strain = strain_of(to, load.loaded_axis);
-    if (Objections wrong = std::isnan(event.strain_bound)
-                               ? compare("eps2", event.strain, strain, strain_size)
-                               : compare("eps2", Bounded{event.strain, event.strain_bound}, strain, record_tolerance)) {
+    if (Objections wrong = compare("eps2", {event.strain, event.strain_bound}, strain, record_tolerance, event, 1)) {
         return wrong;
     }
     for (const Gap& gap : to.gaps()) {
@@ -184,8 +180,9 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
         std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
     if (event.power_turn) {
         const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces));
-        if (!(std::abs(event.power) <= room)) {
-            return Objection{true, fmt::format("the power is {} at a power turn: expected 0", event.power)};
+        if (!(std::abs(event.power) <= room) || !std::isnan(event.power_bound)) {
+            return Objection{true, fmt::format("the power is {} +- {} at a power turn: expected 0, without a bound",
+                                               event.power, event.power_bound)};
         }
     } else if (!stays) {
         // F . v = f_c for the motion v on which the gap of the new contact c closes at the rate 1 and no other changes.
@@ -200,8 +197,9 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
             return Objection{power.negative(),
                              fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
         }
-        Objections wrong = compare("power", event.power, power, 100 * largest_force(forces));
-        if (wrong && !event.estimated) {
+        const double size = largest_force(forces);
+        if (Objections wrong = compare("power", {event.power, event.power_bound}, power, force_tolerance * size, event,
+                                       std::numeric_limits<double>::max())) {
             return wrong;
         }
     }
@@ -210,7 +208,8 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     }
     double size = 0;
     const Range done = work(from, to, to.evidence->finite_load, size);
-    if (Objections wrong = compare("work", event.work, done, 1e-3 * size)) {
+    if (Objections wrong =
+            compare("work", {event.work, event.work_bound}, done, record_tolerance * size, event, size)) {
         return wrong;
     }
     if (stays) {

@@ -104,6 +104,9 @@ EventRecord event_of(const std::string& line, const std::string& where) {
     event.stress = number("sigma2");
     event.strain = number("eps2");
     event.strain_bound = number("eps2_bound");
+    event.force_bound = number("force_bound");
+    event.power_bound = number("power_bound");
+    event.work_bound = number("work_bound");
     event.force = number("force");
     event.power = number("power");
     event.work = number("work");

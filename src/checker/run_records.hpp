@@ -29,8 +29,9 @@ struct EventRecord {
     std::string kind;
     std::string opened, closed; ///< names of contacts, as in messages
     bool power_turn = false;
-    double stress = 0, strain = 0, strain_bound = 0, force = 0, power = 0, work = 0, displacement = 0;
-    bool estimated = false;        ///< level plain: what is said of the power on the way has no bound
+    double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
+    double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
+    bool estimated = false;        ///< level plain: numbers on the way have no bound, they say what to look for
     std::optional<double> held_at; ///< of power turns
     std::vector<TieRecord> ties;
 };

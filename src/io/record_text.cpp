@@ -84,8 +84,11 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["eps2"] = json::or_null(arc.strain);
     line["eps2_bound"] = json::or_null(arc.strain_bound);
     line["force"] = json::or_null(arc.force);
+    line["force_bound"] = json::or_null(arc.force_bound);
     line["power"] = json::or_null(arc.power);
+    line["power_bound"] = json::or_null(arc.power_bound);
     line["work"] = json::or_null(arc.work);
+    line["work_bound"] = json::or_null(arc.work_bound);
     line["displacement"] = json::or_null(arc.displacement);
     line["steps"] = arc.steps;
     line["margin"] = json::or_null(arc.margin);

@@ -123,6 +123,12 @@ template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal)
            std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f == 0; });
 }
 
+template <int Dim> Enclosure work_between(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load) {
+    static const std::vector<double> none;
+    return work(from, Place<Dim>{from.packing.q, none, from.enclosure.distance()},
+                Place<Dim>{to.packing.q, none, to.enclosure.distance()}, load, false);
+}
+
 template <int Dim>
 Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
                              bool infinitesimal) {
@@ -149,6 +155,7 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
                    Place<Dim>{to.packing.q, b.correction, b.radius});
 }
 
+template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);
 template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
 template bool has_potential<2>(const Load<2>&, bool);
 template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);

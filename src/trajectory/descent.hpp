@@ -16,6 +16,9 @@ template <int Dim> bool has_potential(const Load<Dim>& load, bool infinitesimal)
 template <int Dim>
 Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal);
 
+/// The work of dead loads between the two true vertices, whatever moved. Cost: O(n).
+template <int Dim> Enclosure work_between(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load);
+
 /// F(from) . (to - from) as records show it, in double: of dead loads the decrease of W. `size`: of the terms. No
 /// bound.
 struct WorkOfArc {
@@ -24,6 +27,7 @@ struct WorkOfArc {
 };
 template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to);
 
+extern template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);
 extern template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
 extern template bool has_potential<2>(const Load<2>&, bool);
 extern template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);

@@ -210,10 +210,9 @@ template <int Dim> std::optional<Failure> FloatingSteering<Dim>::record_power(Ar
     const std::size_t slot = start_.opening.contact.index();
     const bool infinitesimal = start_.opening.infinitesimal;
     record.power = infinitesimal ? here_->infinitesimal()[slot] : here_->force[slot];
-    if ((infinitesimal || !here_->is_structural_zero(slot)) &&
-        !(infinitesimal ? here_->infinitesimal()[slot] > 0 : here_->compressive(slot))) {
+    if ((infinitesimal || !here_->is_structural_zero(slot)) && !here_->compressive(slot, infinitesimal, for_proofs_)) {
         return Failure{FailureKind::undecided,
-                       fmt::format("the power of the load is not positive at the end of {}", names(record))};
+                       fmt::format("the power of the load is not clearly positive at the end of {}", names(record))};
     }
     return std::nullopt;
 }
@@ -223,7 +222,7 @@ template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
     // The ends of a straight strut carry one force at a power turn: only a proof orders them.
     const auto chosen = arc.record.power_turn ? std::optional<Opening>()
                                               : here_->choose(options_.rule, bits_for(options_.rule_seed, start_.step));
-    // What the errors of doubles leave open takes a proof; here it is made at every end, behind.
+    // What the errors of doubles leave open takes a proof, unless every end gets one.
     if (!chosen || (!for_proofs_ && !here_->resolves(*chosen, options_.rule))) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
         arc.last = SteeredEnd<Dim>{here_->packing, structure_->contacts(), hold, candidates_.triangulation};

@@ -169,12 +169,13 @@ template <int Dim> class FloatingVertex {
         }
         return force[l] - power; // the approach velocity is minus the rate
     }
-    /// Whether the force in a contact is compressive.
-    [[nodiscard]] bool compressive(std::size_t l) {
-        if (error_ > 0 && std::abs(force[l]) <= error_) {
+    /// Whether the force in a contact is compressive: clearly, but where a proof will tell.
+    [[nodiscard]] bool compressive(std::size_t l, bool of_infinitesimal, bool proved_behind) {
+        if (!of_infinitesimal && error_ > 0 && std::abs(force[l]) <= error_) {
             refine();
         }
-        return force[l] > 0;
+        const std::vector<double>& f = of_infinitesimal ? infinitesimal() : force;
+        return f[l] > (proved_behind ? 0 : accuracy * largest(f));
     }
 
   private:

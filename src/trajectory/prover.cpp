@@ -19,6 +19,18 @@ namespace {
 /// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
 constexpr double enough_to_decide = 1e-12;
 
+/// As rounded coordinates tell, with the distance to what is proved of it. `decrease`: of the potential, when the
+/// finite loads decided.
+template <int Dim>
+void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
+                 const std::optional<Enclosure>& decrease) {
+    record.work = work_of(load, from.packing, to.packing).value;
+    if (load.kind == LoadKind::nominal) {
+        const Enclosure work = decrease ? *decrease : work_between(from, to, load);
+        record.work_bound = (std::abs(record.work - work.value) + work.radius) * (1 + 0x1p-50);
+    }
+}
+
 } // namespace
 
 Failure located(const Failure& failure, const std::string& where) {
@@ -66,6 +78,7 @@ ArcProof<Dim> Prover<Dim>::prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, 
     ArcRecord<Dim>& record = proof.record;
     record = arc.record;
     record.force = opening.force.value;
+    record.force_bound = record.kind == "limit" ? 0 : opening.force.radius; // the load is the one where it vanishes
     record.margin = std::numeric_limits<double>::infinity();
     record.decided_by = Rung::combinatorial;
     proof.count({DecisionKind::opening, opening.margin, opening.rung, opening.perturbed});
@@ -142,11 +155,12 @@ template <int Dim>
 std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
                                             const Load<Dim>& load) {
     const Vertex<Dim>& to = *proof.vertex;
-    proof.record.work = work_of(load, from.packing, to.packing).value;
     if (!has_potential(load, opening.infinitesimal)) {
+        proof.record.work = work_of(load, from.packing, to.packing).value;
         return std::nullopt;
     }
     const Enclosure decrease = potential_decrease(from, to, load, opening.infinitesimal);
+    record_work(proof.record, from, to, load, opening.infinitesimal ? std::nullopt : std::optional(decrease));
     proof.descends = decrease.positive();
     // A way of length O(eps) ends where it began: first-order terms decide there.
     const bool at_once = from.perturbed && from.packing.q == to.packing.q;
@@ -171,6 +185,7 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
     };
     Enclosure f = force();
     record.power = f.value;
+    record.power_bound = f.radius;
     if (to.perturbed && !opening.infinitesimal && !f.decided() && !to.statics.is_structural_zero(closed)) {
         const Order order = to.statics.sign(to.statics.force_expression(closed, stress));
         PerturbedStatics<Dim>& side = to.perturbed->statics;
@@ -195,6 +210,7 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
     while (!f.decided() && to.statics.climb()) {
         f = force();
         record.power = f.value;
+        record.power_bound = f.radius;
     }
     if (!opening.infinitesimal && to.statics.is_structural_zero(closed)) {
         return std::nullopt;

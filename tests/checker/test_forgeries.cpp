@@ -158,17 +158,20 @@ void events(const fs::path& run, std::vector<Forgery>& list) {
         for (const char* name : {"sigma2", "eps2", "force", "power", "work", "held_at"}) {
             for (const double factor : {1 + 1e-4, -1.0, 3.0}) {
                 const double value = event.contains(name) ? event[name].get<double>() : 0;
-                // A power is compared to a tenth only; that of a turn, like a force at a limit, is 0.
-                const bool small = std::string(name) == "power" && (factor < 2 && factor > 0);
-                if (value == 0 || small || (std::string(name) == "power" && event["power_turn"].get<bool>())) {
+                // The power of a turn, like a force at a limit, is 0.
+                if (value == 0 || (std::string(name) == "power" && event["power_turn"].get<bool>())) {
                     continue;
                 }
                 list.push_back(in_line(file, k, std::string(name) + " x " + std::to_string(factor),
                                        [=](Json& e) { e[name] = value * factor; }));
             }
         }
-        for (const double bound : {0.0, 1.0}) {
-            list.push_back(in_line(file, k, "eps2_bound", [=](Json& e) { e["eps2_bound"] = bound; }));
+        for (const char* name : {"eps2_bound", "force_bound", "power_bound", "work_bound"}) {
+            list.push_back(in_line(file, k, name, [=](Json& e) { e[name] = e[name].is_null() ? Json(1) : Json(); }));
+            if (event[name].is_number() && event[name] != 0) {
+                list.push_back(in_line(file, k, std::string(name) + " = 0", [=](Json& e) { e[name] = 0; }));
+                list.push_back(in_line(file, k, std::string(name) + " = 1e300", [=](Json& e) { e[name] = 1e300; }));
+            }
         }
         for (const char* name : {"margin", "displacement", "steps", "decided_by", "certificate"}) {
             list.push_back(in_line(

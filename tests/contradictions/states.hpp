@@ -10,6 +10,7 @@ namespace contradictions {
 struct StateClass {
     const char* name;
     std::function<std::optional<State<2>>(Random&)> make;
+    bool has_equilibria = true;
 };
 
 namespace detail {
@@ -276,6 +277,32 @@ inline std::optional<State<2>> true_stresses(Random& random) {
     return state;
 }
 
+/// A coordinate held in place of one contact; its multiplier is 0, hardly different from 0, or anything.
+inline std::optional<State<2>> held_coordinate(Random& random) {
+    auto state = pile(small(random, 0.2), random);
+    if (!state) {
+        return {};
+    }
+    for (int tries = 0; tries < 20; ++tries) {
+        State<2> other = *state;
+        const auto slot = static_cast<std::size_t>(random.integer(static_cast<int>(other.contacts.size())));
+        const int coordinate = random.integer(static_cast<int>(other.packing.q.size()));
+        other.contacts[slot] = {ContactKind::held, coordinate, 0};
+        const Truth truth(other);
+        if (!truth.known) {
+            continue; // nothing moves when that is held
+        }
+        std::vector<double> forces;
+        for (std::size_t l = 0; l < other.contacts.size(); ++l) {
+            forces.push_back(random.integer(4) == 0 ? -random.real(0, 2) : random.real(0.1, 2));
+        }
+        forces[slot] = random.integer(2) == 0 ? hardly_a_force(random) : random.real(-2, 2);
+        load_for(other, truth, forces);
+        return other;
+    }
+    return {};
+}
+
 /// Small integers and Pythagorean triples: exact as doubles, so that crafted inspection may speak of them.
 inline std::optional<State<2>> exact_lattice(Random& random) {
     State<2> state;
@@ -334,6 +361,7 @@ inline std::vector<StateClass> state_classes() {
         {"infinitesimal loads decide", infinitesimal_decides},
         {"true stresses", true_stresses},
         {"exact numbers", exact_lattice},
+        {"held coordinates", held_coordinate, false},
     };
 }
 

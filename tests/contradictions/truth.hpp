@@ -5,6 +5,7 @@
 
 #include <isostat/contact/state.hpp>
 
+#include <Eigen/Dense>
 #include <boost/multiprecision/mpfr.hpp>
 
 #include <algorithm>
@@ -116,8 +117,9 @@ class Truth {
     bool known = false; ///< Newton converged nearby, and the matrix is regular there
     std::string why;    ///< when not
     Vector q;
-    Real moved = 0;     ///< largest difference of a coordinate from the stored one
-    Vector force, rate; ///< at the stored load, and per unit of the loaded stress
+    Real moved = 0;      ///< largest difference of a coordinate from the stored one
+    Real stored_gap = 0; ///< largest |gap| of a contact at the stored coordinates
+    Vector force, rate;  ///< at the stored load, and per unit of the loaded stress
     Vector infinitesimal;
     Real force_scale = 0;
     std::vector<OtherPair> others; ///< by increasing gap
@@ -127,8 +129,16 @@ class Truth {
     [[nodiscard]] int sign(std::size_t contact) const;
     /// Smallest gap of a pair that can move relative to each other.
     [[nodiscard]] const OtherPair* nearest() const;
-    /// +1: every force positive, every other gap positive; -1: a force is negative or a pair overlaps; 0: neither.
+    /// +1: every force positive, every other gap positive; -1: a force is negative, a pair overlaps, or a coordinate is
+    /// held, which is no contact; 0: neither.
     [[nodiscard]] int equilibrium() const;
+    /// The same where a held coordinate counts as at rest when its multiplier is 0: what a run may start from.
+    [[nodiscard]] int at_rest() const;
+    /// Contacts that the rule `most_negative` may open: those with the smallest force below 0, held ones counting with
+    /// minus the magnitude; of the infinitesimal forces where no finite one is negative. Empty: none is negative.
+    [[nodiscard]] std::vector<Contact> most_negative() const;
+    /// Smallest singular value of the contact matrix, to 10 digits or so.
+    [[nodiscard]] double singular_value() const;
     [[nodiscard]] Real gap(const Contact& c) const;
     /// H, one column per contact.
     [[nodiscard]] Dense contact_matrix() const;
@@ -229,6 +239,7 @@ inline bool Truth::newton() {
             worst = std::max(worst, Real(abs(residual[l])));
             gradient(state_->contacts[l], [&](std::size_t dof, const Real& value) { rows(l, dof) = value; });
         }
+        stored_gap = iteration == 0 ? worst : stored_gap;
         if (worst < unit * pow(Real(10), -185)) {
             return true;
         }
@@ -328,8 +339,62 @@ inline const OtherPair* Truth::nearest() const {
 }
 
 inline int Truth::equilibrium() const {
+    const bool holds = std::any_of(state_->contacts.begin(), state_->contacts.end(),
+                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    return holds ? -1 : at_rest();
+}
+
+inline std::vector<Contact> Truth::most_negative() const {
+    for (const bool finite : {true, false}) {
+        const Vector& f = finite ? force : infinitesimal;
+        const Real scale = finite ? force_scale : Real(1);
+        std::vector<Contact> smallest;
+        Real least = 0;
+        for (std::size_t l = 0; l < f.size(); ++l) {
+            if (!finite && sign_of(force[l], force_scale) != 0) {
+                continue;
+            }
+            const bool held = state_->contacts[l].kind == ContactKind::held;
+            const Real key = held ? Real(-abs(f[l])) : f[l];
+            if (sign_of(key, scale) >= 0) {
+                continue;
+            }
+            if (smallest.empty() || sign_of(key - least, scale) < 0) {
+                least = key;
+                smallest.clear();
+            }
+            if (sign_of(key - least, scale) == 0) {
+                smallest.push_back(state_->contacts[l]);
+            }
+        }
+        if (!smallest.empty()) {
+            return smallest;
+        }
+    }
+    return {};
+}
+
+inline double Truth::singular_value() const {
+    const Dense h = contact_matrix();
+    const auto n = static_cast<Eigen::Index>(h.size());
+    Eigen::MatrixXd m(n, n);
+    for (std::size_t i = 0; i < h.size(); ++i) {
+        for (std::size_t j = 0; j < h.size(); ++j) {
+            m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = static_cast<double>(h(i, j));
+        }
+    }
+    return Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues().minCoeff();
+}
+
+inline int Truth::at_rest() const {
     bool all_positive = true;
     for (std::size_t l = 0; l < force.size(); ++l) {
+        if (state_->contacts[l].kind == ContactKind::held) {
+            if (sign(l) != 0) {
+                return -1;
+            }
+            continue;
+        }
         if (sign(l) < 0) {
             return -1;
         }

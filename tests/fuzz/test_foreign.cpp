@@ -33,6 +33,28 @@ bool looks_like_a_number(const std::string& word) {
     return end == word.c_str() + word.size() || std::isdigit(static_cast<unsigned char>(word[0])) != 0;
 }
 
+/// Between separators, where there are any (then a blank is part of a cell); else words.
+std::vector<std::string> cells_of(const std::string& row) {
+    std::vector<std::string> cells;
+    if (row.find_first_of(";,\t") == std::string::npos) {
+        std::istringstream words(row);
+        for (std::string word; words >> word;) {
+            cells.push_back(word);
+        }
+        return cells;
+    }
+    for (std::size_t at = 0; at <= row.size();) {
+        const std::size_t end = std::min(row.find_first_of(";,\t", at), row.size());
+        const std::string cell = row.substr(at, end - at);
+        const std::size_t first = cell.find_first_not_of(" \v\f\r\"");
+        cells.push_back(
+            first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(" \v\f\r\"") + 1 - first));
+        at = end + 1;
+    }
+    std::erase(cells, "");
+    return cells;
+}
+
 /// Rows of a table: lines that are neither blank nor comments, without the names if the first such line is of names.
 std::string table_rows(const std::string& text, std::size_t read) {
     std::vector<std::string> rows;
@@ -44,11 +66,7 @@ std::string table_rows(const std::string& text, std::size_t read) {
     if (rows.size() != read + 1) {
         return rows_differ(read, rows.size());
     }
-    for (const char separator : {';', ',', '\t'}) {
-        std::replace(rows[0].begin(), rows[0].end(), separator, ' ');
-    }
-    std::istringstream words(rows[0]);
-    for (std::string word; words >> word;) {
+    for (const std::string& word : cells_of(rows[0])) {
         if (looks_like_a_number(word)) {
             return "the first row was dropped: " + rows[0];
         }

@@ -29,10 +29,14 @@ template <int Dim> struct ArcRecord {
     bool power_turn = false; ///< true: the arc ended where the power of the load vanished
     double stress = 0;       ///< sigma_2
     double strain = 0;       ///< eps_2 at the end of the arc
-    double strain_bound = std::numeric_limits<double>::quiet_NaN(); ///< of its error; NaN at level `plain`
-    double force = 0;             ///< force f0 in the opened contact (0 for limit and rattler arcs)
-    double power = 0;             ///< -dW/dh at the end, h the gap that closes: the force of the new contact
-    double work = 0;              ///< decrease of W along the arc
+    double force = 0;        ///< in the opened contact: 0 at a limit; the infinitesimal one for arcs of rattlers
+    double power = 0; ///< -dW/dh at the end, h the gap that closes: the force of the new contact; 0 at a power turn
+    double work = 0;  ///< of the finite loads along the arc: the decrease of W
+    /// Proved bounds of the errors of these; NaN: none (level `plain`, the power at a turn, work of true stresses).
+    double strain_bound = std::numeric_limits<double>::quiet_NaN();
+    double force_bound = std::numeric_limits<double>::quiet_NaN();
+    double power_bound = std::numeric_limits<double>::quiet_NaN();
+    double work_bound = std::numeric_limits<double>::quiet_NaN();
     double displacement = 0;      ///< largest displacement of a coordinate
     int steps = 0;                ///< predictor steps
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided); or NaN

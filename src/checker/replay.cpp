@@ -441,7 +441,11 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
     if (place.first) {
         return check_limit_at(place, limit, opened, at_limit);
     }
-    if (Objections wrong = check_load_end(place, limit, opened, event.stress > place.stress() ? 1 : -1)) {
+    const int direction = event.stress > place.stress() ? 1 : -1;
+    if (Objections wrong = check_load_end(place, limit, opened, direction)) {
+        // The arc may have been found on a lower rung than the row, and has no bound of its own.
+        const Bounded roughly{event.stress, bound + record_tolerance * size};
+        wrong->wrong = wrong->wrong && check_load_end(place, roughly, opened, direction);
         return wrong;
     }
     // Forces that vanish together: the infinitesimal loads decide which one comes first.

@@ -54,6 +54,7 @@ struct Rolled {
         event.opened = "0-2";
         event.closed = "0-3";
         event.strain = 1; // no walls, no length
+        event.power_bound = event.work_bound = 1e-12;
         const Range power = to.evidence->forces[1];
         event.power = Rational((power.lower + power.upper) / 2).get_d();
         for (std::size_t k = 0; k < 2; ++k) {

@@ -17,6 +17,9 @@ namespace isostat {
 class StateCertifier final : public RunObserver<2> {
   public:
     StateCertifier(const std::filesystem::path& run, std::string program, RunCounters& counters, RunObserver<2>& next);
+    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+        next_.on_segment(number, goal, made, from);
+    }
     void on_arc(const ArcRecord<2>& arc) override { next_.on_arc(arc); }
     void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                         const std::vector<double>& forces) override;

@@ -43,11 +43,12 @@ std::string clock_text(double seconds) {
 RunTable::RunTable(const std::vector<ProgrammeStep>& programme, bool quiet)
     : programme_(programme), quiet_(quiet), line_(quiet) {}
 
-void RunTable::begin_segment(int number, int equilibrium, double ratio, int made) {
+void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const State<2>& from) {
     segment_ = number;
     made_ = made;
-    start_equilibrium_ = equilibrium;
-    start_ratio_ = ratio;
+    start_equilibrium_ = from.equilibrium;
+    const auto loaded = static_cast<std::size_t>(from.load.loaded_axis);
+    start_ratio_ = from.load.stress[loaded] / from.load.stress[1 - loaded];
     if (quiet_) {
         return;
     }

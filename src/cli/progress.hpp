@@ -36,8 +36,7 @@ std::string clock_text(double seconds);
 class RunTable final : public RunObserver<2> {
   public:
     RunTable(const std::vector<ProgrammeStep>& programme, bool quiet);
-    /// `number`, the equilibrium and the ratio it starts from, equilibria already made in it.
-    void begin_segment(int number, int equilibrium, double ratio, int made);
+    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override;
     void on_arc(const ArcRecord<2>& arc) override;
     void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                         const std::vector<double>& forces) override;
@@ -62,6 +61,10 @@ class RunTable final : public RunObserver<2> {
 class Both final : public RunObserver<2> {
   public:
     Both(RunObserver<2>& first, RunObserver<2>& second) : first_(first), second_(second) {}
+    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+        first_.on_segment(number, goal, made, from);
+        second_.on_segment(number, goal, made, from);
+    }
     void on_arc(const ArcRecord<2>& arc) override {
         first_.on_arc(arc);
         second_.on_arc(arc);

@@ -19,11 +19,6 @@ namespace isostat::cli {
 
 namespace {
 
-double ratio_of(const State<2>& state) {
-    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-    return state.load.stress[loaded] / state.load.stress[1 - loaded];
-}
-
 RunStatus run_status(FailureKind kind) {
     switch (status_of(kind)) {
     case undecided: return RunStatus::undecided;
@@ -70,79 +65,38 @@ RunHeader header_of(const Scene& scene, const std::string& command) {
 }
 
 /// Carries out the programme from a start or from a checkpoint.
-class Player {
-  public:
-    Player(const Scene& scene, RunDirectory& directory, RunCounters& counters, bool quiet)
-        : scene_(scene), directory_(directory), counters_(counters), table_(scene.programme, quiet) {}
-
-    Ending play(State<2> state) {
-        std::size_t first = 0;
-        int made = 0;
-        if (const auto& point = directory_.checkpoint()) {
-            state = point->state;
-            counters_ = point->counters;
-            first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
-            made = point->segment_done ? 0 : point->made;
-        }
-        if (counters_.states.refuted > 0) {
-            return {RunStatus::failed, "an equilibrium of this run was refuted by its certificate: it does not go on"};
-        }
-        for (std::size_t s = first; s < scene_.programme.size(); ++s, made = 0) {
-            const ProgrammeStep& step = scene_.programme[s];
-            if (step.from && made == 0) {
-                if (*step.from > counters_.equilibria) {
-                    return {RunStatus::failed,
-                            fmt::format("segment \"{}\" starts from equilibrium {}, but the run has only reached {}",
-                                        step.name, *step.from, counters_.equilibria)};
-                }
-                state = directory_.stored(*step.from);
-            }
-            Ending ending = play_segment(state, step, static_cast<int>(s), made);
-            if (ending.status != RunStatus::completed) {
-                return ending;
-            }
-        }
-        table_.end();
-        return {};
+Ending play_programme(const Scene& scene, State<2> state, RunDirectory& directory, RunCounters& counters, bool quiet) {
+    Programme<2> programme;
+    programme.steps = scene.programme;
+    programme.source = scene.file;
+    programme.stored = [&](int equilibrium) { return directory.stored(equilibrium); };
+    if (const auto& point = directory.checkpoint()) {
+        state = point->state;
+        counters = point->counters;
+        programme.first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
+        programme.made = point->segment_done ? 0 : point->made;
     }
-
-  private:
-    Ending play_segment(State<2>& state, const ProgrammeStep& step, int number, int made) {
-        const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-        Segment segment;
-        try {
-            segment = segment_of(step, state.load.stress[1 - loaded], state.load.stress[loaded], scene_.file);
-        } catch (const Error& error) {
-            return {RunStatus::failed, error.what()}; // only the packing could tell
-        }
-        directory_.begin_segment(number, segment, made, state.equilibrium);
-        table_.begin_segment(number, state.equilibrium, ratio_of(state), made);
-        if (segment.equilibria) {
-            *segment.equilibria -= made;
-        }
-        RunOptions options = scene_.run;
-        options.stop = &stop_flag();
-        Both both(directory_, table_);
-        std::optional<StateCertifier> certifier;
-        if (options.certify >= CertifyLevel::states) {
-            certifier.emplace(directory_.path(), program_name(), counters_, both);
-        }
-        RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
-        const SegmentOutcome outcome = run_segment<2>(state, segment, number, options, counters_, observer);
-        table_.end();
-        if (outcome.completed) {
-            return {};
-        }
-        Ending ending = ended(*outcome.failure, fmt::format("segment \"{}\": ", step.name));
-        ending.reason += advice(scene_, *outcome.failure, state.packing.radius);
+    if (counters.states.refuted > 0) {
+        return {RunStatus::failed, "an equilibrium of this run was refuted by its certificate: it does not go on"};
+    }
+    RunOptions options = scene.run;
+    options.stop = &stop_flag();
+    RunTable table(scene.programme, quiet);
+    Both both(directory, table);
+    std::optional<StateCertifier> certifier;
+    if (options.certify >= CertifyLevel::states) {
+        certifier.emplace(directory.path(), program_name(), counters, both);
+    }
+    RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
+    const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
+    table.end();
+    if (outcome.failure) {
+        Ending ending = ended(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));
+        ending.reason += advice(scene, *outcome.failure, state.packing.radius);
         return ending;
     }
-
-    const Scene& scene_;
-    RunDirectory& directory_;
-    RunCounters& counters_;
-    RunTable table_;
-};
+    return outcome.impossible.empty() ? Ending{} : Ending{RunStatus::failed, outcome.impossible};
+}
 
 /// The start of the run: stored one, file or preparation.
 Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& from_file, RunDirectory& directory,
@@ -257,7 +211,7 @@ int run(const RunArguments& arguments) {
     }
     Ending ending;
     if (start.ok()) {
-        ending = Player(scene, directory, counters, quiet).play(start.value());
+        ending = play_programme(scene, start.value(), directory, counters, quiet);
     } else {
         ending = ended(start.failure(), "");
     }

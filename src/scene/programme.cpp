@@ -147,25 +147,4 @@ std::vector<int> needed_equilibria(const Scene& scene) {
     return {needed.begin(), needed.end()};
 }
 
-Segment segment_of(const ProgrammeStep& step, double sigma1, double sigma2, const std::string& source) {
-    Segment segment;
-    segment.name = step.name;
-    segment.equilibria = step.equilibria;
-    segment.from = step.from;
-    if (step.to) {
-        segment.to_stress = *step.to * sigma1;
-    }
-    segment.direction = step.action == Action::up     ? +1
-                        : step.action == Action::down ? -1
-                        : *segment.to_stress > sigma2 ? +1
-                                                      : -1;
-    if (step.to && !(segment.direction * (*segment.to_stress - sigma2) > 0)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: segment \"{}\": sigma2/sigma1 is {} at its start: expected a {} ratio than {}",
-                                source, step.line, step.name, sigma2 / sigma1,
-                                segment.direction > 0 ? "larger" : "smaller", *step.to));
-    }
-    return segment;
-}
-
 } // namespace isostat

@@ -88,6 +88,9 @@ class RunDirectory final : public RunObserver<2> {
     /// Before each `run_segment`: its number, its goal, equilibria already made in it (after a resume) and the
     /// equilibrium it starts from.
     void begin_segment(int number, const Segment& goal, int made, int from);
+    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+        begin_segment(number, goal, made, from.equilibrium);
+    }
     void on_arc(const ArcRecord<2>& arc) override;
     void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                         const std::vector<double>& forces) override;

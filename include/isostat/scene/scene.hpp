@@ -3,7 +3,7 @@
 /// Scene files (TOML): what to prepare, how to load it, what to write.
 
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/trajectory/trajectory.hpp>
+#include <isostat/trajectory/programme.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -12,19 +12,6 @@
 #include <vector>
 
 namespace isostat {
-
-/// What a segment of the programme does to the stress ratio sigma_2 / sigma_1.
-enum class Action { up, down, to };
-
-/// One [[programme]] entry.
-struct ProgrammeStep {
-    Action action = Action::up;
-    std::optional<int> equilibria; ///< `equilibria`: stop after this many new ones
-    std::optional<double> to;      ///< `to`: stop at this ratio sigma_2 / sigma_1, inside a supported interval
-    std::optional<int> from;       ///< `from`: start from this equilibrium of the run instead of the last one
-    std::string name;              ///< `name`, or made from the rest
-    int line = 0;                  ///< in the scene file
-};
 
 /// One setting as it is used: for `plan` and for the records of a run.
 struct Setting {
@@ -74,10 +61,6 @@ std::string describe(const ProgrammeStep& step);
 
 /// Equilibria that a programme starts segments from: their states must be kept.
 std::vector<int> needed_equilibria(const Scene& scene);
-
-/// The programme's segment for a state at `sigma1`, `sigma2`: direction and stress of the goal.
-/// Throws `Error(bad_input)` when the ratio to reach lies behind.
-Segment segment_of(const ProgrammeStep& step, double sigma1, double sigma2, const std::string& source);
 
 /// The settings as JSON (sections, keys, values): for the records of a run.
 std::string settings_json(const Scene& scene);

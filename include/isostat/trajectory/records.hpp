@@ -174,11 +174,16 @@ struct Tally {
     void count(DecisionKind kind, double margin, Rung rung);
 };
 
+struct Segment;
+
 /// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written
 /// everything that it had found. After each equilibrium the run asks for an objection, and ends with it.
 template <int Dim> class RunObserver {
   public:
     virtual ~RunObserver() = default;
+    /// Before a segment of a programme (`play`): its number, its goal, equilibria that were made in it already (after a
+    /// resume), and the state it starts from.
+    virtual void on_segment(int /*number*/, const Segment& /*goal*/, int /*made*/, const State<Dim>& /*from*/) {}
     virtual void on_arc(const ArcRecord<Dim>& /*arc*/) {}
     virtual void on_equilibrium(const EquilibriumRecord<Dim>& /*record*/, const State<Dim>& /*state*/,
                                 const std::vector<double>& /*forces, one per contact of the state*/) {}

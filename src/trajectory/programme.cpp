@@ -1,0 +1,65 @@
+#include <isostat/core/error.hpp>
+#include <isostat/trajectory/programme.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat {
+
+Segment segment_of(const ProgrammeStep& step, double sigma1, double sigma2, const std::string& source) {
+    Segment segment;
+    segment.name = step.name;
+    segment.equilibria = step.equilibria;
+    segment.from = step.from;
+    if (step.to) {
+        segment.to_stress = *step.to * sigma1;
+    }
+    segment.direction = step.action == Action::up     ? +1
+                        : step.action == Action::down ? -1
+                        : *segment.to_stress > sigma2 ? +1
+                                                      : -1;
+    if (step.to && !(segment.direction * (*segment.to_stress - sigma2) > 0)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: segment \"{}\": sigma2/sigma1 is {} at its start: expected a {} ratio than {}",
+                                source, step.line, step.name, sigma2 / sigma1,
+                                segment.direction > 0 ? "larger" : "smaller", *step.to));
+    }
+    return segment;
+}
+
+template <int Dim>
+ProgrammeOutcome play(const Programme<Dim>& programme, State<Dim>& state, const RunOptions& options,
+                      RunCounters& counters, RunObserver<Dim>& observer) {
+    int made = programme.made;
+    for (std::size_t s = programme.first; s < programme.steps.size(); ++s, made = 0) {
+        const ProgrammeStep& step = programme.steps[s];
+        if (step.from && made == 0) {
+            if (*step.from > counters.equilibria) {
+                return {std::nullopt, step.name,
+                        fmt::format("segment \"{}\" starts from equilibrium {}, but the run has only reached {}",
+                                    step.name, *step.from, counters.equilibria)};
+            }
+            state = programme.stored(*step.from);
+        }
+        const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+        Segment segment;
+        try {
+            segment = segment_of(step, state.load.stress[1 - loaded], state.load.stress[loaded], programme.source);
+        } catch (const Error& error) {
+            return {std::nullopt, step.name, error.what()};
+        }
+        observer.on_segment(static_cast<int>(s), segment, made, state);
+        if (segment.equilibria) {
+            *segment.equilibria -= made;
+        }
+        const SegmentOutcome outcome =
+            run_segment<Dim>(state, segment, static_cast<int>(s), options, counters, observer);
+        if (!outcome.completed) {
+            return {outcome.failure, step.name, {}};
+        }
+    }
+    return {};
+}
+
+template ProgrammeOutcome play<2>(const Programme<2>&, State<2>&, const RunOptions&, RunCounters&, RunObserver<2>&);
+
+} // namespace isostat

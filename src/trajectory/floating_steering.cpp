@@ -174,10 +174,11 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     if (rule_.due(approximate)) {
         refactorisation_.begin(approximate, unproved.shared_matrix());
     }
-    const std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
-    here_ = std::make_unique<FloatingVertex<Dim>>(std::move(path.end), std::move(unproved), approximate, load_, guess,
-                                                  options_.rule, candidates_, arc_options_, std::move(path.open),
-                                                  foreseen ? &*foreseen : nullptr);
+    std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
+    here_ = std::make_unique<FloatingVertex<Dim>>(
+        typename FloatingVertex<Dim>::Arrival{std::move(path.end), std::move(unproved), approximate, std::move(guess),
+                                              std::move(path.open), foreseen ? &*foreseen : nullptr},
+        typename FloatingVertex<Dim>::Context{load_, options_.rule, candidates_, arc_options_});
     if (for_proofs_) {
         arc.approximate = std::move(approximate);
     }
@@ -220,10 +221,10 @@ template <int Dim> std::optional<Failure> FloatingSteering<Dim>::record_power(Ar
 /// What opens next; nothing: it ends here.
 template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
     // The ends of a straight strut carry one force at a power turn: only a proof orders them.
-    const auto chosen = arc.record.power_turn ? std::optional<Opening>()
-                                              : here_->choose(options_.rule, bits_for(options_.rule_seed, start_.step));
+    const auto chosen =
+        arc.record.power_turn ? std::optional<Opening>() : here_->choose(bits_for(options_.rule_seed, start_.step));
     // What the errors of doubles leave open takes a proof, unless every end gets one.
-    if (!chosen || (!for_proofs_ && !here_->resolves(*chosen, options_.rule))) {
+    if (!chosen || (!for_proofs_ && !here_->resolves(*chosen))) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
         arc.last = SteeredEnd<Dim>{here_->packing, structure_->contacts(), hold, candidates_.triangulation};
         return;

@@ -111,39 +111,10 @@ template <int Dim> bool falls_with_work(const Load<Dim>& load) {
             std::all_of(load.stress.begin(), load.stress.end(), [](double stress) { return stress >= 0; }));
 }
 
-} // namespace
-
+/// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism.
 template <int Dim>
-Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting) {
-    require_floating_point();
-    MechanismInspection<Dim> inspection;
-    inspection.contacts = state.contacts;
-    const DofMap<Dim> dofs(state.packing);
-    for (const int dof : counting.free_dofs) {
-        inspection.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
-    }
-    InverseBoundCache cache;
-    auto made = Vertex<Dim>::make(state.packing, inspection.contacts, state.load, cache);
-    if (!made.ok()) {
-        return made.failure();
-    }
-    Vertex<Dim>& vertex = *made.value();
+void judge_forces(MechanismInspection<Dim>& inspection, Vertex<Dim>& vertex, const State<Dim>& state) {
     const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
-    inspection.rattlers = rattlers(vertex);
-    CandidateList<Dim> candidates = find_candidates(state.packing, candidate_fraction);
-    KeptCandidates kept;
-    auto gaps = vertex.check_gaps(candidates, kept);
-    if (!gaps.ok()) {
-        inspection.remark = gaps.failure().message;
-    } else if (gaps.value().negative) {
-        inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
-    } else if (const auto pair = fixed_overlap(state.packing)) {
-        inspection.remark = fmt::format("{} overlap, and cannot move", to_string<Dim>(*pair));
-    }
-    inspection.forces = finite_forces(vertex, state.load);
-    for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
-        inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
-    }
     EquilibriumRecord<Dim>& record = inspection.record;
     record.verdict = Verdict::refuted; // not isostatic
     vertex.statics.climb();
@@ -184,6 +155,43 @@ Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, cons
         inspection.remark = fmt::format("equilibrium with one mechanism (k = 1){}",
                                         maximum ? ", not stable: the potential has a maximum along it" : "");
     }
+}
+
+} // namespace
+
+template <int Dim>
+Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting) {
+    require_floating_point();
+    MechanismInspection<Dim> inspection;
+    inspection.contacts = state.contacts;
+    const DofMap<Dim> dofs(state.packing);
+    for (const int dof : counting.free_dofs) {
+        inspection.contacts.push_back({ContactKind::held, dofs.coordinate_of(dof), 0});
+    }
+    InverseBoundCache cache;
+    auto made = Vertex<Dim>::make(state.packing, inspection.contacts, state.load, cache);
+    if (!made.ok()) {
+        return made.failure();
+    }
+    Vertex<Dim>& vertex = *made.value();
+    const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    inspection.rattlers = rattlers(vertex);
+    CandidateList<Dim> candidates = find_candidates(state.packing, candidate_fraction);
+    KeptCandidates kept;
+    auto gaps = vertex.check_gaps(candidates, kept);
+    if (!gaps.ok()) {
+        inspection.remark = gaps.failure().message;
+    } else if (gaps.value().negative) {
+        inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
+    } else if (const auto pair = fixed_overlap(state.packing)) {
+        inspection.remark = fmt::format("{} overlap, and cannot move", to_string<Dim>(*pair));
+    }
+    inspection.forces = finite_forces(vertex, state.load);
+    for (std::size_t l = 0; l < inspection.contacts.size(); ++l) {
+        inspection.structural_zero.push_back(vertex.statics.is_structural_zero(ContactId(l)) ? 1 : 0);
+    }
+    judge_forces(inspection, vertex, state);
+    EquilibriumRecord<Dim>& record = inspection.record;
     record.number = state.equilibrium;
     record.stress = sigma;
     record.dof_count = counting.dof_count;

@@ -151,6 +151,36 @@ template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, 
     return forces;
 }
 
+/// Both ends of the supported interval.
+template <int Dim>
+std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim>& vertex, double sigma) {
+    constexpr Contact none{ContactKind::disk_disk, -1, -1};
+    EquilibriumRecord<Dim>& record = description.record;
+    for (const int direction : {-1, +1}) {
+        double& stress = direction > 0 ? record.stress_high : record.stress_low;
+        Contact& opens = direction > 0 ? record.opens_high : record.opens_low;
+        if (record.held > 0) { // at this load only: the multiplier of the held coordinate vanishes just here
+            stress = sigma;
+            opens = none;
+            continue;
+        }
+        const auto limit = find_limit(vertex.statics, sigma, direction, vertex.first_order());
+        if (!limit.ok()) {
+            return Failure{limit.failure().kind,
+                           fmt::format("{} end of the supported interval: {}", direction > 0 ? "upper" : "lower",
+                                       limit.failure().message)};
+        }
+        const LoadLimit& end = limit.value();
+        stress = end.stress;
+        opens = end.unbounded ? none : vertex.structure.contacts()[end.opens.index()];
+        (direction > 0 ? record.stress_high_bound : record.stress_low_bound) = end.unbounded ? 0 : end.stress_error;
+        record.margin = std::min(record.margin, end.margin);
+        record.decided_by = std::max(record.decided_by, end.rung);
+        description.limit[direction > 0 ? 1 : 0] = end;
+    }
+    return std::nullopt;
+}
+
 template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load) {
     Description<Dim> description;
     EquilibriumRecord<Dim>& record = description.record;
@@ -182,29 +212,8 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     record.backbone = vertex.statics.backbone_count();
     record.gap_residual = vertex.enclosure.max_gap;
     record.sigma_min_bound = vertex.inverse.sigma_min;
-
-    for (const int direction : {-1, +1}) {
-        if (record.held >
-            0) { // an equilibrium at this load only: the multiplier of the held coordinate vanishes just here
-            (direction > 0 ? record.stress_high : record.stress_low) = sigma;
-            (direction > 0 ? record.opens_high : record.opens_low) = {ContactKind::disk_disk, -1, -1};
-            continue;
-        }
-        const auto limit =
-            find_limit(vertex.statics, sigma, direction, vertex.perturbed ? &vertex.perturbed->statics : nullptr);
-        if (!limit.ok()) {
-            return Failure{limit.failure().kind,
-                           fmt::format("{} end of the supported interval: {}", direction > 0 ? "upper" : "lower",
-                                       limit.failure().message)};
-        }
-        const LoadLimit& end = limit.value();
-        const Contact none{ContactKind::disk_disk, -1, -1};
-        (direction > 0 ? record.stress_high : record.stress_low) = end.stress;
-        (direction > 0 ? record.stress_high_bound : record.stress_low_bound) = end.unbounded ? 0 : end.stress_error;
-        (direction > 0 ? record.opens_high : record.opens_low) = end.unbounded ? none : contacts[end.opens.index()];
-        record.margin = std::min(record.margin, end.margin);
-        record.decided_by = std::max(record.decided_by, end.rung);
-        description.limit[direction > 0 ? 1 : 0] = end;
+    if (auto failure = describe_limits(description, vertex, sigma)) {
+        return *failure;
     }
     // After the limits: they may have climbed, and the bounds are then those of the better solution.
     record.force_bound = vertex.statics.bound(sigma);

@@ -1,0 +1,278 @@
+#include "trajectory/floating_vertex.hpp"
+
+#include <isostat/rigidity/contact_pattern.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat {
+
+namespace {
+
+/// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
+constexpr double accuracy = 1e-12;
+/// Elsewhere they are as accurate as the choice of what opens asks for, and as the record of its force does: the
+/// estimated error times `safety` changes neither. Where the velocity of its arc is at hand, the record is made better
+/// with that (`better_force`), and asks for less.
+constexpr double recorded_accuracy = 1e-8;
+constexpr double accuracy_with_velocity = 1e-3;
+constexpr double safety = 30;
+
+double largest(const std::vector<double>& f) {
+    double size = 0;
+    for (const double x : f) {
+        size = std::max(size, std::abs(x));
+    }
+    return size;
+}
+
+} // namespace
+
+template <int Dim>
+FloatingVertex<Dim>::FloatingVertex(Arrival arrival, const Context& context)
+    : packing(std::move(arrival.packing)), structure(std::move(arrival.structure)),
+      factorisation(structure, arrival.approximate), context_(context) {
+    const DofMap<Dim>& dofs = structure.dofs();
+    force = on_dofs(context.load.external_force(packing), dofs);
+    const std::vector<double> unit = on_dofs(context.load.unit_force(packing), dofs);
+    for (std::size_t mu = 0; mu < force.size(); ++mu) {
+        if (force[mu] != 0 || unit[mu] != 0) {
+            loaded_.push_back(static_cast<int>(mu));
+        }
+    }
+    if (arrival.foreseen != nullptr && arrival.foreseen->loaded == loaded_) {
+        backbone_ = std::move(arrival.foreseen->backbone);
+    } else {
+        arrival.foreseen = nullptr;
+        pending_backbone_ = Promised<std::vector<unsigned char>>(
+            [this] { return ContactPattern(packing, structure).carrying(loaded_); });
+    }
+    if (departs() && renew_candidates(context.candidates, packing)) { // not by a task that may be dropped
+        arrival.open.clear();
+    }
+    load_on_dofs_ = force;
+    if (arrival.foreseen != nullptr) {
+        foreseen_passes_ = arrival.foreseen->passes;
+        arrival.guess = std::move(arrival.foreseen->force);
+        if (departs() && arrival.foreseen->opens.valid()) {
+            depart(arrival, arrival.foreseen->opens.index());
+        }
+    }
+    if (departure_) { // the arc by the thread that will follow it, the forces beside it
+        Errand solving([&] { solve(arrival); });
+        begin_arc(arrival);
+        if (solving.underway()) { // else the forces come first: they may say that another contact opens
+            departure_->arc.begin_here();
+        }
+        solving.finish();
+    } else {
+        solve(arrival);
+    }
+    take_backbone();
+}
+
+template <int Dim> void FloatingVertex<Dim>::take_backbone() {
+    if (pending_backbone_.pending()) {
+        backbone_ = pending_backbone_.take();
+    }
+}
+
+template <int Dim> void FloatingVertex<Dim>::depart(const Arrival& arrival, std::size_t opens) {
+    departure_.reset(new Departure{ContactId(opens), Factorisation(structure, arrival.approximate), {}});
+}
+
+template <int Dim> void FloatingVertex<Dim>::begin_arc(const Arrival& arrival) {
+    departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>([this, &there = *departure_, open = arrival.open] {
+        return std::make_unique<ArcDeparture<Dim>>(packing, structure, there.factorisation, there.opened, +1,
+                                                   PowerLoad<Dim>{&context_.load, false, false}, context_.candidates,
+                                                   context_.arc, open);
+    });
+}
+
+/// The finite forces, as accurate as the choice of what opens needs them; the arc that opens it is begun on the way.
+template <int Dim> void FloatingVertex<Dim>::solve(const Arrival& arrival) {
+    const auto enough = [&](std::span<const double> f, double error) {
+        take_backbone();
+        error_ = safety * error;
+        if (!departs()) {
+            return false;
+        }
+        const std::size_t chosen = most_negative(f, structure.contacts(), backbone_);
+        if (!departure_ && chosen < f.size() && structure.contacts()[chosen].kind != ContactKind::held) {
+            depart(arrival, chosen);
+            begin_arc(arrival);
+        }
+        const bool begun = departure_ && departure_->opened == ContactId(chosen);
+        const double asked = begun ? accuracy_with_velocity : recorded_accuracy;
+        return (chosen == f.size() || error_ <= asked * std::abs(f[chosen])) && clear(f, chosen);
+    };
+    error_ = safety * factorisation.solve_forces_until(force, arrival.guess, enough);
+}
+
+template <int Dim> const std::vector<double>& FloatingVertex<Dim>::infinitesimal() {
+    if (infinitesimal_.empty()) {
+        infinitesimal_ = on_dofs(context_.load.infinitesimal, structure.dofs());
+        factorisation.solve_forces_from(infinitesimal_, {}, accuracy);
+    }
+    return infinitesimal_;
+}
+
+template <int Dim> typename FloatingVertex<Dim>::Departure* FloatingVertex<Dim>::departure(const Opening& opening) {
+    // Fresh factors, if solving asked for some, are better.
+    const bool useful = departure_ && departure_->opened == opening.contact && !opening.infinitesimal &&
+                        opening.direction > 0 && !factorisation.is_fresh();
+    if (!useful) {
+        departure_.reset();
+    }
+    return departure_.get();
+}
+
+template <int Dim> std::optional<Opening> FloatingVertex<Dim>::choose(std::uint64_t random_bits) {
+    const auto chosen = stage(true, random_bits);
+    return chosen ? chosen : stage(false, random_bits);
+}
+
+template <int Dim> double FloatingVertex<Dim>::better_force(std::size_t l, const std::vector<double>& velocity) const {
+    std::vector<double> rest = load_on_dofs_;
+    const sparse::Matrix<double>& h = structure.matrix();
+    for (std::size_t c = 0; c < force.size(); ++c) {
+        for (auto e = static_cast<std::size_t>(h.start[c]); e < static_cast<std::size_t>(h.start[c + 1]); ++e) {
+            rest[static_cast<std::size_t>(h.row[e])] -= h.value[e] * force[c];
+        }
+    }
+    double power = 0;
+    for (std::size_t mu = 0; mu < rest.size(); ++mu) {
+        power += rest[mu] * velocity[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))];
+    }
+    return force[l] - power; // the approach velocity is minus the rate
+}
+
+template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_infinitesimal, bool proved_behind) {
+    if (!of_infinitesimal && error_ > 0 && std::abs(force[l]) <= error_) {
+        std::vector<double> better = load_on_dofs_;
+        factorisation.solve_forces_from(better, force, accuracy);
+        force = std::move(better);
+        error_ = 0;
+    }
+    const std::vector<double>& f = of_infinitesimal ? infinitesimal() : force;
+    return f[l] > (proved_behind ? 0 : accuracy * largest(f));
+}
+
+template <int Dim> bool FloatingVertex<Dim>::resolves(const Opening& chosen) {
+    const double finite_error = std::max(error_, accuracy * largest(force));
+    if (chosen.infinitesimal) {
+        const std::vector<double>& f = infinitesimal();
+        return signs_are_clear(true, force, finite_error) &&
+               is_clear(false, f, accuracy * largest(f), chosen.contact.index());
+    }
+    return is_clear(true, force, finite_error, chosen.contact.index());
+}
+
+template <int Dim>
+bool FloatingVertex<Dim>::signs_are_clear(bool finite, const std::vector<double>& f, double error) const {
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        if (is_structural_zero(l) != finite && !(std::abs(f[l]) > error)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+template <int Dim>
+bool FloatingVertex<Dim>::is_clear(bool finite, const std::vector<double>& f, double error, std::size_t chosen) const {
+    const bool most = departs();
+    if (!(std::abs(f[chosen]) > error) || (!most && !signs_are_clear(finite, f, error))) {
+        return false;
+    }
+    const auto& contacts = structure.contacts();
+    const double size = signed_size(contacts[chosen], f[chosen]);
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        const double difference = signed_size(contacts[l], f[l]) - size;
+        const bool rival = l != chosen && is_structural_zero(l) != finite;
+        if (rival && ((most && difference <= 2 * error) ||
+                      (context_.rule == OpeningRule::least_negative && std::abs(difference) <= 2 * error))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is none
+/// for all.
+template <int Dim> bool FloatingVertex<Dim>::clear(std::span<const double> f, std::size_t chosen) const {
+    const double bar = chosen < f.size() ? signed_size(structure.contacts()[chosen], f[chosen]) + 2 * error_ : error_;
+    if (chosen < f.size() && bar >= error_) {
+        return false; // it may be 0
+    }
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        if (l != chosen && signed_size(structure.contacts()[l], f[l]) <= bar && !is_structural_zero(l)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
+template <int Dim> std::optional<Opening> FloatingVertex<Dim>::stage(bool finite, std::uint64_t random_bits) {
+    if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
+        return std::nullopt;
+    }
+    const std::vector<double>& f = finite ? force : infinitesimal();
+    const auto& contacts = structure.contacts();
+    std::vector<std::size_t> negative;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (is_structural_zero(l) != finite && signed_size(contacts[l], f[l]) < 0) {
+            negative.push_back(l);
+        }
+    }
+    if (negative.empty()) {
+        return std::nullopt;
+    }
+    const std::size_t best = pick(std::move(negative), f, random_bits);
+    Opening opening;
+    opening.contact = ContactId(best);
+    opening.infinitesimal = !finite;
+    opening.force = {f[best], std::numeric_limits<double>::infinity()};
+    opening.direction = contacts[best].kind == ContactKind::held && f[best] >= 0 ? -1 : +1;
+    return opening;
+}
+
+template <int Dim>
+std::size_t FloatingVertex<Dim>::pick(std::vector<std::size_t> negative, const std::vector<double>& f,
+                                      std::uint64_t random_bits) const {
+    const auto& contacts = structure.contacts();
+    if (context_.rule == OpeningRule::random) {
+        std::sort(negative.begin(), negative.end(),
+                  [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
+        return negative[random_bits % negative.size()];
+    }
+    std::size_t best = negative.front();
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const std::size_t l : negative) {
+        const double size = signed_size(contacts[l], f[l]);
+        const double key = context_.rule == OpeningRule::least_negative ? -size
+                           : context_.rule == OpeningRule::steepest     ? size / mechanism_norm(l)
+                                                                        : size;
+        if (key < smallest) {
+            smallest = key;
+            best = l;
+        }
+    }
+    return best;
+}
+
+template <int Dim> double FloatingVertex<Dim>::mechanism_norm(std::size_t l) const {
+    std::vector<double> v(force.size(), 0.0);
+    v[l] = 1;
+    factorisation.solve_velocities(v);
+    double square = 0;
+    for (const double c : v) {
+        square += c * c;
+    }
+    return std::sqrt(square);
+}
+
+template class FloatingVertex<2>;
+
+} // namespace isostat

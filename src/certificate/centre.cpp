@@ -2,45 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace isostat {
 
 namespace {
 
 constexpr double u = 0x1p-53;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 } // namespace
-
-template <int Dim> double contact_length(const Packing<Dim>& packing, const Contact& contact) {
-    const double radius = packing.radius[static_cast<std::size_t>(contact.i)];
-    return contact.kind == ContactKind::disk_disk ? radius + packing.radius[static_cast<std::size_t>(contact.j)]
-                                                  : radius;
-}
 
 template <int Dim>
 Centre<Dim>::Centre(Packing<Dim> p, IsostaticStructure<Dim> s)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure) {
     InverseBoundCache cache;
     inverse = bound_inverse(structure, factorisation, cache);
-    std::vector<int> count(packing.radius.size(), 0);
-    double smallest = infinity;
     for (const Contact& contact : structure.contacts()) {
         const double h = std::abs(gap(packing, contact));
-        const double length = contact_length(packing, contact);
+        const double length = target(packing, contact);
         largest_gap = std::max(largest_gap, (h + 8 * u * (h + length)) * (1 + 4 * u));
         relative_gap = std::max(relative_gap, h / length);
-        if (contact.kind == ContactKind::disk_disk) {
-            ++count[static_cast<std::size_t>(contact.i)];
-            ++count[static_cast<std::size_t>(contact.j)];
-            smallest = std::min(smallest, length);
-        }
     }
-    const double most = *std::max_element(count.begin(), count.end());
-    lipschitz = most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 8 * u);
-    const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // a NaN knows nothing
-    inverse_norm = known ? (1 + 2 * relative_gap + 16 * u) / inverse.sigma_min * (1 + 4 * u) : infinity;
+    neighbourhood = Neighbourhood::of(packing, structure.contacts(), inverse);
 }
 
 template <int Dim>
@@ -85,7 +67,6 @@ template <int Dim> std::unique_ptr<Centre<Dim>> Centre<Dim>::downhill(const Cent
     return next;
 }
 
-template double contact_length<2>(const Packing<2>&, const Contact&);
 template class Centre<2>;
 
 } // namespace isostat

@@ -2,16 +2,14 @@
 /// \file
 /// A configuration in doubles around which the true vertex is enclosed, with what is proved there once for all rungs.
 
+#include "verified/enclosed_vertex.hpp"
+
 #include <isostat/core/result.hpp>
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <memory>
 #include <vector>
 
 namespace isostat {
-
-/// The length D_l of a contact: sum of the radii, or the radius at a wall.
-template <int Dim> double contact_length(const Packing<Dim>& packing, const Contact& contact);
 
 /// Contacts of disks with disks and walls only (nothing held). Not movable: its parts may refer to each other.
 template <int Dim> class Centre {
@@ -30,14 +28,12 @@ template <int Dim> class Centre {
     InverseBound inverse;
     double largest_gap = 0;  ///< bound of |gap| of a contact
     double relative_gap = 0; ///< largest |gap| / D of a contact, as computed
-    double lipschitz = 0;    ///< K of V4 (a), for the derivative of the gap functions F_l
-    double inverse_norm = 0; ///< bound of |DF^-1| here, V4 (b); infinity when nothing is known
+    Neighbourhood neighbourhood;
 
   private:
     Centre(Packing<Dim> p, IsostaticStructure<Dim> s);
 };
 
-extern template double contact_length<2>(const Packing<2>&, const Contact&);
 extern template class Centre<2>;
 
 } // namespace isostat

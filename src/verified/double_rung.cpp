@@ -4,11 +4,15 @@ namespace isostat {
 
 namespace {
 
+constexpr double u = 0x1p-53;
+
 /// Normals of the stored configuration, in double.
 template <int Dim> class DoubleRung final : public IntervalRung<Dim> {
   public:
     DoubleRung(LadderProblem<Dim>& problem, double accuracy)
-        : IntervalRung<Dim>(problem, Rung::double_bound, 53), accuracy_(accuracy) {}
+        : IntervalRung<Dim>(problem, Rung::double_bound, 53, accuracy > 0), accuracy_(accuracy) {}
+
+    double normal_uncertainty() override { return this->problem_.stored_distance().uncertainty; }
 
     std::unique_ptr<ForceRung<Dim>> next() override {
         LadderProblem<Dim>& problem = this->problem_;
@@ -19,18 +23,29 @@ template <int Dim> class DoubleRung final : public IntervalRung<Dim> {
             return nullptr;
         }
         auto rung = double_double_rung(problem);
-        return rung ? std::move(rung) : multiprecision_rung(problem, {}, problem.options.first_bits);
+        return rung ? std::move(rung) : multiprecision_rung(problem, problem.options.first_bits);
     }
 
   private:
-    [[nodiscard]] bool is_enough(const RightHandSide& part) const override { return accuracy_ > 0 || !part.rough; }
-
     void solve(RightHandSide& part) override {
         this->problem_.solve_in_double(part, accuracy_);
-        this->problem_.inflate(part, where(), true);
+        this->problem_.inflate(part);
     }
 
-    const Place& where() override { return this->problem_.stored_place(); }
+    [[nodiscard]] PreciseInterval norm_of_mechanism(std::size_t l) override {
+        LadderProblem<Dim>& problem = this->problem_;
+        const double sigma = problem.inverse.sigma_min;
+        const double uncertainty = problem.stored_distance().uncertainty;
+        const double left = sigma - uncertainty * (1 + 8 * u);
+        if (problem.inverse.verdict != Verdict::proved || !(left > sigma / 2)) {
+            return unknown_interval(low_bits);
+        }
+        const Arithmetic<Real> arithmetic(low_bits);
+        const ContactSystem<Dim, Real> system(CorrectedConfiguration<Dim, Real>(arithmetic, problem.packing),
+                                              problem.structure, problem.factorisation, left * (1 - 8 * u),
+                                              uncertainty);
+        return norm_of_motion(system, l);
+    }
 
     double accuracy_;
 };

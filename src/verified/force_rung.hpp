@@ -11,15 +11,22 @@ namespace isostat {
 /// What one arithmetic knows of the solutions, and of expressions in them. The problem must outlive the rung.
 template <int Dim> class ForceRung {
   public:
-    ForceRung(LadderProblem<Dim>& problem, Rung rung, int bits) : problem_(problem), rung_(rung), bits_(bits) {}
+    /// `rough`: estimated solutions (`first_accuracy`) are enough.
+    ForceRung(LadderProblem<Dim>& problem, Rung rung, int bits, bool rough = false)
+        : problem_(problem), rung_(rung), bits_(bits), rough_(rough) {}
     ForceRung(const ForceRung&) = delete;
     ForceRung& operator=(const ForceRung&) = delete;
     virtual ~ForceRung() = default;
 
     [[nodiscard]] Rung rung() const { return rung_; }
     [[nodiscard]] int bits() const { return bits_; }
-    /// Brings `part.solution` to this rung, from whatever is known of it.
-    void bring(RightHandSide& part);
+    /// Brings `part.solution` to this rung, from whatever is known of it. Asked for every force of every decision.
+    void bring(RightHandSide& part) {
+        const ForceSolution& s = part.solution;
+        if (s.value.empty() || s.rung != rung_ || s.bits != bits_ || (part.rough && !rough_)) {
+            solve_anew(part);
+        }
+    }
     virtual Order sign(const ForceExpression& a) = 0;
     virtual Order compare(const ForceExpression& a, const ForceExpression& b) = 0;
     /// See `ForceLadder::zero_of`; of about `bits` bits where more are known.
@@ -36,27 +43,25 @@ template <int Dim> class ForceRung {
     LadderProblem<Dim>& problem_;
 
   private:
-    /// `part.solution` is of this rung, though a better one of the same arithmetic may be asked for.
-    [[nodiscard]] virtual bool is_enough(const RightHandSide& part) const { return !part.rough; }
+    void solve_anew(RightHandSide& part);
     /// \pre the right-hand side is not zero.
     virtual void solve(RightHandSide& part) = 0;
 
     Rung rung_;
     int bits_;
+    bool rough_;
 };
 
 /// `accuracy` > 0: solutions to this relative accuracy, estimated, are enough.
 template <int Dim> std::unique_ptr<ForceRung<Dim>> double_rung(LadderProblem<Dim>& problem, double accuracy);
-/// Null when no true vertex was enclosed in double-double, though one is meant.
+/// Null when lengths or loads leave the range in which products of doubles are exact, or when no true vertex was
+/// enclosed in double-double, though one is meant.
 template <int Dim> std::unique_ptr<ForceRung<Dim>> double_double_rung(LadderProblem<Dim>& problem);
-/// What the rungs in MPFR hand on to each other.
-struct MultiprecisionStart {
-    std::shared_ptr<const ExtendedMatrix> matrix; ///< of the rung double-double, or null
-    std::vector<Real> coordinate;                 ///< near the true vertex; empty: the stored ones
-};
-/// Null when no true vertex was enclosed to so many bits, though one is meant.
+/// Null when no true vertex was enclosed to so many bits, though one is meant. `start`: a correction of the stored
+/// coordinates near it, or empty.
 template <int Dim>
-std::unique_ptr<ForceRung<Dim>> multiprecision_rung(LadderProblem<Dim>& problem, MultiprecisionStart start, int bits);
+std::unique_ptr<ForceRung<Dim>> multiprecision_rung(LadderProblem<Dim>& problem, int bits,
+                                                    const std::vector<Real>& start = {});
 /// Null when exact numbers would be too expensive, would not be about what is meant, or when the matrix is not regular.
 /// `last`: the rung before, which says how far normals are from those that are meant.
 template <int Dim> std::unique_ptr<ForceRung<Dim>> exact_rung(LadderProblem<Dim>& problem, ForceRung<Dim>& last);
@@ -64,7 +69,7 @@ template <int Dim> std::unique_ptr<ForceRung<Dim>> exact_rung(LadderProblem<Dim>
 extern template class ForceRung<2>;
 extern template std::unique_ptr<ForceRung<2>> double_rung<2>(LadderProblem<2>&, double);
 extern template std::unique_ptr<ForceRung<2>> double_double_rung<2>(LadderProblem<2>&);
-extern template std::unique_ptr<ForceRung<2>> multiprecision_rung<2>(LadderProblem<2>&, MultiprecisionStart, int);
+extern template std::unique_ptr<ForceRung<2>> multiprecision_rung<2>(LadderProblem<2>&, int, const std::vector<Real>&);
 extern template std::unique_ptr<ForceRung<2>> exact_rung<2>(LadderProblem<2>&, ForceRung<2>&);
 
 } // namespace isostat

@@ -1,7 +1,5 @@
 #include "verified/interval_rung.hpp"
 
-#include "verified/refined_vertex.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +8,30 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+PreciseInterval point(const Real& x, mpfr_prec_t bits) {
+    PreciseInterval result(bits);
+    mpfr_set(result.low.get(), x.get(), MPFR_RNDD);
+    mpfr_set(result.high.get(), x.get(), MPFR_RNDU);
+    return result;
+}
+
+PreciseInterval point(const dd_real& x, mpfr_prec_t bits) {
+    PreciseInterval result(bits);
+    mpfr_set_d(result.low.get(), x.x[0], MPFR_RNDD);
+    mpfr_add_d(result.low.get(), result.low.get(), x.x[1], MPFR_RNDD);
+    mpfr_set_d(result.high.get(), x.x[0], MPFR_RNDU);
+    mpfr_add_d(result.high.get(), result.high.get(), x.x[1], MPFR_RNDU);
+    return result;
+}
+
+mpfr_prec_t bits_above(const Arithmetic<Real>& arithmetic) {
+    return arithmetic.bits() + 32;
+}
+mpfr_prec_t bits_above(const Arithmetic<dd_real>&) {
+    return low_bits;
+}
+
+} // namespace
 
 PreciseInterval unknown_interval(mpfr_prec_t bits) {
     PreciseInterval interval(bits);
@@ -19,29 +40,30 @@ PreciseInterval unknown_interval(mpfr_prec_t bits) {
     return interval;
 }
 
-/// 2-norm of the vectors within the bound.
-PreciseInterval norm_of(const RefinedVector& v, mpfr_prec_t bits) {
-    PreciseInterval norm(bits);
-    for (const Real& c : v.value) {
-        PreciseInterval point(bits);
-        mpfr_set(point.low.get(), c.get(), MPFR_RNDD);
-        mpfr_set(point.high.get(), c.get(), MPFR_RNDU);
-        norm = norm + point * point;
+template <int Dim, class T> PreciseInterval norm_of_motion(const ContactSystem<Dim, T>& system, std::size_t l) {
+    const auto& arithmetic = system.arithmetic();
+    std::vector<T> unit(system.size(), arithmetic.number(0));
+    unit[l] = arithmetic.number(1);
+    const BoundedVector<T> v = system.motion(unit);
+    const mpfr_prec_t bits = bits_above(arithmetic);
+    if (v.value.empty()) {
+        return unknown_interval(bits);
     }
+    PreciseInterval norm(bits);
+    for (const T& c : v.value) {
+        const PreciseInterval here = point(c, bits);
+        norm = norm + here * here;
+    }
+    const UpperBound bound(v.bound);
     mpfr_sqrt(norm.low.get(), norm.low.get(), MPFR_RNDD);
     mpfr_sqrt(norm.high.get(), norm.high.get(), MPFR_RNDU);
-    mpfr_sub(norm.low.get(), norm.low.get(), v.bound.get(), MPFR_RNDD);
-    mpfr_add(norm.high.get(), norm.high.get(), v.bound.get(), MPFR_RNDU);
+    mpfr_sub(norm.low.get(), norm.low.get(), bound.real().get(), MPFR_RNDD);
+    mpfr_add(norm.high.get(), norm.high.get(), bound.real().get(), MPFR_RNDU);
     return norm;
 }
 
-} // namespace
-
-template <int Dim> void ForceRung<Dim>::bring(RightHandSide& part) {
+template <int Dim> void ForceRung<Dim>::solve_anew(RightHandSide& part) {
     ForceSolution& s = part.solution;
-    if (!s.value.empty() && s.rung == rung_ && s.bits == bits_ && is_enough(part)) {
-        return;
-    }
     if (part.zero) {
         const std::size_t n = part.force.size();
         s.value.assign(n, 0.0);
@@ -51,10 +73,6 @@ template <int Dim> void ForceRung<Dim>::bring(RightHandSide& part) {
     }
     s.rung = rung_;
     s.bits = bits_;
-}
-
-template <int Dim> double IntervalRung<Dim>::normal_uncertainty() {
-    return this->problem_.vertex == nullptr ? 0 : this->problem_.normal_rate() * where().away;
 }
 
 template <int Dim> PreciseInterval IntervalRung<Dim>::enclosed(const RightHandSide& part, std::size_t l) const {
@@ -72,31 +90,6 @@ template <int Dim> PreciseInterval IntervalRung<Dim>::component(int part, std::s
     RightHandSide& p = this->problem_.part(part);
     this->bring(p);
     return p.zero ? PreciseInterval(low_bits) : enclosed(p, l);
-}
-
-/// On the rungs below MPFR the system of the first MPFR rung is used: it contains them.
-template <int Dim> PreciseInterval IntervalRung<Dim>::norm_of_mechanism(std::size_t l) {
-    LadderProblem<Dim>& problem = this->problem_;
-    if (problem.inverse.verdict != Verdict::proved) {
-        return unknown_interval(low_bits);
-    }
-    std::optional<RefinedSystem<Dim>> own;
-    if (system() == nullptr) {
-        const double sigma =
-            problem.inverse.sigma_min - where().uncertainty * (1 + 8 * u) - problem.normal_rate() * where().shift;
-        if (!(sigma > problem.inverse.sigma_min / 2)) {
-            return unknown_interval(low_bits);
-        }
-        // Normals of the stored configuration: as far from the true ones as on the rung double.
-        own.emplace(problem.structure, exact_coordinates(problem.packing.q, {}), problem.factorisation,
-                    sigma * (1 - 8 * u), Real(normal_uncertainty(), 53), low_bits);
-    }
-    const RefinedSystem<Dim>& use = own ? *own : *system();
-    const auto n = static_cast<std::size_t>(problem.structure.size());
-    std::vector<Real> unit(n, Real(53));
-    mpfr_set_ui(unit[l].get(), 1, MPFR_RNDN);
-    const RefinedVector v = use.solve(unit, std::vector<Real>(n, Real(53)), true);
-    return v.value.size() == n ? norm_of(v, use.bits() + 32) : unknown_interval(low_bits);
 }
 
 template <int Dim> const PreciseInterval& IntervalRung<Dim>::mechanism_norm(std::size_t l) {
@@ -175,6 +168,8 @@ template <int Dim> double IntervalRung<Dim>::bound_exponent(const RightHandSide&
     return std::log2(part.solution.bound) + 1e-12;
 }
 
+template PreciseInterval norm_of_motion<2>(const ContactSystem<2, dd_real>&, std::size_t);
+template PreciseInterval norm_of_motion<2>(const ContactSystem<2, Real>&, std::size_t);
 template class ForceRung<2>;
 template class IntervalRung<2>;
 

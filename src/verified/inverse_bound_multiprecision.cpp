@@ -1,6 +1,5 @@
 #include "exact/sparse_lu.hpp"
-#include "verified/precise_matrix.hpp"
-#include "verified/refined_vertex.hpp"
+#include "verified/corrected_configuration.hpp"
 
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
 
@@ -115,9 +114,10 @@ InverseBound bound_inverse_multiprecision(const Packing<Dim>& packing, const Iso
     if (structure.size() > size_limit) {
         return {};
     }
-    const std::vector<Real> coordinates = exact_coordinates(packing.q, {});
     for (int bits = 128; bits <= max_bits; bits *= 2) {
-        const sparse::Matrix<Real> h = precise_contact_matrix(structure, coordinates, bits);
+        using Place = CorrectedConfiguration<Dim, Real>;
+        const sparse::Matrix<Real> h =
+            Place(Arithmetic<Real>(bits), packing).contact_matrix(structure, Place::Divided::by_distances);
         const double sigma = sigma_by_rows(h, structure.ordering(), bits);
         if (sigma > 0) {
             return {Verdict::proved, sigma, InverseBound::Route::multiprecision};

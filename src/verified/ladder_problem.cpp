@@ -57,17 +57,17 @@ template <int Dim> double LadderProblem<Dim>::normal_rate() {
     return *normal_rate_;
 }
 
-template <int Dim> const Place& LadderProblem<Dim>::stored_place() {
-    if (!stored_place_) {
-        stored_place_.emplace();
+template <int Dim> auto LadderProblem<Dim>::stored_distance() -> const Distance& {
+    if (!stored_distance_) {
+        stored_distance_.emplace();
         if (vertex != nullptr) {
             const double away = vertex->verdict == Verdict::proved
                                     ? (vertex->radius + norm_above(vertex->correction)) * (1 + 4 * u)
                                     : std::numeric_limits<double>::infinity();
-            stored_place_ = Place{0, normal_rate() * away, away};
+            stored_distance_ = Distance{away, normal_rate() * away};
         }
     }
-    return *stored_place_;
+    return *stored_distance_;
 }
 
 template <int Dim> void LadderProblem<Dim>::solve_in_double(RightHandSide& part, double accuracy) const {
@@ -85,28 +85,20 @@ template <int Dim> void LadderProblem<Dim>::solve_in_double(RightHandSide& part,
     }
 }
 
-template <int Dim>
-void LadderProblem<Dim>::solve_in_double_double(RightHandSide& part, const ExtendedMatrix& matrix) const {
-    if (part.solution.rung == Rung::double_bound) {
-        refine_double_double(part.solution, matrix, structure, factorisation, inverse, part.force, part.terms.products);
-    }
-}
-
-template <int Dim> void LadderProblem<Dim>::inflate(RightHandSide& part, const Place& here, bool stored) {
+template <int Dim> void LadderProblem<Dim>::inflate(RightHandSide& part) {
     if (vertex == nullptr) {
         return;
     }
     ForceSolution& s = part.solution;
+    const Distance& here = stored_distance();
     const double sigma = inverse.sigma_min;
-    const double left = (sigma - normal_rate() * here.shift - here.uncertainty) * (1 - 8 * u);
+    const double left = (sigma - here.uncertainty) * (1 - 8 * u);
     if (!(left > sigma / 2)) {
         s.bound = std::numeric_limits<double>::infinity();
         return;
     }
-    double turned = here.uncertainty * norm_above(s.value) * (1 + 4 * u); // bound of |(H* - H) x|
-    if (stored) {
-        turned = std::min(turned, turn_of_forces(packing, structure.contacts(), s.value) * here.away);
-    }
+    const double turned = std::min(here.uncertainty * norm_above(s.value) * (1 + 4 * u), // bound of |(H* - H) x|
+                                   turn_of_forces(packing, structure.contacts(), s.value) * here.away);
     const double residual = s.bound * sigma + turned + part.terms.rate * here.away;
     s.bound = residual / left * (1 + 16 * u);
 }

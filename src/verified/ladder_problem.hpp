@@ -1,7 +1,7 @@
 #pragma once
 // What a ladder of forces was asked, and what its rungs share: private to the room.
 
-#include "verified/refinement.hpp"
+#include "verified/contact_system.hpp"
 
 #include <isostat/verified/force_ladder.hpp>
 
@@ -17,19 +17,11 @@ struct RightHandSide {
     std::vector<double> force;
     LoadTerms terms;
     bool zero = false;
-    bool rough = false;        ///< `solution` stopped at `first_accuracy`
-    std::vector<double> guess; ///< of the solution, or empty
-    ForceSolution solution;    ///< on the rung `solution.rung` with `solution.bits`; empty before the first request
-    RefinedVector refined;     ///< rung multiprecision
+    bool rough = false;          ///< `solution` stopped at `first_accuracy`
+    std::vector<double> guess;   ///< of the solution, or empty
+    ForceSolution solution;      ///< on the rung `solution.rung` with `solution.bits`; empty before the first request
+    BoundedVector<Real> refined; ///< rung multiprecision
     std::vector<mpq_class> unknown; ///< rung exact
-};
-
-/// Of the configuration at which a rung evaluates the normals: distance from the stored one, bound of |H* - H| there,
-/// and distance of the stored from the true one. All 0 when the stored configuration is meant.
-struct Place {
-    double shift = 0;
-    double uncertainty = 0;
-    double away = 0;
 };
 
 /// The arguments of a ladder and its right-hand sides.
@@ -50,19 +42,22 @@ template <int Dim> class LadderProblem {
     [[nodiscard]] RightHandSide& part(int number) { return parts[static_cast<std::size_t>(number)]; }
     /// |H(q) - H(q')|_2 per |q - q'|_2 near the true vertex; 0 without one. As it is at the first request.
     [[nodiscard]] double normal_rate();
-    /// Of the stored configuration. As it is at the first request.
-    [[nodiscard]] const Place& stored_place();
+    /// Bounds of |q* - q| and of |H* - H| at the stored configuration q; 0 when that is meant. As they are at the first
+    /// request.
+    struct Distance {
+        double away = 0;
+        double uncertainty = 0;
+    };
+    [[nodiscard]] const Distance& stored_distance();
     /// Solves in double, unless a solution of at least this accuracy is there. `accuracy`: as in `solve_forces`.
     void solve_in_double(RightHandSide& part, double accuracy) const;
-    /// Goes on from there with residuals in double-double, unless a solution of at least this kind is there.
-    void solve_in_double_double(RightHandSide& part, const ExtendedMatrix& matrix) const;
-    /// The bound of a solution at the place of a rung becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H* -
-    /// H|), |H* x - F*| <= |H x - F| + |(H* - H) x| + |F* - F|. `stored`: the place is the stored configuration.
-    void inflate(RightHandSide& part, const Place& here, bool stored);
+    /// The bound of a solution at the stored configuration becomes one for the true vertex: |H*^-1| <= 1 / (sigma - |H*
+    /// - H|), |H* x - F*| <= |H x - F| + |(H* - H) x| + |F* - F|.
+    void inflate(RightHandSide& part);
 
   private:
     std::optional<double> normal_rate_;
-    std::optional<Place> stored_place_;
+    std::optional<Distance> stored_distance_;
 };
 
 /// Rounds a vector of MPFR numbers to value + low, the rounding included in the bound.

@@ -3,6 +3,7 @@
 
 #include <mpfr.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace isostat {
@@ -37,6 +38,41 @@ class Real {
   private:
     mpfr_t x_;
 };
+
+/// Rounded to nearest, with the bits of the longer operand; `+=` and `-=` keep those of the left one.
+template <int (*operation)(mpfr_ptr, mpfr_srcptr, mpfr_srcptr, mpfr_rnd_t)> Real rounded(const Real& a, const Real& b) {
+    Real result(std::max(mpfr_get_prec(a.get()), mpfr_get_prec(b.get())));
+    operation(result.get(), a.get(), b.get(), MPFR_RNDN);
+    return result;
+}
+inline Real operator+(const Real& a, const Real& b) {
+    return rounded<mpfr_add>(a, b);
+}
+inline Real operator-(const Real& a, const Real& b) {
+    return rounded<mpfr_sub>(a, b);
+}
+inline Real operator*(const Real& a, const Real& b) {
+    return rounded<mpfr_mul>(a, b);
+}
+inline Real operator/(const Real& a, const Real& b) {
+    return rounded<mpfr_div>(a, b);
+}
+inline Real operator-(Real a) {
+    mpfr_neg(a.get(), a.get(), MPFR_RNDN);
+    return a;
+}
+inline Real& operator+=(Real& a, const Real& b) {
+    mpfr_add(a.get(), a.get(), b.get(), MPFR_RNDN);
+    return a;
+}
+inline Real& operator-=(Real& a, const Real& b) {
+    mpfr_sub(a.get(), a.get(), b.get(), MPFR_RNDN);
+    return a;
+}
+inline Real sqrt(Real a) {
+    mpfr_sqrt(a.get(), a.get(), MPFR_RNDN);
+    return a;
+}
 
 /// A real number between low and high; all operations round outwards, with `bits` of the object. NaN: nothing is known.
 class PreciseInterval {

@@ -23,6 +23,17 @@ template <int Dim> double target(const Packing<Dim>& packing, const Contact& con
     return 0;
 }
 
+/// Products of such doubles, and what rounding leaves of them, keep all digits (V0).
+inline bool in_range_of_products(double size) {
+    return size > 1e-100 && size < 1e100;
+}
+/// Of all lengths.
+template <int Dim> bool in_range_of_products(const Packing<Dim>& packing) {
+    const auto longer = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    return in_range_of_products(packing.min_radius()) &&
+           std::abs(*std::max_element(packing.q.begin(), packing.q.end(), longer)) < 1e100;
+}
+
 /// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
 /// of disk contacts of one disk (V4). 0 when there are only walls.
 template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {

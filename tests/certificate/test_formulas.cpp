@@ -55,7 +55,7 @@ struct Worse {
         residual = norm_of(f);
         beta = std::sqrt(h / (k * residual));
         radius = 1.18 * beta * residual;
-        centre->inverse_norm = beta;
+        centre->neighbourhood.inverse_norm = beta;
         subject.emplace(state, centre->structure);
         vertex = in_double(*subject, *centre);
     }
@@ -111,9 +111,10 @@ BOOST_AUTO_TEST_CASE(the_centre_has_the_constants_of_V4) {
                 ++count[j];
             }
         }
-        check_above(centre.lipschitz, 2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-12);
-        check_above(centre.inverse_norm * centre.inverse.sigma_min, 1 / (1 - ratio), 3 * ratio + 1e-12);
-        BOOST_TEST(centre.inverse_norm * centre.inverse.sigma_min >= 1 + 2 * ratio);
+        check_above(centre.neighbourhood.lipschitz,
+                    2 * std::sqrt(*std::max_element(count.begin(), count.end())) / smallest, 1e-12);
+        check_above(centre.neighbourhood.inverse_norm * centre.inverse.sigma_min, 1 / (1 - ratio), 3 * ratio + 1e-12);
+        BOOST_TEST(centre.neighbourhood.inverse_norm * centre.inverse.sigma_min >= 1 + 2 * ratio);
         BOOST_TEST(centre.largest_gap >= largest);
     }
 }
@@ -142,7 +143,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_exists_up_to_the_quarter_of_Kantorovich_and_its_ra
 BOOST_AUTO_TEST_CASE(the_stored_point_is_within_the_radius_claimed) {
     // In double-double the enclosure is about a corrected point: the way there is part of the radius.
     Worse worse(0.01);
-    worse.centre->inverse_norm = 10;
+    worse.centre->neighbourhood.inverse_norm = 10;
     const auto vertex = in_double_double(*worse.subject, *worse.centre);
     BOOST_TEST_REQUIRE(vertex->exists());
     std::vector<double> step;

@@ -8,6 +8,7 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/statics/statics.hpp>
 #include <isostat/verified/configuration.hpp>
+#include <isostat/verified/force_ladder.hpp>
 
 #include <boost/multiprecision/cpp_dec_float.hpp>
 #include <boost/test/unit_test.hpp>
@@ -156,7 +157,10 @@ bool check(const Packing<2>& packing, const std::vector<Contact>& contacts, cons
     const Real in_double = error();
     BOOST_TEST(in_double <= Real(solution.bound), "double: error above the bound");
     const double double_bound = solution.bound;
-    refine_double_double(solution, extended_contact_matrix(packing, structure), structure, factorisation, bound, force);
+    ForceLadder<2> ladder(packing, structure, factorisation, bound);
+    const int part = ladder.add(force);
+    BOOST_TEST_REQUIRE(ladder.climb());
+    solution = ladder.solution(part);
     BOOST_TEST(error() <= Real(solution.bound),
                "double-double: error " << error().convert_to<double>() << " above the bound " << solution.bound);
     if (bound.sigma_min > 1e-10) {

@@ -23,17 +23,6 @@ struct ForceSolution {
     int bits = 53; ///< of the arithmetic: 53, 106, those of MPFR, or 0 for exact numbers
 };
 
-/// Unit normals of the stored configuration in double-double, made when the first solve climbs; reused for every
-/// right-hand side. Column l holds the entries of `structure.matrix()` in the same order, relative error below 2^-98;
-/// at q + `correction` when that is given (one per coordinate; then plus 2^-100 |correction| / D).
-struct ExtendedMatrix {
-    std::vector<double> high;
-    std::vector<double> low;
-};
-template <int Dim>
-ExtendedMatrix extended_contact_matrix(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                                       const std::vector<double>& correction = {});
-
 /// LU solve, one step of refinement where it can help, and the bound |f - f~| <= |H^-1|_2 |F - H f~|_2 with the
 /// rounding of the residual and of the entries of H included (statement V3). \pre `inverse` proved; otherwise the bound
 /// is infinite. Each component of `force` may be off by its own rounding (unit 2^-53). Cost: two solves. With
@@ -51,20 +40,7 @@ struct ExactProduct {
     double b = 0;
 };
 
-/// Refines `solution` with residuals in double-double: bound near 1e-30 |f| |H^-1|. The right-hand side is the same
-/// `force`, taken as exact but for the rows of `products`, whose products are taken without rounding.
-template <int Dim>
-void refine_double_double(ForceSolution& solution, const ExtendedMatrix& matrix,
-                          const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-                          const InverseBound& inverse, const std::vector<double>& force,
-                          std::span<const ExactProduct> products = {});
-
-extern template ExtendedMatrix extended_contact_matrix<2>(const Packing<2>&, const IsostaticStructure<2>&,
-                                                          const std::vector<double>&);
 extern template ForceSolution solve_forces<2>(const IsostaticStructure<2>&, const Factorisation&, const InverseBound&,
                                               const std::vector<double>&, std::span<const double>, double);
-extern template void refine_double_double<2>(ForceSolution&, const ExtendedMatrix&, const IsostaticStructure<2>&,
-                                             const Factorisation&, const InverseBound&, const std::vector<double>&,
-                                             std::span<const ExactProduct>);
 
 } // namespace isostat

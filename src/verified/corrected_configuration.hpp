@@ -1,0 +1,121 @@
+#pragma once
+// Gaps and contact matrix at stored coordinates plus a correction, in one number type: private to the room and to the
+// certificate. Every constant is counted in V5 and V6 (proofs/true_vertex.md).
+
+#include "verified/arithmetic.hpp"
+#include "verified/vertex_bounds.hpp"
+
+#include <isostat/contact/separation.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <array>
+#include <vector>
+
+namespace isostat {
+
+/// c = q + p, q doubles. Differences of coordinates are formed as (q_j - q_i) + (p_j - p_i): no cancellation of large
+/// coordinates, whatever the distance from the origin. `Correction`: how p is kept, one number per coordinate. Copies
+/// share the packing, which must outlive them.
+template <int Dim, class T, class Correction = std::vector<T>> class CorrectedConfiguration {
+  public:
+    /// p = 0.
+    CorrectedConfiguration(const Arithmetic<T>& arithmetic, const Packing<Dim>& packing)
+        : arithmetic_(arithmetic), packing_(&packing), correction_(packing.q.size(), arithmetic.number(0)) {}
+    CorrectedConfiguration(const Arithmetic<T>& arithmetic, const Packing<Dim>& packing, Correction correction)
+        : arithmetic_(arithmetic), packing_(&packing), correction_(std::move(correction)) {}
+
+    [[nodiscard]] const Arithmetic<T>& arithmetic() const { return arithmetic_; }
+    [[nodiscard]] const Packing<Dim>& packing() const { return *packing_; }
+    [[nodiscard]] const Correction& correction() const { return correction_; }
+    [[nodiscard]] T& correction(int coordinate) { return correction_[index(coordinate)]; }
+    void correct(Correction correction) { correction_ = std::move(correction); }
+
+    /// F_l of T9: (|x_j - x_i|^2 - D^2) / (2 D), the gap at a wall, what a held coordinate has moved. Within 8 unit D.
+    [[nodiscard]] T gap_function(const Contact& contact) const {
+        switch (contact.kind) {
+        case ContactKind::disk_disk: return power(contact) / (number(2) * length(contact));
+        case ContactKind::held: return moved(index(contact.i));
+        default: return wall_gap(contact);
+        }
+    }
+    /// |x_j - x_i|^2 - D^2.
+    [[nodiscard]] T power(const Contact& contact) const {
+        const T d = length(contact);
+        return square(contact) - d * d;
+    }
+    /// Gap of a disk and a wall.
+    [[nodiscard]] T wall_gap(const Contact& contact) const {
+        const std::size_t k = index(Dim * contact.i + contact.j);
+        const double r = packing_->radius[index(contact.i)];
+        return contact.kind == ContactKind::lower_wall
+                   ? arithmetic_.difference(packing_->q[k], r) + moved(k)
+                   : difference(k, index(Dim * packing_->disk_count() + contact.j)) - number(r);
+    }
+    /// Gap of any pair, within 8 unit (|gap| + D) and the rounding of a quotient and a root.
+    [[nodiscard]] T gap(const Contact& contact) const {
+        using std::sqrt;
+        switch (contact.kind) {
+        case ContactKind::disk_disk: return power(contact) / (sqrt(square(contact)) + length(contact));
+        case ContactKind::held: return number(0);
+        default: return wall_gap(contact);
+        }
+    }
+    /// x_j - x_i of two disks.
+    [[nodiscard]] std::array<T, static_cast<std::size_t>(Dim)> separation(const Contact& pair) const {
+        return Separation<Dim>(pair, packing_->disk_count())
+            .of_disks([](std::size_t coordinate) { return coordinate; },
+                      [this](std::size_t to, std::size_t from) { return difference(from, to); });
+    }
+    /// R_i + R_j.
+    [[nodiscard]] T length(const Contact& contact) const {
+        return number(packing_->radius[index(contact.i)]) + number(packing_->radius[index(contact.j)]);
+    }
+
+    /// Columns of disk contacts are (x_j - x_i) divided by `by`. Lengths: A(c) = -DF(c)^T, the contact matrix where c
+    /// is the true vertex (V6). Distances: the unit normals at c itself.
+    enum class Divided : unsigned char { by_lengths, by_distances };
+    [[nodiscard]] sparse::Matrix<T> contact_matrix(const IsostaticStructure<Dim>& structure, Divided divided) const {
+        using std::sqrt;
+        const sparse::Matrix<double>& h = structure.matrix();
+        sparse::Matrix<T> matrix{h.rows, h.cols, h.start, h.row, {}};
+        for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
+            const Contact& contact = structure.contacts()[l];
+            if (contact.kind != ContactKind::disk_disk) {
+                for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+                    matrix.value.push_back(number(h.value[index(e)])); // +-1
+                }
+                continue;
+            }
+            const T by = divided == Divided::by_lengths ? length(contact) : sqrt(square(contact));
+            const auto d = separation(contact);
+            for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
+                const int coordinate = structure.dofs().coordinate_of(h.row[index(e)]);
+                const T n = d[index(coordinate % Dim)] / by;
+                matrix.value.push_back(coordinate / Dim == contact.i ? n : -n);
+            }
+        }
+        return matrix;
+    }
+
+  private:
+    static std::size_t index(int k) { return static_cast<std::size_t>(k); }
+    /// x_to - x_from.
+    [[nodiscard]] T difference(std::size_t from, std::size_t to) const {
+        return arithmetic_.difference(packing_->q[to], packing_->q[from]) + (moved(to) - moved(from));
+    }
+    [[nodiscard]] T moved(std::size_t coordinate) const { return T(correction_[coordinate]); }
+    [[nodiscard]] T number(double x) const { return arithmetic_.number(x); }
+    [[nodiscard]] T square(const Contact& contact) const {
+        T sum = number(0);
+        for (const T& d : separation(contact)) {
+            sum += d * d;
+        }
+        return sum;
+    }
+
+    Arithmetic<T> arithmetic_;
+    const Packing<Dim>* packing_;
+    Correction correction_;
+};
+
+} // namespace isostat

@@ -55,6 +55,15 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
     const Solution& present();
     const Solution& unit_load();
     const Solution& infinitesimal_solution();
+    [[nodiscard]] static std::size_t index(int l) { return static_cast<std::size_t>(l); }
+    [[nodiscard]] std::string name(int l) const { return to_string<Dim>(subject_.state.contacts[index(l)]); }
+    /// Of the force in contact l when the load goes in the direction.
+    double rate(int l, int direction) { return direction * A::rounded(unit_load().value[index(l)]); }
+    int first_to_vanish(int direction);
+    std::string open_rate(int l);
+    LoadEndAnswer without_end(int direction);
+    std::string vanishes_before(int first, const std::vector<int>& members, const T& t, double error);
+    int opens(int first, const std::vector<int>& members, int direction);
     Interval around(const T& value, double bound) const;
     std::vector<Interval> around(const Solution& solution) const;
 
@@ -208,54 +217,53 @@ template <int Dim, class T> std::vector<Interval> TrueVertexAt<Dim, T>::infinite
     return around(infinitesimal_solution());
 }
 
-template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::load_end(int direction) {
-    const Solution& force = present();
-    const Solution& slope = unit_load();
-    const int count = subject_.size();
-    const auto index = [](int l) { return static_cast<std::size_t>(l); };
-    const auto name = [this, index](int l) { return to_string<Dim>(subject_.state.contacts[index(l)]); };
-    const auto rate = [&](int l) { return direction * A::rounded(slope.value[index(l)]); };
+/// The force that vanishes first as far as rounded numbers tell; -1: none decreases.
+template <int Dim, class T> int TrueVertexAt<Dim, T>::first_to_vanish(int direction) {
     int first = -1;
     double smallest = infinity;
-    for (int l = 0; l < count; ++l) {
-        if (subject_.zero_slope[index(l)] == 0 && rate(l) < 0) {
-            const double distance = A::rounded(force.value[index(l)]) / -rate(l);
+    for (int l = 0; l < subject_.size(); ++l) {
+        if (subject_.zero_slope[index(l)] == 0 && rate(l, direction) < 0) {
+            const double distance = A::rounded(present().value[index(l)]) / -rate(l, direction);
             if (distance < smallest) {
                 smallest = distance;
                 first = l;
             }
         }
     }
-    if (first < 0) {
-        for (int l = 0; l < count; ++l) {
-            if (subject_.zero_slope[index(l)] == 0 && !(rate(l) > slope.bound * (1 + 4 * u))) {
-                return {{},
-                        fmt::format("the force in contact {} changes with the load at a rate of {:.3g}, proved to "
-                                    "{:.3g}",
-                                    name(l), rate(l) * direction, slope.bound)};
-            }
+    return first;
+}
+
+template <int Dim, class T> std::string TrueVertexAt<Dim, T>::open_rate(int l) {
+    return fmt::format("the force in contact {} changes with the load at a rate of {:.3g}, proved to {:.3g}", name(l),
+                       rate(l, +1), unit_load().bound);
+}
+
+template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::without_end(int direction) {
+    const double bound = unit_load().bound;
+    for (int l = 0; l < subject_.size(); ++l) {
+        if (subject_.zero_slope[index(l)] == 0 && !(rate(l, direction) > bound * (1 + 4 * u))) {
+            return {{}, open_rate(l)};
         }
-        LoadEndClaim claim;
-        claim.unbounded = true;
-        return {claim, {}};
     }
-    const double steepness = -rate(first) * (1 - 4 * u) - slope.bound;
-    if (!(steepness > 0)) {
-        return {{},
-                fmt::format("the force in contact {} changes with the load at a rate of {:.3g}, proved to {:.3g}",
-                            name(first), rate(first) * direction, slope.bound)};
-    }
-    // The load of the end is sigma - t.
-    const T t = force.value[index(first)] / slope.value[index(first)];
+    LoadEndClaim claim;
+    claim.unbounded = true;
+    return {claim, {}};
+}
+
+/// Nothing when every force but that of `first` and those of `members` is positive at sigma - t, t known to `error`;
+/// else which one is not.
+template <int Dim, class T>
+std::string TrueVertexAt<Dim, T>::vanishes_before(int first, const std::vector<int>& members, const T& t,
+                                                  double error) {
+    const Solution& force = present();
+    const Solution& slope = unit_load();
     const double size = std::abs(A::rounded(t));
-    const double error = ((force.bound + size * slope.bound) / steepness + 4 * unit() * size) * (1 + 16 * u);
-    const std::vector<int> members = subject_.vanish_with(first);
     std::vector<unsigned char> skip = subject_.zero; // 0 at every load
     skip[index(first)] = 1;
     for (const int l : members) {
         skip[index(l)] = 1;
     }
-    for (int l = 0; l < count; ++l) {
+    for (int l = 0; l < subject_.size(); ++l) {
         if (skip[index(l)] != 0 || subject_.zero_slope[index(l)] != 0) {
             continue;
         }
@@ -267,25 +275,51 @@ template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::load_end(int dir
                                  (1 + 16 * u) +
                              2 * u * std::abs(value);
         if (!(value > bound)) {
-            return {{},
-                    fmt::format("the forces in contacts {} and {} vanish at loads that are not ordered: where the "
-                                "first is 0 the second is {:.3g}, proved to {:.3g}",
-                                name(first), name(l), value, bound)};
+            return fmt::format("the forces in contacts {} and {} vanish at loads that are not ordered: where the "
+                               "first is 0 the second is {:.3g}, proved to {:.3g}",
+                               name(first), name(l), value, bound);
         }
     }
-    // Which of a class is named decides nothing; the infinitesimal loads say which one a run would open.
-    int opens = first;
-    if (!members.empty() && !subject_.state.load.infinitesimal.empty()) {
-        const Solution& g = infinitesimal_solution();
-        const auto key = [&](int l) { return A::rounded(g.value[index(l)]) / std::abs(rate(l)); };
-        for (const int l : members) {
-            opens = rate(l) != 0 && key(l) < key(opens) ? l : opens;
-        }
+    return {};
+}
+
+/// Which of a class is named decides nothing; the infinitesimal loads say which one a run would open.
+template <int Dim, class T> int TrueVertexAt<Dim, T>::opens(int first, const std::vector<int>& members, int direction) {
+    if (members.empty() || subject_.state.load.infinitesimal.empty()) {
+        return first;
+    }
+    const Solution& g = infinitesimal_solution();
+    const auto key = [&](int l) { return A::rounded(g.value[index(l)]) / std::abs(rate(l, direction)); };
+    int best = first;
+    for (const int l : members) {
+        best = rate(l, direction) != 0 && key(l) < key(best) ? l : best;
+    }
+    return best;
+}
+
+template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::load_end(int direction) {
+    const Solution& force = present();
+    const Solution& slope = unit_load();
+    const int first = first_to_vanish(direction);
+    if (first < 0) {
+        return without_end(direction);
+    }
+    const double steepness = -rate(first, direction) * (1 - 4 * u) - slope.bound;
+    if (!(steepness > 0)) {
+        return {{}, open_rate(first)};
+    }
+    // The load of the end is sigma - t.
+    const T t = force.value[index(first)] / slope.value[index(first)];
+    const double size = std::abs(A::rounded(t));
+    const double error = ((force.bound + size * slope.bound) / steepness + 4 * unit() * size) * (1 + 16 * u);
+    const std::vector<int> members = subject_.vanish_with(first);
+    if (std::string open = vanishes_before(first, members, t, error); !open.empty()) {
+        return {{}, std::move(open)};
     }
     LoadEndClaim claim;
     const double sigma = subject_.state.load.stress[static_cast<std::size_t>(subject_.state.load.loaded_axis)];
     claim.stress = around(number(sigma) - t, error + 2 * unit() * (std::abs(sigma) + size));
-    claim.opens = subject_.state.contacts[index(opens)];
+    claim.opens = subject_.state.contacts[index(opens(first, members, direction))];
     return {claim, {}};
 }
 

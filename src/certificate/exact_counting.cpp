@@ -1,9 +1,11 @@
 #include "certificate/exact_counting.hpp"
 
+#include <isostat/contact/separation.hpp>
 #include <isostat/exact/kernel.hpp>
 
 #include <algorithm>
-#include <map>
+#include <array>
+#include <functional>
 
 namespace isostat {
 
@@ -15,30 +17,18 @@ template <int Dim> exact::NumberMatrix exact_matrix(const State<Dim>& state) {
     exact::NumberMatrix matrix;
     matrix.rows = dofs.dof_count();
     for (const Contact& contact : state.contacts) {
-        std::map<int, exact::Number> column; // rows increasing
-        const auto add = [&](int coordinate, const exact::Number& value) {
-            const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
-            if (dof >= 0 && !value.is_zero()) {
-                column[dof] = value;
-            }
-        };
-        switch (contact.kind) {
-        case ContactKind::disk_disk:
-            for (int a = 0; a < Dim; ++a) {
-                const exact::Number d = exact::Number::from_double(state.packing.coordinate(DiskId(contact.j), a)) -
-                                        exact::Number::from_double(state.packing.coordinate(DiskId(contact.i), a));
-                add(Dim * contact.i + a, d);
-                add(Dim * contact.j + a, -d);
-            }
-            break;
-        case ContactKind::lower_wall: add(Dim * contact.i + contact.j, -1); break;
-        case ContactKind::upper_wall:
-            add(Dim * contact.i + contact.j, 1);
-            add(Dim * state.packing.disk_count() + contact.j, -1);
-            break;
-        case ContactKind::held: add(contact.i, -1); break;
+        const Separation<Dim> separation(contact, state.packing.disk_count());
+        std::array<exact::Number, Dim> r;
+        if (contact.kind == ContactKind::disk_disk) {
+            r = separation.of_disks([&](std::size_t k) { return exact::Number::from_double(state.packing.q[k]); },
+                                    std::minus<>());
         }
-        matrix.column.emplace_back(column.begin(), column.end());
+        auto& column = matrix.column.emplace_back();
+        separation.for_each_entry(dofs, r, [&](int dof, const exact::Number& entry) {
+            if (!entry.is_zero()) {
+                column.emplace_back(dof, entry);
+            }
+        });
     }
     return matrix;
 }

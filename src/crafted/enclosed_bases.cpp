@@ -1,3 +1,4 @@
+#include <isostat/contact/separation.hpp>
 #include <isostat/crafted/enclosed_bases.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 #include <isostat/verified/force_solution.hpp>
@@ -32,8 +33,7 @@ class Encloser {
         for (const Contact& contact : inspection.contacts) {
             double distance = std::numeric_limits<double>::infinity();
             if (contact.kind == ContactKind::disk_disk) {
-                distance = stored_.radius[static_cast<std::size_t>(contact.i)] +
-                           stored_.radius[static_cast<std::size_t>(contact.j)];
+                distance = touching_distance(stored_.radius, contact);
             }
             // |a / |a| - b / |b|| <= 2 |a - b| / |a|, for both disks of the contact.
             column_error_.push_back(2 * std::sqrt(2.0) * moved / distance * upwards);

@@ -1,7 +1,9 @@
+#include <isostat/contact/separation.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace isostat::crafted {
@@ -160,30 +162,24 @@ exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofM
     exact::NumberMatrix out;
     out.rows = dofs.dof_count();
     for (const Contact& contact : contacts) {
-        std::vector<std::pair<int, Number>> column;
-        const auto put = [&](std::size_t coordinate, const Number& value) {
-            const int dof = dofs.dof_of(coordinate);
-            if (dof >= 0 && !value.is_zero()) {
-                column.emplace_back(dof, value);
-            }
-        };
-        const auto i = static_cast<std::size_t>(contact.i);
-        const auto j = static_cast<std::size_t>(contact.j);
+        const Separation<2> separation(contact, packing.disk_count());
+        std::array<Number, 2> normal;
         if (contact.kind == ContactKind::disk_disk) {
-            const Number scale = (packing.radius[i] + packing.radius[j]).inverse();
-            for (std::size_t a = 0; a < 2; ++a) {
-                const Number normal = (packing.centre[j][a] - packing.centre[i][a]) * scale;
-                put(2 * i + a, normal);
-                put(2 * j + a, -normal);
+            const Number scale = (packing.radius[static_cast<std::size_t>(contact.i)] +
+                                  packing.radius[static_cast<std::size_t>(contact.j)])
+                                     .inverse();
+            normal = separation.of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); },
+                                         std::minus<>());
+            for (Number& component : normal) {
+                component *= scale;
             }
-        } else if (contact.kind == ContactKind::lower_wall) {
-            put(2 * i + j, -1);
-        } else {
-            put(2 * i + j, 1);
-            put(2 * packing.radius.size() + j, -1);
         }
-        std::sort(column.begin(), column.end(), [](const auto& s, const auto& t) { return s.first < t.first; });
-        out.column.push_back(std::move(column));
+        auto& column = out.column.emplace_back();
+        separation.for_each_entry(dofs, normal, [&](int dof, const Number& entry) {
+            if (!entry.is_zero()) {
+                column.emplace_back(dof, entry);
+            }
+        });
     }
     return out;
 }

@@ -1,5 +1,7 @@
 #include "crafted/gap_order.hpp"
 
+#include <isostat/contact/separation.hpp>
+
 #include <boost/multiprecision/gmp.hpp>
 
 #include <algorithm>
@@ -74,19 +76,15 @@ struct GapOrder::Exact {
     }
 
     [[nodiscard]] Root root(const Packing<2>& packing, const Contact& contact, int unit) const {
-        const auto i = static_cast<std::size_t>(contact.i);
-        const auto j = static_cast<std::size_t>(contact.j);
-        const Integer r = integer(packing.radius[i], unit);
+        const Separation<2> separation(contact, packing.disk_count());
+        const auto at = [&](std::size_t k) { return integer(packing.q[k], unit); };
+        const auto minus = [](const Integer& a, const Integer& b) -> Integer { return a - b; };
+        const Integer r = integer(packing.radius[static_cast<std::size_t>(contact.i)], unit);
         if (contact.kind == ContactKind::disk_disk) {
-            const Integer dx = integer(packing.q[2 * j], unit) - integer(packing.q[2 * i], unit);
-            const Integer dy = integer(packing.q[2 * j + 1], unit) - integer(packing.q[2 * i + 1], unit);
-            return {dx * dx + dy * dy, r + integer(packing.radius[j], unit)};
+            const auto [dx, dy] = separation.of_disks(at, minus);
+            return {dx * dx + dy * dy, r + integer(packing.radius[static_cast<std::size_t>(contact.j)], unit)};
         }
-        const Integer x = integer(packing.q[2 * i + j], unit);
-        if (contact.kind == ContactKind::lower_wall) {
-            return {0, r - x};
-        }
-        return {0, r + x - integer(packing.length(contact.j), unit)};
+        return {0, r - separation.of_wall(at, minus)};
     }
 };
 
@@ -103,21 +101,18 @@ GapOrder::~GapOrder() = default;
 GapOrder::GapOrder(GapOrder&&) noexcept = default;
 
 GapOrder::Item GapOrder::item(const Contact& contact) const {
-    const auto i = static_cast<std::size_t>(contact.i);
-    const auto j = static_cast<std::size_t>(contact.j);
     const std::vector<double>& q = packing_->q;
-    const double r = packing_->radius[i];
+    const double touching = touching_distance(packing_->radius, contact);
     if (contact.kind == ContactKind::disk_disk) {
-        const double distance = std::hypot(q[2 * j] - q[2 * i], q[2 * j + 1] - q[2 * i + 1]);
-        const double radii = r + packing_->radius[j];
-        return {contact, distance - radii, relative_bound * (distance + radii)};
+        const auto [dx, dy] = separation<2>(q, contact);
+        const double distance = std::hypot(dx, dy);
+        return {contact, distance - touching, relative_bound * (distance + touching)};
     }
-    const double x = q[2 * i + j];
-    if (contact.kind == ContactKind::lower_wall) {
-        return {contact, x - r, relative_bound * (std::abs(x) + r)};
-    }
-    const double length = packing_->length(contact.j);
-    return {contact, length - x - r, relative_bound * (std::abs(length) + std::abs(x) + r)};
+    double size = touching;
+    Separation<2>(contact, packing_->disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
+        size += std::abs(q[k]);
+    });
+    return {contact, wall_distance<2>(q, contact) - touching, relative_bound * size};
 }
 
 int GapOrder::compare(const Item& a, const Item& b) const {

@@ -2,6 +2,10 @@
 
 #include "crafted/carrying.hpp"
 
+#include <isostat/contact/separation.hpp>
+
+#include <functional>
+
 namespace isostat::crafted {
 
 namespace {
@@ -29,8 +33,9 @@ void judge_holds(Inspection& inspection, const ExactPacking& packing) {
         const auto i = static_cast<std::size_t>(contact.i);
         const auto j = static_cast<std::size_t>(contact.j);
         if (contact.kind == ContactKind::disk_disk) {
-            const Number x = packing.centre[j][0] - packing.centre[i][0];
-            const Number y = packing.centre[j][1] - packing.centre[i][1];
+            const auto [x, y] =
+                Separation<2>(contact, packing.disk_count())
+                    .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
             arms[i].push_back({l, {x, y}});
             arms[j].push_back({l, {-x, -y}});
             continue;

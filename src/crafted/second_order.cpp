@@ -1,5 +1,9 @@
 #include "crafted/second_order.hpp"
 
+#include <isostat/contact/separation.hpp>
+
+#include <functional>
+
 namespace isostat::crafted {
 
 Inertia inertia(std::vector<std::vector<Number>> a) {
@@ -60,17 +64,17 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
         if (contact.kind != ContactKind::disk_disk || forces[l].is_zero()) {
             continue; // a wall's gap is linear
         }
-        const auto i = static_cast<std::size_t>(contact.i);
-        const auto j = static_cast<std::size_t>(contact.j);
+        const Separation<2> separation(contact, packing.disk_count());
         std::vector<std::array<Number, 2>> relative(k);
         for (std::size_t m = 0; m < k; ++m) {
-            for (std::size_t a = 0; a < 2; ++a) {
-                const int di = dofs.dof_of(2 * i + a), dj = dofs.dof_of(2 * j + a);
-                relative[m][a] = (dj < 0 ? Number() : motions[m][static_cast<std::size_t>(dj)]) -
-                                 (di < 0 ? Number() : motions[m][static_cast<std::size_t>(di)]);
-            }
+            const auto velocity = [&](std::size_t coordinate) {
+                const int dof = dofs.dof_of(coordinate);
+                return dof < 0 ? Number() : motions[m][static_cast<std::size_t>(dof)];
+            };
+            relative[m] = separation.of_disks(velocity, std::minus<>());
         }
-        const Number weight = forces[l] / (packing.radius[i] + packing.radius[j]);
+        const Number weight = forces[l] / (packing.radius[static_cast<std::size_t>(contact.i)] +
+                                           packing.radius[static_cast<std::size_t>(contact.j)]);
         for (std::size_t a = 0; a < k; ++a) {
             for (std::size_t b = 0; b < k; ++b) {
                 const Number dot = relative[a][0] * relative[b][0] + relative[a][1] * relative[b][1];

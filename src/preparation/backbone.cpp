@@ -1,3 +1,4 @@
+#include <isostat/contact/separation.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/preparation/backbone.hpp>
 
@@ -56,9 +57,7 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
                 value.push_back(g.value[k]);
             }
         }
-        const double grown = rho[static_cast<std::size_t>(c.i)] +
-                             (c.kind == ContactKind::disk_disk ? rho[static_cast<std::size_t>(c.j)] : 0.0);
-        lower.push_back(grown / rho_size);
+        lower.push_back(touching_distance(rho, c) / rho_size);
     }
     const std::vector<double> free_low(columns, -COIN_DBL_MAX);
     const std::vector<double> free_high(columns, COIN_DBL_MAX);

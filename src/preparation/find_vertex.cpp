@@ -5,6 +5,7 @@
 #include "preparation/scale.hpp"
 #include "preparation/stage.hpp"
 
+#include <isostat/contact/separation.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/preparation/preparation.hpp>
@@ -40,10 +41,7 @@ template <int Dim> double dilation_needed(const Packing<Dim>& packing, const std
     for (const Contact& c : contacts) {
         const double h = gap(packing, c);
         if (h < 0) {
-            double range = packing.radius[static_cast<std::size_t>(c.i)];
-            if (c.kind == ContactKind::disk_disk) {
-                range += packing.radius[static_cast<std::size_t>(c.j)];
-            }
+            const double range = touching_distance(packing.radius, c);
             needed = std::max(needed, range / (range + h) - 1);
         }
     }

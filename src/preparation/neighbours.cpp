@@ -1,9 +1,12 @@
 #include "preparation/neighbours.hpp"
 
+#include <isostat/contact/separation.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 namespace isostat::preparation {
 
@@ -102,9 +105,10 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
             if (j <= i) {
                 return;
             }
+            const Separation<Dim> separation({ContactKind::disk_disk, static_cast<int>(i), partner},
+                                             static_cast<int>(n));
             double square = 0;
-            for (std::size_t a = 0; a < Dim; ++a) {
-                const double d = x[Dim * j + a] - x[Dim * i + a];
+            for (const double d : separation.of_disks([&](std::size_t k) { return x[k]; }, std::minus<>())) {
                 square += d * d;
             }
             const double range = radius[i] + radius[j] + reach;

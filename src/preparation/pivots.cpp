@@ -33,7 +33,7 @@ template <int Dim> class Basis {
           vertex_(enclose_vertex_double_double(packing, structure, factorisation_, inverse_)),
           statics_(packing_, load_, structure_, factorisation_, inverse_) {
         statics_.climb();
-        for (const Contact& candidate : find_candidates(packing, candidate_fraction).contacts) {
+        for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
             if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
                 others_.push_back(candidate);
                 gaps_.push_back(gap_at_vertex(packing, vertex_, candidate).value);

@@ -83,7 +83,7 @@ Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStru
                                 VertexEnclosure vertex) {
     const std::vector<Contact>& contacts = structure.contacts(); // sorted by the caller
     std::vector<Contact> others;
-    for (const Contact& candidate : find_candidates(packing, candidate_fraction).contacts) {
+    for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
         if (!std::binary_search(contacts.begin(), contacts.end(), candidate)) {
             others.push_back(candidate);
         }

@@ -12,7 +12,7 @@
 namespace isostat::preparation {
 
 /// Candidates beside the contacts, gap / smallest radius; T6 allows up to 0.82.
-inline constexpr double candidate_fraction = 0.5;
+inline constexpr double pivot_reach = 0.5;
 
 /// Newton on the gaps of `contacts`, each step through a structure that was proved regular, until the largest gap is at
 /// the grid or stops decreasing. Failures: `not_isostatic`, `not_converged`.

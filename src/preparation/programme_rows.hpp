@@ -5,6 +5,7 @@
 #include "preparation/programme.hpp"
 
 #include <isostat/contact/contact.hpp>
+#include <isostat/contact/separation.hpp>
 
 #include <cstddef>
 #include <numeric>
@@ -37,9 +38,7 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
 
     /// Distance of the centres, or of the centre from the wall, at contact.
     [[nodiscard]] double range(const Packing<Dim>& packing, std::size_t k) const {
-        const Contact& c = contact[k];
-        const double own = packing.radius[static_cast<std::size_t>(c.i)];
-        return c.kind == ContactKind::disk_disk ? own + packing.radius[static_cast<std::size_t>(c.j)] : own;
+        return touching_distance(packing.radius, contact[k]);
     }
 
     /// First entry of each row, and the end.

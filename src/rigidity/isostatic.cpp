@@ -27,14 +27,12 @@ template <class Value> sparse::Matrix<Value> empty_matrix(int rows, std::size_t 
     return matrix;
 }
 
-/// Normal from the first disk to the second, the bits of `gap_gradient`, inline; of a wall or a held coordinate 1.
+/// Normal from the first disk to the second, the bits of `gap_gradient`, inline; of other contacts nothing.
 template <int Dim> inline std::array<double, Dim> unit_normal(const Packing<Dim>& packing, const Contact& contact) {
-    std::array<double, Dim> normal;
-    normal.fill(1);
     if (contact.kind != ContactKind::disk_disk) {
-        return normal;
+        return {};
     }
-    normal = separation<Dim>(packing.q, contact);
+    std::array<double, Dim> normal = separation<Dim>(packing.q, contact);
     double square = 0;
     for (const double component : normal) {
         square += component * component;
@@ -95,14 +93,11 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
     std::size_t end = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];
-        const std::array<double, Dim> normal = unit_normal(packing, contact);
         Separation<Dim>(contact, packing.disk_count())
-            .for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {
-                if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
-                    matrix.row[end] = dof;
-                    matrix.value[end] = sign > 0 ? -normal[a] : normal[a];
-                    ++end;
-                }
+            .for_each_entry(dofs, unit_normal(packing, contact), [&](int dof, double entry) {
+                matrix.row[end] = dof;
+                matrix.value[end] = entry;
+                ++end;
             });
         matrix.start[l + 1] = static_cast<int>(end);
     }

@@ -1,3 +1,4 @@
+#include <isostat/contact/separation.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/shortcuts/soft_grains.hpp>
@@ -80,9 +81,7 @@ template <int Dim> void SoftGrains<Dim>::find_pairs() {
     for (const Contact& c : candidates_.contacts) {
         ++degree[first(c.i)];
         if (c.kind == ContactKind::disk_disk) {
-            const double range =
-                packing_.radius[static_cast<std::size_t>(c.i)] + packing_.radius[static_cast<std::size_t>(c.j)];
-            pairs_.push_back({c.i, c.j, range});
+            pairs_.push_back({c.i, c.j, touching_distance(packing_.radius, c)});
             ++degree[first(c.j)];
         } else {
             const bool upper = c.kind == ContactKind::upper_wall;
@@ -122,8 +121,8 @@ template <int Dim> void SoftGrains<Dim>::compute_forces(bool damped) {
     for (const Pair& p : pairs_) {
         const auto i = static_cast<std::size_t>(Dim * p.i);
         const auto j = static_cast<std::size_t>(Dim * p.j);
-        const double dx = q[j] - q[i];
-        const double dy = q[j + 1] - q[i + 1];
+        const Contact pair{ContactKind::disk_disk, p.i, p.j};
+        const auto [dx, dy] = separation<Dim>(packing_.q, pair);
         const double square = dx * dx + dy * dy;
         if (square >= p.range * p.range || square == 0) {
             continue;
@@ -131,8 +130,8 @@ template <int Dim> void SoftGrains<Dim>::compute_forces(bool damped) {
         const double distance = std::sqrt(square);
         const double nx = dx / distance;
         const double ny = dy / distance;
-        const double approach = (v[i] - v[j]) * nx + (v[i + 1] - v[j + 1]) * ny;
-        const double push = p.range - distance + dashpot * approach;
+        const auto [ux, uy] = separation<Dim>(velocity_, pair);
+        const double push = p.range - distance - dashpot * (ux * nx + uy * ny);
         f[i] -= push * nx;
         f[i + 1] -= push * ny;
         f[j] += push * nx;

@@ -364,11 +364,11 @@ template <int Dim> std::optional<Failure> Run<Dim>::check(const EquilibriumRecor
     }
     const Packing<Dim>& packing = vertex_->packing;
     const bool box = packing.walls == Walls<Dim>::box() && state_.load.disk_force.empty() && packing.fixed.empty();
-    const int expected = Dim * (packing.disk_count() - record.rattlers) + Dim;
+    const int expected = vertex_->structure.dofs().dof_count() - Dim * record.rattlers;
     if (box && record.held == 0 && record.backbone != expected) {
         return Failure{FailureKind::undecided,
-                       fmt::format("backbone of {} contacts with {} rattlers: expected 2 (n - rattlers) + 2 = {}",
-                                   record.backbone, record.rattlers, expected)};
+                       fmt::format("backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}",
+                                   record.backbone, record.rattlers, Dim, expected)};
     }
     return std::nullopt;
 }

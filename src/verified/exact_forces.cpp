@@ -1,5 +1,7 @@
 #include "verified/exact_forces.hpp"
 
+#include <isostat/contact/separation.hpp>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -58,31 +60,23 @@ sparse::Matrix<mpz_class> ExactForces<Dim>::scaled(const Packing<Dim>& packing,
     for (std::size_t l = 0; l < structure.contacts().size(); ++l) {
         const Contact& contact = structure.contacts()[l];
         std::vector<mpz_class> integers;
+        const Separation<Dim> separation(contact, packing.disk_count());
         const bool pair = contact.kind == ContactKind::disk_disk;
         mpz_class sum = pair ? 0 : 1;
         if (pair) {
-            std::vector<mpq_class> d;
-            for (int a = 0; a < Dim; ++a) {
-                d.emplace_back(mpq_class(packing.coordinate(DiskId(contact.j), a)) -
-                               mpq_class(packing.coordinate(DiskId(contact.i), a)));
-            }
-            common_integers(d, integers);
+            const auto d =
+                separation.of_disks([&](std::size_t k) { return mpq_class(packing.q[k]); },
+                                    [](const mpq_class& x, const mpq_class& y) -> mpq_class { return x - y; });
+            common_integers(std::vector<mpq_class>(d.begin(), d.end()), integers);
             for (const mpz_class& c : integers) {
                 sum += c * c;
             }
         }
         square.push_back(sum);
-        for (auto e = static_cast<std::size_t>(h.start[l]); e < static_cast<std::size_t>(h.start[l + 1]); ++e) {
-            if (!pair) {
-                matrix.value[e] = h.value[e] < 0 ? -1 : 1;
-                continue;
-            }
-            const int coordinate = dofs.coordinate_of(h.row[e]);
-            matrix.value[e] = integers[static_cast<std::size_t>(coordinate % Dim)];
-            if (coordinate / Dim == contact.j) {
-                matrix.value[e] = -matrix.value[e];
-            }
-        }
+        std::array<mpz_class, static_cast<std::size_t>(Dim)> normal; // times the square root of `sum`
+        std::copy(integers.begin(), integers.end(), normal.begin());
+        auto entry = matrix.value.begin() + h.start[l];
+        separation.for_each_entry(dofs, normal, [&](int, const mpz_class& value) { *entry++ = value; });
     }
     return matrix;
 }

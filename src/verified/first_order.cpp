@@ -1,6 +1,7 @@
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
+#include <isostat/contact/separation.hpp>
 #include <isostat/verified/first_order.hpp>
 
 #include <algorithm>
@@ -95,9 +96,7 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, c
     double turned = 0; // the normal of the true vertex is another one
     if (contact.kind == ContactKind::disk_disk) {
         double square = 0;
-        for (int a = 0; a < Dim; ++a) {
-            const double r = velocity.v[static_cast<std::size_t>(Dim * contact.j + a)] -
-                             velocity.v[static_cast<std::size_t>(Dim * contact.i + a)];
+        for (const double r : separation<Dim>(velocity.v, contact)) {
             square += r * r;
         }
         // |n - n*| <= 2 |x - x*| / d for the relative positions x
@@ -109,10 +108,7 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, c
 template <int Dim> Enclosure FirstOrder<Dim>::gap(const Contact& contact) const {
     Enclosure c = gap_rate(contact, change_);
     if (contact.kind != ContactKind::held) {
-        double grown = (*rho_)[static_cast<std::size_t>(contact.i)];
-        if (contact.kind == ContactKind::disk_disk) {
-            grown += (*rho_)[static_cast<std::size_t>(contact.j)];
-        }
+        const double grown = touching_distance(*rho_, contact);
         c = c - Enclosure{grown, 2 * u * std::abs(grown)};
     }
     return c;
@@ -144,17 +140,12 @@ std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
         if (c.kind != ContactKind::disk_disk) {
             continue; // normals of walls do not turn
         }
-        std::array<double, static_cast<std::size_t>(Dim)> x{};
-        std::array<double, static_cast<std::size_t>(Dim)> r{};
+        const auto x = separation<Dim>(packing_->q, c);
+        const auto r = separation<Dim>(v, c);
         double square = 0;
         double dot = 0;
         double speed = 0;
-        for (int a = 0; a < Dim; ++a) {
-            const auto e = static_cast<std::size_t>(a);
-            const auto i = static_cast<std::size_t>(Dim * c.i + a);
-            const auto j = static_cast<std::size_t>(Dim * c.j + a);
-            x[e] = packing_->q[j] - packing_->q[i];
-            r[e] = v[j] - v[i];
+        for (std::size_t e = 0; e < x.size(); ++e) {
             square += x[e] * x[e];
             dot += x[e] * r[e];
             speed += r[e] * r[e];
@@ -164,18 +155,13 @@ std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
         // dn = (r - n (n.r)) / d; relative errors of n and d at the true vertex, of r, and of the arithmetic.
         const double place = root2 * away_ / d;
         const double off = (root2 * change_.error + speed * (6 * place + 40 * u)) / d * 1.01;
-        for (int a = 0; a < Dim; ++a) {
-            const auto e = static_cast<std::size_t>(a);
+        Separation<Dim>(c, packing_->disk_count()).for_each_coordinate([&](std::size_t k, std::size_t e, int sign) {
             const double turn = (r[e] - x[e] * dot / square) / d;
             const double push = f0[l].value * turn;
             const double unknown = f0[l].radius * (std::abs(turn) + off) + std::abs(f0[l].value) * off;
-            const auto i = static_cast<std::size_t>(Dim * c.i + a);
-            const auto j = static_cast<std::size_t>(Dim * c.j + a);
-            right[i] -= push; // column l of H is +n on i and -n on j
-            right[j] += push;
-            error[i] += unknown + 2 * u * (std::abs(push) + std::abs(right[i]));
-            error[j] += unknown + 2 * u * (std::abs(push) + std::abs(right[j]));
-        }
+            right[k] += sign * push; // column l of H is minus the gradient of the gap
+            error[k] += unknown + 2 * u * (std::abs(push) + std::abs(right[k]));
+        });
     }
     if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other length
         static_assert(Dim == 2, "the product of the other lengths has one factor");

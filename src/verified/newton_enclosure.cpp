@@ -1,11 +1,13 @@
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
+#include <isostat/contact/separation.hpp>
 #include <isostat/verified/configuration.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace isostat {
@@ -17,7 +19,7 @@ constexpr double u = 0x1p-53;
 /// a + b = sum + error, exactly.
 struct Pair {
     double sum;
-    double error;
+    double error = 0;
 };
 Pair exact_sum(double a, double b) {
     const double sum = a + b;
@@ -50,7 +52,8 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
     const std::size_t n = contacts.size();
     Constraints result{std::vector<double>(n), std::vector<double>(n)};
     std::vector<int> count(packing.radius.size(), 0);
-    const double* const q = packing.q.data();
+    const auto at = [scale, q = packing.q.data()](std::size_t k) { return scale * q[k]; };
+    const auto minus = [](double a, double b) { return exact_sum(a, -b); };
     const double* const radius = packing.radius.data();
     double smallest = std::numeric_limits<double>::infinity();
     double ratio = 0;
@@ -58,13 +61,13 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
     for (std::size_t l = 0; l < n; ++l) {
         const auto i = static_cast<std::size_t>(contacts[l].i);
         const auto j = static_cast<std::size_t>(contacts[l].j);
+        const Separation<Dim> separation(contacts[l], packing.disk_count());
         switch (contacts[l].kind) {
         case ContactKind::disk_disk: {
             const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
             const Pair target_square = exact_square(d.sum);
             Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
-            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
-                const Pair x = exact_sum(scale * q[Dim * j + a], -(scale * q[Dim * i + a]));
+            for (const Pair& x : separation.of_disks(at, minus)) {
                 const Pair square = exact_square(x.sum);
                 const Pair sum = exact_sum(value.sum, square.sum);
                 value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
@@ -82,15 +85,15 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
             break;
         }
         case ContactKind::lower_wall: {
-            const double f = scale * q[Dim * i + j] - scale * radius[i];
+            const double f = separation.of_wall(at, std::minus<>()) - scale * radius[i];
             result.f[l] = f;
             result.error[l] = 2 * u * std::abs(f);
             largest = std::max(largest, std::abs(f));
             break;
         }
         case ContactKind::upper_wall: {
-            const double length = scale * q[Dim * packing.radius.size() + j];
-            const Pair x = exact_sum(length, -(scale * q[Dim * i + j]));
+            const double length = scale * packing.length(contacts[l].j);
+            const Pair x = separation.of_wall(at, minus);
             const Pair sum = exact_sum(x.sum, -(scale * radius[i]));
             const double f = sum.sum + (sum.error + x.error);
             result.f[l] = f;

@@ -64,6 +64,22 @@ template <int Dim> class Separation {
         }
     }
 
+    /// The column of H (minus the gradient of the gap): visit(dof, entry) in ascending order. `normal`: the unit normal
+    /// from disk to disk, or any multiple of it, in any arithmetic; not read for other contacts, whose entries are -1
+    /// and +1.
+    template <class Number, class Visit>
+    void for_each_entry(const DofMap<Dim>& dofs, const std::array<Number, static_cast<std::size_t>(Dim)>& normal,
+                        Visit visit) const {
+        for_each_coordinate([&](std::size_t coordinate, std::size_t component, int sign) {
+            const int dof = dofs.dof_of(coordinate);
+            if (dof >= 0) {
+                visit(dof, kind_ != ContactKind::disk_disk ? Number(-sign)
+                           : sign > 0                      ? Number(-normal[component])
+                                                           : normal[component]);
+            }
+        });
+    }
+
   private:
     ContactKind kind_;
     int i_, j_;

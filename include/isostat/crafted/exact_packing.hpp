@@ -33,6 +33,10 @@ struct ExactPacking {
     std::optional<ExactLoad> load;
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
+    /// What stands at a coordinate index of `Packing<2>`.
+    [[nodiscard]] const Number& coordinate(std::size_t k) const {
+        return k < 2 * centre.size() ? centre[k / 2][k % 2] : length[k - 2 * centre.size()];
+    }
     [[nodiscard]] bool is_fixed(int disk) const { return !fixed.empty() && fixed[static_cast<std::size_t>(disk)] != 0; }
 };
 

@@ -41,11 +41,6 @@ template <int Dim> void NextRearrangement<Dim>::propose_ahead(const std::functio
     steering_->propose_ahead(enough);
 }
 
-template <int Dim> std::unique_ptr<FloatingSteering<Dim>> NextRearrangement<Dim>::take() {
-    count_all(work_);
-    return std::move(steering_);
-}
-
 template class NextRearrangement<2>;
 
 } // namespace isostat

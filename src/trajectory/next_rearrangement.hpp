@@ -14,7 +14,7 @@ namespace isostat {
 
 /// What follows an equilibrium, as forces in plain double precision tell: whoever proves the limit throws it away when
 /// another contact opens, or at another load. Owns copies of all that it uses, so that the proof can go on beside it.
-template <int Dim> class NextRearrangement {
+template <int Dim> class NextRearrangement final : public Steering<Dim> {
   public:
     /// `candidates`: at the vertex. \pre its factors are fresh
     NextRearrangement(const typename Vertex<Dim>::Beginning& from, CandidateList<Dim> candidates)
@@ -30,8 +30,12 @@ template <int Dim> class NextRearrangement {
     [[nodiscard]] bool starts_with(ContactId opens, const LimitLoad<Dim>& at) const {
         return opens_ == opens && at_.stress() == at.stress();
     }
-    /// The steering with its proposals; what they cost is counted now. It refers to this object.
-    std::unique_ptr<FloatingSteering<Dim>> take();
+    /// It is: what the proposals so far cost is counted now.
+    void count_work() const { count_all(work_); }
+
+    [[nodiscard]] bool goes_on() const override { return steering_->goes_on(); }
+    Result<ArcProposal<Dim>> propose() override { return steering_->propose(); }
+    bool revise(const ArcProof<Dim>& /*refused*/) override { return false; }
 
   private:
     Packing<Dim> packing_;

@@ -24,8 +24,8 @@ template <int Dim> std::string Rearrangement<Dim>::at_equilibrium() const {
 
 template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<NextRearrangement<Dim>> begun) {
     if (begun && kind_ == "limit" && begun->starts_with(opening_.contact, at_)) {
-        begun_ = std::move(begun);
-        steering_ = begun_->take();
+        begun->count_work();
+        steering_ = std::move(begun);
     }
     while (true) {
         if (auto failure = follow_arcs()) {

@@ -82,9 +82,8 @@ template <int Dim> class Rearrangement {
     bool ahead_ = false;             ///< the steering goes ahead of the proofs
     int proposed_ = 0;               ///< arcs by it
     bool ended_ = false;             ///< no force is negative where it is
-    std::unique_ptr<NextRearrangement<Dim>> begun_;
     std::unique_ptr<NextRearrangement<Dim>> next_;
-    std::unique_ptr<Steering<Dim>> steering_; ///< refers to `here_` or `begun_`
+    std::unique_ptr<Steering<Dim>> steering_; ///< refers to `here_`
     std::optional<SteeredEnd<Dim>> steered_to_;
     std::optional<EndProof<Dim>> end_;
 };

@@ -113,7 +113,7 @@ struct ImportArguments {
     std::string contacts = "plateau"; ///< or "nearest", or a file
     std::string contact_columns;
     std::optional<double> threshold;
-    std::string stress = "1,1", load = "nominal", moved;
+    std::string stress, load, moved;
     std::uint64_t seed = 1;
     double jitter = 0;
 };

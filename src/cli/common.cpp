@@ -94,8 +94,13 @@ std::string advice(const Scene& scene, const Failure& failure, std::vector<doubl
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
     const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
-    if (!open || !scene.start.empty()) {
+    if (!open) {
         return "";
+    }
+    if (!scene.start.empty()) {
+        return equal ? fmt::format("; equal radii: try isostat import {} --jitter 1e-9 --contacts nearest",
+                                   scene.start.string())
+                     : "";
     }
     constexpr double ample = 1e-6;
     const double jitter = scene.preparation.jitter;

@@ -45,7 +45,24 @@ struct Imported {
     throw Error(ErrorKind::bad_input, file + ": " + what);
 }
 
+/// Stresses and kind of load of a state, which were not stated anew.
+void keep_load(ImportArguments& a) {
+    const State<2> state = read_state<2>(a.file).state;
+    if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
+        refuse(a.file, "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
+    }
+    if (a.stress.empty()) {
+        a.stress = fmt::format("{},{}", state.load.stress[0], state.load.stress[1]);
+    }
+    if (a.load.empty()) {
+        a.load = state.load.kind == LoadKind::nominal ? "nominal" : "true";
+    }
+}
+
 std::array<double, 2> stresses_of(const ImportArguments& a) {
+    if (a.stress.empty()) {
+        return {1, 1};
+    }
     const std::vector<std::string> words = parse_list(a.stress);
     std::array<double, 2> stress{};
     bool good = words.size() == 2;
@@ -358,16 +375,20 @@ int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
-    if (format == "state" || format == "vertex") {
-        refuse(a.file, fmt::format("is a {} of this program: expected a packing of another one; isostat convert copies "
-                                   "it",
+    const bool own = format == "state" || format == "vertex";
+    if (own && a.jitter == 0) {
+        refuse(a.file, fmt::format("is a {} of this program: expected a packing of another one, or --jitter; isostat "
+                                   "convert copies it",
                                    format));
     }
+    if (own) {
+        keep_load(a);
+    }
     const bool crafted = format == "packing";
-    if (!crafted && a.foreign.walls.empty()) {
+    if (!crafted && !own && a.foreign.walls.empty()) {
         a.foreign.walls = "box";
     }
-    if (!crafted && a.foreign.walls != "box") {
+    if (!crafted && !own && a.foreign.walls != "box") {
         throw Error(ErrorKind::usage,
                     fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
     }

@@ -332,7 +332,7 @@ struct Program {
             "where a plateau of\n"
             "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local. A "
             "crafted packing (TOML) is\n"
-            "rounded to doubles and keeps its contacts and its load.\n"
+            "rounded to doubles and keeps its contacts and its load. With --jitter a state is taken as well.\n"
             "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
             "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
             "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
@@ -349,7 +349,8 @@ struct Program {
             ->type_name("I,J,FORCE");
         command.add_option("--threshold", a.threshold, "pairs with this gap or less are the contacts")
             ->excludes(contacts);
-        command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1)")->type_name("S1,S2");
+        command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)")
+            ->type_name("S1,S2");
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
         command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)");

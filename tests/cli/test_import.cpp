@@ -152,6 +152,19 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
     const State<2> state = read_state<2>(folder / "s.json").state;
     BOOST_TEST(state.packing.radius[0] != state.packing.radius[1]);
     BOOST_TEST(std::abs(state.packing.radius[0] - 1) <= 1e-3);
+    // A state keeps its load.
+    const std::string sample = std::string(ISOSTAT_EXAMPLES) + "/ties/equal-pair.json",
+                      out = (folder / "p.json").string();
+    scratch::write(folder / "grid.json", scratch::replaced(state_text(state), "\"nominal\",\"stress\":[1.0,1.0]",
+                                                           "\"true\",\"stress\":[3.0,3.5]"));
+    expect(run({"import", (folder / "grid.json").string(), "--jitter", "1e-6", "--contacts", "nearest", "-o", out}), 0);
+    const State<2> again = read_state<2>(out).state;
+    BOOST_TEST(again.load.stress[0] == 3.0);
+    BOOST_TEST(again.load.stress[1] == 3.5);
+    BOOST_TEST((again.load.kind == LoadKind::true_stress));
+    BOOST_TEST(again.packing.radius[0] != state.packing.radius[0]);
+    fs::remove(out);
+    expect(run({"import", sample, "-o", out}), 65, {"is a state", "--jitter", "convert"});
 }
 
 BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {

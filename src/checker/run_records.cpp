@@ -152,7 +152,7 @@ std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path) {
     for_each_line(read_text(path), [&](int number, const std::string& text) {
         const std::string where = fmt::format("{}:{}", path.string(), number);
         if (names.empty() && text.starts_with('#')) {
-            names = split(text.substr(text.find_first_not_of("# ")), ',');
+            names = split(text.substr(std::min(text.find_first_not_of("# "), text.size())), ',');
             for (const char* name : needed_columns) {
                 if (std::find(names.begin(), names.end(), name) == names.end()) {
                     throw Error(ErrorKind::bad_input, fmt::format("{}: there is no column '{}'", where, name));

@@ -385,6 +385,12 @@ int import(const ImportArguments& arguments) {
         keep_load(a);
     }
     const bool crafted = format == "packing";
+    if (crafted && a.jitter != 0) {
+        refuse(a.file,
+               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
+                           "it is {}",
+                           a.jitter));
+    }
     if (!crafted && !own && a.foreign.walls.empty()) {
         a.foreign.walls = "box";
     }

@@ -176,6 +176,7 @@ BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
     fs::remove(out);
     expect(run({"import", packings + "square_lattice_2.toml", "-o", out}), 1, {"h = 2", "isostatic"});
     expect(run({"import", packings + "two_disks_past_the_limit.toml", "-o", out}), 1, {"force", "1-bottom"});
+    expect(run({"import", packings + "two_disks.toml", "-o", out, "--jitter", "1e-6"}), 65, {"crafted", "--jitter"});
     BOOST_TEST(!fs::exists(out));
 }
 

@@ -14,12 +14,20 @@ isostat_packages=(
 isostat_proof_packages=(make coq libcoq-mathcomp-algebra libcoq-mathcomp-algebra-tactics libcoq-mathcomp-zify)
 # For `mpirun isostat ensemble` (ISOSTAT_WITH_MPI): optional, built and tested by continuous integration.
 isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
+# For the Python module: installed where ISOSTAT_WITH_PYTHON is ON, as in continuous integration.
+isostat_python_packages=(pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib)
+# For a wheel of it (src/python/pyproject.toml).
+isostat_wheel_packages=(python3-pip python3-setuptools python3-wheel)
 # For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
 isostat_count_packages=(valgrind)
 # For the style of the sources: optional, installed by continuous integration.
 isostat_lint_packages=(clang-format-16)
 if [ "${CI:-}" = true ]; then
-  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_count_packages[@]}" "${isostat_lint_packages[@]}")
+  isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_wheel_packages[@]}"
+    "${isostat_count_packages[@]}" "${isostat_lint_packages[@]}")
+fi
+if [ "${ISOSTAT_WITH_PYTHON:-}" = ON ]; then
+  isostat_packages+=("${isostat_python_packages[@]}")
 fi
 
 # Installs what is missing; a message with the list when it cannot.

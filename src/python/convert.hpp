@@ -1,0 +1,128 @@
+#pragma once
+/// \file
+/// What every part of the bindings needs: arrays that look into the library's memory, contacts as pairs of integers,
+/// verdicts as the Python enumeration, failures as exceptions.
+
+#include <isostat/contact/contact.hpp>
+#include <isostat/core/enclosure.hpp>
+#include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
+#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace isostat::python {
+
+namespace py = pybind11;
+
+/// A state in Python: the state and the forces that its file may have.
+using PyState = StateFile<2>;
+
+/// Read-only array that looks at `data`; `owner` lives as long as the array.
+template <class T> py::array view(const T* data, std::vector<py::ssize_t> shape, py::handle owner) {
+    py::array array(py::dtype::of<T>(), std::move(shape), {}, data, owner);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+template <class T> py::array view(const std::vector<T>& data, py::handle owner) {
+    return view(data.data(), {static_cast<py::ssize_t>(data.size())}, owner);
+}
+
+/// A property that is a view of a vector of the object.
+template <class Class, class T> auto vector_of(std::vector<T> Class::*member) {
+    return [member](const py::object& self) { return view(self.cast<const Class&>().*member, self); };
+}
+
+/// (N, 2) integers: as in equilibria.csv, j = -1 left, -2 bottom, -3 right, -4 top wall, -9 held coordinate i.
+py::array_t<int> contact_array(const std::vector<Contact>& contacts);
+/// The pair of one contact; None where there is none (i = -1).
+py::object contact_pair(const Contact& contact);
+/// The contact of a pair. Throws `Error(bad_input)`.
+Contact contact_of(std::pair<int, int> pair);
+/// (n, 2) of the ends of intervals.
+py::array_t<double> interval_array(const std::vector<Interval>& intervals);
+
+/// The member of isostat.Verdict.
+py::object verdict_object(Verdict verdict);
+
+/// Throws the exception of isostat that belongs to a failure. \pre the interpreter is locked
+[[noreturn]] void raise(const Failure& failure);
+
+/// The value, or the exception.
+template <class T> T value_or_raise(Result<T>&& result) {
+    if (!result.ok()) {
+        raise(result.failure());
+    }
+    return std::move(result.value());
+}
+
+/// Runs `work` with the interpreter unlocked.
+template <class Work> auto unlocked(Work work) {
+    const py::gil_scoped_release release;
+    return work();
+}
+
+/// Throws KeyboardInterrupt when Ctrl-C was pressed (main thread). Locks the interpreter.
+void check_signals();
+
+void bind_errors(py::module_& module);
+void bind_state(py::module_& module);
+void bind_proofs(py::module_& module);
+void bind_exact(py::module_& module);
+void bind_preparation(py::module_& module);
+
+} // namespace isostat::python
+
+namespace pybind11::detail {
+/// Verdicts become members of isostat.Verdict, which do not convert to bool.
+template <> struct type_caster<isostat::Verdict> {
+    PYBIND11_TYPE_CASTER(isostat::Verdict, const_name("isostat.Verdict"));
+    bool load(handle, bool) { return false; } // none is ever given
+    static handle cast(isostat::Verdict verdict, return_value_policy, handle) {
+        return isostat::python::verdict_object(verdict).release();
+    }
+};
+/// An enclosure is a pair (value, radius).
+template <> struct type_caster<isostat::Enclosure> {
+    PYBIND11_TYPE_CASTER(isostat::Enclosure, const_name("Tuple[float, float]"));
+    bool load(handle, bool) { return false; }
+    static handle cast(const isostat::Enclosure& e, return_value_policy, handle) {
+        return make_tuple(e.value, e.radius).release();
+    }
+};
+/// The arithmetic is its word.
+template <> struct type_caster<isostat::Rung> {
+    PYBIND11_TYPE_CASTER(isostat::Rung, const_name("str"));
+    bool load(handle, bool) { return false; }
+    static handle cast(isostat::Rung rung, return_value_policy, handle) {
+        return str(std::string(isostat::to_string(rung))).release();
+    }
+};
+/// An interval is a pair (lower, upper).
+template <> struct type_caster<isostat::Interval> {
+    PYBIND11_TYPE_CASTER(isostat::Interval, const_name("Tuple[float, float]"));
+    bool load(handle, bool) { return false; }
+    static handle cast(const isostat::Interval& interval, return_value_policy, handle) {
+        return make_tuple(interval.lower, interval.upper).release();
+    }
+};
+/// A contact is a pair of integers, or None.
+template <> struct type_caster<isostat::Contact> {
+    PYBIND11_TYPE_CASTER(isostat::Contact, const_name("Optional[Tuple[int, int]]"));
+    bool load(handle source, bool) {
+        value = isostat::python::contact_of(source.cast<std::pair<int, int>>());
+        return true;
+    }
+    static handle cast(const isostat::Contact& contact, return_value_policy, handle) {
+        return isostat::python::contact_pair(contact).release();
+    }
+};
+} // namespace pybind11::detail

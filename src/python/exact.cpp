@@ -1,0 +1,295 @@
+// Exact numbers and crafted packings.
+#include "convert.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/enclosed_bases.hpp>
+#include <isostat/crafted/exact_packing.hpp>
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/packing_file.hpp>
+#include <isostat/exact/number.hpp>
+
+#include <pybind11/operators.h>
+
+#include <cmath>
+
+namespace isostat::python {
+
+namespace {
+
+using exact::Number;
+
+/// fractions.Fraction where the number is rational, else isostat.Number.
+py::object to_python(const Number& number) {
+    return number.is_rational() ? py::module_::import("isostat._exact").attr("fraction")(number.text())
+                                : py::cast(number);
+}
+
+py::list to_python(const std::vector<Number>& vector) {
+    py::list list;
+    for (const Number& number : vector) {
+        list.append(to_python(number));
+    }
+    return list;
+}
+
+py::list to_python(const std::vector<std::vector<Number>>& vectors) {
+    py::list list;
+    for (const auto& vector : vectors) {
+        list.append(to_python(vector));
+    }
+    return list;
+}
+
+/// Number, float (the dyadic number that it is), int, Fraction, text.
+Number to_number(const py::handle& object) {
+    if (py::isinstance<Number>(object)) {
+        return object.cast<Number>();
+    }
+    if (py::isinstance<py::float_>(object)) {
+        const auto value = object.cast<double>();
+        if (!std::isfinite(value)) {
+            throw Error(ErrorKind::bad_input, "number is " + std::to_string(value) + ": expected a finite one");
+        }
+        return Number::from_double(value);
+    }
+    return Number::parse(py::str(object).cast<std::string>());
+}
+
+template <class Operation> auto binary(Operation operation) {
+    return [operation](const Number& a, const py::object& b) { return to_python(operation(a, to_number(b))); };
+}
+template <class Operation> auto reversed(Operation operation) {
+    return [operation](const Number& a, const py::object& b) { return to_python(operation(to_number(b), a)); };
+}
+template <class Relation> auto relation(Relation relation) {
+    return [relation](const Number& a, const py::object& b) { return relation((a - to_number(b)).sign()); };
+}
+
+Number quotient(const Number& a, const Number& b) {
+    if (b.is_zero()) {
+        PyErr_SetString(PyExc_ZeroDivisionError, "division by an exact zero");
+        throw py::error_already_set();
+    }
+    return a / b;
+}
+
+void bind_number(py::module_& module) {
+    py::class_<Number>(module, "Number",
+                       "A sum of rationals times square roots of integers, exact. Results that are rational are "
+                       "fractions.Fraction.\n\nNumber(value): int, Fraction, Number, text such as \"1 + 1/2*sqrt(3)\", "
+                       "or float, taken as the dyadic number that it stores.")
+        .def(py::init([](const py::object& value) { return to_number(value); }), py::arg("value"))
+        .def("__add__", binary(std::plus<>()))
+        .def("__radd__", reversed(std::plus<>()))
+        .def("__sub__", binary(std::minus<>()))
+        .def("__rsub__", reversed(std::minus<>()))
+        .def("__mul__", binary(std::multiplies<>()))
+        .def("__rmul__", reversed(std::multiplies<>()))
+        .def("__truediv__", binary(quotient))
+        .def("__rtruediv__", reversed(quotient))
+        .def("__neg__", [](const Number& a) { return to_python(-a); })
+        .def("__abs__", [](const Number& a) { return to_python(a.sign() < 0 ? -a : a); })
+        .def("__eq__",
+             [](const Number& a, const py::object& b) -> py::object {
+                 const py::object rational = py::module_::import("numbers").attr("Real");
+                 const bool known = py::isinstance<Number>(b) || py::isinstance(b, rational);
+                 return known ? py::cast(a == to_number(b))
+                              : py::object(py::reinterpret_borrow<py::object>(Py_NotImplemented));
+             })
+        .def("__lt__", relation([](int sign) { return sign < 0; }))
+        .def("__le__", relation([](int sign) { return sign <= 0; }))
+        .def("__gt__", relation([](int sign) { return sign > 0; }))
+        .def("__ge__", relation([](int sign) { return sign >= 0; }))
+        .def("__bool__", [](const Number& a) { return !a.is_zero(); })
+        .def("__hash__",
+             [](const Number& a) { return a.is_rational() ? py::hash(to_python(a)) : py::hash(py::str(a.text())); })
+        .def("__float__", &Number::to_double)
+        .def("__str__", &Number::text)
+        .def("__repr__", [](const Number& a) { return "Number('" + a.text() + "')"; })
+        .def("enclosure", &Number::enclosure, "(value, radius) in doubles; the number lies within.");
+    module.def(
+        "sqrt", [](const py::object& value) { return to_python(exact::sqrt(to_number(value))); }, py::arg("rational"),
+        "The exact root of a rational: Number or Fraction.");
+}
+
+using crafted::ExactPacking;
+using Seen = crafted::Inspection;
+
+/// An exact packing as Python has it: `contacts` for stored doubles, whose contacts are part of the state.
+struct Crafted {
+    ExactPacking packing;
+    std::optional<std::vector<Contact>> contacts;
+    std::string title;
+};
+
+struct CraftedInspection {
+    ExactPacking packing;
+    Seen seen;
+};
+
+std::vector<Contact> contacts_of(const Crafted& crafted) {
+    return crafted.contacts ? *crafted.contacts : value_or_raise(crafted::exact_contacts(crafted.packing));
+}
+
+Crafted parsed(const std::string& text, const std::string& source) {
+    crafted::PackingFile file = crafted::parse_packing(text, source);
+    return {std::move(file.packing), std::nullopt, std::move(file.title)};
+}
+
+Crafted read(const std::filesystem::path& path) {
+    crafted::PackingFile file = crafted::read_packing(path.string());
+    return {std::move(file.packing), std::nullopt, std::move(file.title)};
+}
+
+CraftedInspection inspected(const Crafted& crafted) {
+    if (crafted.contacts) {
+        return {crafted.packing, unlocked([&] { return inspect_contacts(crafted.packing, *crafted.contacts); })};
+    }
+    return {crafted.packing, value_or_raise(unlocked([&] { return crafted::inspect(crafted.packing); }))};
+}
+
+py::list exact_columns(const Crafted& crafted) {
+    const auto contacts = contacts_of(crafted);
+    const DofMap<2> dofs(approximate(crafted.packing));
+    const exact::NumberMatrix matrix = crafted::exact_contact_matrix(crafted.packing, dofs, contacts);
+    py::list columns;
+    for (const auto& column : matrix.column) {
+        py::dict entries;
+        for (const auto& [row, value] : column) {
+            entries[py::int_(row)] = to_python(value);
+        }
+        columns.append(entries);
+    }
+    return columns;
+}
+
+void bind_crafted(py::module_& module) {
+    py::class_<Crafted>(
+        module, "ExactPacking",
+        "A packing in exact numbers; its contacts are the pairs at gap exactly 0. Make one with `exact_packing`.")
+        .def_static("read", &read, py::arg("path"), "Reads a packing file (TOML).")
+        .def_static("parse", &parsed, py::arg("text"), py::arg("source") = "ExactPacking",
+                    "The same from text; `source` begins messages.")
+        .def_static(
+            "of_state",
+            [](const PyState& state) {
+                return Crafted{crafted::exact_copy(state.state.packing), state.state.contacts, ""};
+            },
+            py::arg("state"), "The stored doubles of a State as exact numbers, with its contacts.")
+        .def("__len__", [](const Crafted& self) { return self.packing.disk_count(); })
+        .def_readonly("title", &Crafted::title, "Title of the file.")
+        .def_property_readonly(
+            "centres",
+            [](const Crafted& self) {
+                py::list rows;
+                for (const auto& centre : self.packing.centre) {
+                    rows.append(py::make_tuple(to_python(centre[0]), to_python(centre[1])));
+                }
+                return rows;
+            },
+            "Rows (x, y), exact; length.")
+        .def_property_readonly(
+            "radii", [](const Crafted& self) { return to_python(self.packing.radius); }, "Exact radii; length.")
+        .def_property_readonly(
+            "length",
+            [](const Crafted& self) {
+                return py::make_tuple(to_python(self.packing.length[0]), to_python(self.packing.length[1]));
+            },
+            "(Lx, Ly), exact; 0 where there is no wall.")
+        .def_property_readonly(
+            "packing", [](const Crafted& self) { return approximate(self.packing); },
+            "The nearest doubles, as a Packing: for pictures.")
+        .def_property_readonly(
+            "contacts", [](const Crafted& self) { return contact_array(contacts_of(self)); },
+            "(N, 2) contacts: every gap is decided. Raises Overlap.")
+        .def("exact_columns", &exact_columns,
+             "The contact matrix, exact: for each contact {degree of freedom: entry}; unit normals.")
+        .def("inspect", &inspected,
+             "ExactInspection. Raises Overlap. Meant for up to some 100 disks; beyond, rank and what needs no kernel.");
+}
+
+py::list enclosed(const std::vector<crafted::EnclosedVector>& vectors) {
+    py::list list;
+    for (const crafted::EnclosedVector& vector : vectors) {
+        list.append(py::make_tuple(
+            py::array_t<double>(static_cast<py::ssize_t>(vector.value.size()), vector.value.data()), vector.radius));
+    }
+    return list;
+}
+
+py::tuple enclosed_bases(const CraftedInspection& self, int count) {
+    const auto bases = unlocked([&] { return crafted::enclose_bases(self.packing, self.seen, count); });
+    return py::make_tuple(bases.verdict, enclosed(bases.self_stresses), enclosed(bases.motions));
+}
+
+void bind_crafted_inspection(py::module_& module) {
+    using Self = CraftedInspection;
+    const auto field = [](auto member) { return [member](const Self& self) { return self.seen.*member; }; };
+    const auto exact = [](auto member) { return [member](const Self& self) { return to_python(self.seen.*member); }; };
+    py::class_<Self>(module, "ExactInspection",
+                     "What is proved of a crafted packing, in exact arithmetic. str() gives lines for a terminal.")
+        .def_property_readonly("dofs", field(&Seen::dof_count), "N_f.")
+        .def_property_readonly(
+            "contacts", [](const Self& self) { return contact_array(self.seen.contacts); }, "(N, 2) contacts.")
+        .def_property_readonly("rank", field(&Seen::rank),
+                               "Proved lower bound of the rank; the rank where `rank_exact` is proved.")
+        .def_property_readonly("rank_exact", field(&Seen::rank_exact), "Verdict on: `rank` is the rank.")
+        .def_property_readonly("h", field(&Seen::hyperstaticity), "N - rank: self-stresses.")
+        .def_property_readonly("k", field(&Seen::mechanisms), "N_f - rank: mechanisms, rigid motions included.")
+        .def_property_readonly("rigid_motions", field(&Seen::rigid_motions),
+                               "Of the whole packing: 3 for a free cluster, 0 in a box.")
+        .def_property_readonly("generic_rank", field(&Seen::generic_rank),
+                               "Proved lower bound of the rank for random coordinates with the same contacts.")
+        .def_property_readonly("special_position", field(&Seen::special_position),
+                               "Verdict on: the rank is below the generic one.")
+        .def_property_readonly(
+            "verdict", [](const Self& self) { return self.seen.verdict(); },
+            "\"isostatic\", \"hyperstatic\", \"hypostatic\", \"hyperstatic and hypostatic\" or \"undecided\".")
+        .def_property_readonly("bases_exact", field(&Seen::bases_exact),
+                               "Verdict on: both bases are complete and verified.")
+        .def_property_readonly("self_stresses", exact(&Seen::self_stresses), "Basis: h lists of N exact forces.")
+        .def_property_readonly("mechanisms", exact(&Seen::motions), "Basis: k lists of N_f exact velocities.")
+        .def_property_readonly(
+            "one_sign",
+            [](const Self& self) {
+                return self.seen.one_sign_decided ? crafted::to_string(self.seen.one_sign.kind) : "undecided";
+            },
+            "Self-stresses of one sign: \"strict\", \"partial\", \"none\", \"undecided\".")
+        .def_property_readonly(
+            "hold",
+            [](const Self& self) {
+                std::vector<std::string> words;
+                for (const crafted::DiskHold hold : self.seen.hold) {
+                    words.emplace_back(crafted::to_string(hold));
+                }
+                return words;
+            },
+            "Per disk: \"held\", \"bridge\", \"rattler\", \"fixed\", \"loaded\".")
+        .def_property_readonly(
+            "support", [](const Self& self) { return crafted::to_string(self.seen.support); },
+            "What the load meets: \"positive\", \"with zeros\", \"none\", \"unbalanced\", \"undecided\", \"no load\".")
+        .def_property_readonly("forces", exact(&Seen::forces),
+                               "One equilibrium: N exact forces; empty where there is none.")
+        .def_property_readonly("forces_unique", field(&Seen::forces_unique), "h = 0 and the load is balanced.")
+        .def_property_readonly("without_force", field(&Seen::without_force),
+                               "Disks that can move and carry no force of the load.")
+        .def_property_readonly(
+            "second_order", [](const Self& self) { return crafted::to_string(self.seen.second_order); },
+            "Contacts as bars: \"no mechanism\", \"rigid\", \"flexes\", \"undecided\".")
+        .def_property_readonly("stable", field(&Seen::stable),
+                               "Verdict on: a local minimum of the potential, strict up to rigid motions.")
+        .def("enclosed_bases", &enclosed_bases, py::arg("count") = 1,
+             "(verdict, self_stresses, mechanisms) in doubles, the first `count` of each: pairs (array, radius), every "
+             "component within the radius. For packings that are too large for exact bases.")
+        .def("__str__", [](const Self& self) { return crafted::to_text(self.seen, self.packing); });
+}
+
+} // namespace
+
+void bind_exact(py::module_& module) {
+    bind_number(module);
+    bind_crafted(module);
+    bind_crafted_inspection(module);
+}
+
+} // namespace isostat::python

@@ -1,0 +1,86 @@
+"""Quasi-static mechanics of rigid frictionless disks, with proofs.
+
+Arrays are numpy arrays; those of `State` and `Packing` look into the library's memory and are read-only.
+Contacts are pairs of integers (i, j): two disks, or a disk and a wall (-1 left, -2 bottom, -3 right,
+-4 top), or a held coordinate i (-9). Lengths and stresses are in your units, forces in stress x length;
+stress, force and strain are positive in compression.
+"""
+
+from __future__ import annotations
+
+import os
+
+from . import _core
+from ._core import (
+    Certificate,
+    ClaimCheck,
+    Counting,
+    ExactInspection,
+    ExactPacking,
+    Inspection,
+    Number,
+    Packing,
+    Plateau,
+    RunVerification,
+    State,
+    Verification,
+    available_cores,
+    backbone_at,
+    certify,
+    count,
+    find_vertex,
+    inspect,
+    plateau,
+    prepare,
+    read_packing,
+    set_threads,
+    sqrt,
+)
+from ._exact import exact_packing
+from ._records import Records, States, load
+from ._state import contact_matrix, contact_pair, disk_velocities, from_arrays, mechanism
+from ._words import (
+    BadInput,
+    CannotWrite,
+    CapReached,
+    Contradiction,
+    Error,
+    Failure,
+    InternalError,
+    Interrupted,
+    NoLimit,
+    NotConverged,
+    NotIsostatic,
+    Overlap,
+    Tie,
+    Unbounded,
+    Undecided,
+    UsageError,
+    Verdict,
+)
+
+__version__ = _core.version
+
+State.from_arrays = staticmethod(from_arrays)
+
+
+def verify(what, progress=None):
+    """Proves again, with separate code, what a certificate or the records of a run say.
+
+    Parameters
+    ----------
+    what : Certificate, or path of a certificate file or of the folder of a run
+    progress : callable (done, total), optional
+        For the folder of a run: called after each arc and each equilibrium. What it raises ends the
+        verification. Ctrl-C does too; the verification of one certificate is not interrupted.
+
+    Returns
+    -------
+    Verification or RunVerification
+        Their `verdict` is a `Verdict`.
+    """
+    if isinstance(what, Certificate):
+        return _core._verify_certificate(what)
+    if os.path.isdir(what):
+        return _core._verify_folder(what, progress)
+    return _core._verify_file(what)

@@ -1,0 +1,232 @@
+"""The folder of a run as arrays. It may be going on, finished or killed."""
+
+from __future__ import annotations
+
+import csv
+import functools
+import io
+import json
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+
+from ._core import State
+from ._words import BadInput, Verdict
+
+_integers = frozenset(
+    """number previous segment arcs rattlers backbone dofs contacts rank h k held decided_by proved
+    certified""".split()
+)
+_walls = {"left": -1, "bottom": -2, "right": -3, "top": -4}
+_numbers = """sigma2 eps2 eps2_bound force force_bound power power_bound work work_bound displacement margin
+    held_at""".split()
+
+
+def _complete_lines(path: Path) -> list[str]:
+    """Lines that were written to their end: a run that goes on may be in the middle of one."""
+    try:
+        text = path.read_text()
+    except FileNotFoundError:
+        return []
+    return text[: text.rfind("\n") + 1].splitlines()
+
+
+def _column(name: str) -> tuple[str, type]:
+    return name, int if name in _integers or name.endswith(("_i", "_j")) else float
+
+
+def contact_of_name(name: str, disks: int) -> tuple[int, int]:
+    """(i, j) of ``"3-7"``, ``"3-left"``, ``"held x of disk 3"``; walls -1 to -4, held coordinates -9."""
+    if match := re.fullmatch(r"(\d+)-(\d+|left|bottom|right|top)", name):
+        j = match[2]
+        return int(match[1]), _walls[j] if j in _walls else int(j)
+    if match := re.fullmatch(r"held ([xy]) of disk (\d+)", name):
+        return 2 * int(match[2]) + "xy".index(match[1]), -9
+    if match := re.fullmatch(r"held (right|top) wall", name):
+        return 2 * disks + ("right", "top").index(match[1]), -9
+    raise BadInput(
+        f"events.jsonl: contact '{name}': expected two disks, a disk and a wall, or a held coordinate"
+    )
+
+
+class States:
+    """Stored states by the number of their equilibrium, read when they are asked for.
+
+    ``len(states)``, ``for number in states``, ``states[number]``, ``number in states``.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def numbers(self) -> list[int]:
+        """Numbers of the equilibria whose states were stored, increasing."""
+        return sorted(int(path.stem[3:]) for path in self._folder.glob("eq_*.json"))
+
+    def __len__(self) -> int:
+        return len(self.numbers())
+
+    def __iter__(self):
+        return iter(self.numbers())
+
+    def __contains__(self, number: object) -> bool:
+        return isinstance(number, (int, np.integer)) and self._path(int(number)).exists()
+
+    def __getitem__(self, number: int) -> State:
+        if number not in self:
+            raise KeyError(f"equilibrium {number} was not stored: there are {self.numbers()}")
+        return State.read(self._path(int(number)))
+
+    @property
+    def last(self) -> State:
+        """The last equilibrium of a run that has ended."""
+        return State.read(self._folder / "last.json")
+
+    def _path(self, number: int) -> Path:
+        return self._folder / f"eq_{number:06}.json"
+
+
+class Records:
+    """The records of a run. Each file is read when it is first asked for; `reload` forgets what was read.
+
+    Attributes
+    ----------
+    path : Path
+    states : States
+        Stored states, by number.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        if not (self.path / "run.json").is_file():
+            raise BadInput(f"{self.path}: holds no run: expected a folder with run.json")
+        self.states = States(self.path / "states")
+
+    def __repr__(self) -> str:
+        return (
+            f"isostat.load({str(self.path)!r})  # {self.status}, {len(self.equilibria)} equilibria"
+        )
+
+    def reload(self) -> None:
+        """Reads the files again when they are next asked for: of a run that goes on."""
+        for name in ("header", "equilibria", "event_records", "events", "_stored"):
+            self.__dict__.pop(name, None)
+
+    @functools.cached_property
+    def header(self) -> dict:
+        """run.json: program, command, scene, settings, status."""
+        return json.loads((self.path / "run.json").read_text())
+
+    @property
+    def status(self) -> str:
+        """``"running"`` (also after a kill), ``"completed"``, ``"failed: ..."``, ``"undecided: ..."``,
+        ``"interrupted: ..."``.
+        """
+        return self.header["status"]
+
+    @functools.cached_property
+    def equilibria(self) -> np.ndarray:
+        """(m,) structured array, one row per equilibrium, fields as the columns of equilibria.csv.
+
+        Stresses in your unit, strains positive in compression; contacts are two fields ``_i``, ``_j``.
+        """
+        lines = _complete_lines(self.path / "equilibria.csv")
+        names = lines[0].lstrip("# ").split(",") if lines else []
+        kinds = np.dtype([_column(name) for name in names])
+        rows = csv.reader(io.StringIO("\n".join(lines[1:])))
+        casts = [kinds[name].type for name in names]
+        return np.array(
+            [tuple(cast(x) for cast, x in zip(casts, row)) for row in rows], dtype=kinds
+        )
+
+    @functools.cached_property
+    def event_records(self) -> list[dict]:
+        """events.jsonl as it stands: one dictionary per arc."""
+        return [json.loads(line) for line in _complete_lines(self.path / "events.jsonl")]
+
+    @functools.cached_property
+    def events(self) -> np.ndarray:
+        """(arcs,) structured array of events.jsonl; what is not known is NaN.
+
+        ``opened``, ``closed``: (2,) int, walls -1 to -4, held coordinates -9. ``decided_by``: word.
+        """
+        kinds = np.dtype(
+            [("step", int), ("equilibrium", int), ("arc", int), ("kind", "U8")]
+            + [("opened", int, 2), ("closed", int, 2), ("power_turn", bool), ("steps", int)]
+            + [("decided_by", "U13")]
+            + [(name, float) for name in _numbers]
+        )
+        disks = len(self.radii) if self.event_records else 0
+        events = np.empty(len(self.event_records), dtype=kinds)
+        for row, record in zip(events, self.event_records):
+            for name in ("step", "equilibrium", "arc", "kind", "power_turn", "steps", "decided_by"):
+                row[name] = record[name]
+            for name in ("opened", "closed"):
+                row[name] = contact_of_name(record[name], disks)
+            for name in _numbers:
+                value = record.get(name)
+                row[name] = np.nan if value is None else value
+        return events
+
+    @functools.cached_property
+    def _stored(self) -> list[State]:
+        return [self.states[number] for number in self.states]
+
+    @property
+    def radii(self) -> np.ndarray:
+        """(n,) radii; unit of length: that of the scene."""
+        return (
+            self.states[0].radii if 0 in self.states else State.read(self.path / "start.json").radii
+        )
+
+    @property
+    def positions(self) -> np.ndarray:
+        """(s, n, 2) centres in the s stored states (``states.numbers()``)."""
+        return np.stack([state.positions for state in self._stored])
+
+    @property
+    def cell(self) -> np.ndarray:
+        """(m, 2) lengths (Lx, Ly) of the box at every equilibrium."""
+        # L1 is along the axis that is not loaded.
+        axis = self.states[0].loaded_axis if 0 in self.states else 1
+        columns = ("L1", "L2") if axis == 1 else ("L2", "L1")
+        return np.column_stack([self.equilibria[name] for name in columns])
+
+    @property
+    def contacts(self) -> list[np.ndarray]:
+        """Contacts (N, 2) of each stored state; walls -1 to -4, held coordinates -9."""
+        return [state.contacts for state in self._stored]
+
+    @property
+    def forces(self) -> list[np.ndarray]:
+        """Forces (N,) in the contacts of each stored state; stress x length, positive in compression."""
+        return [state.forces for state in self._stored]
+
+    def certified(self) -> dict[int, Verdict]:
+        """What the certificate of each equilibrium says, where one was made (level ``states``)."""
+        rows = self.equilibria[self.equilibria["certified"] >= 0]
+        return {
+            int(r["number"]): Verdict.PROVED if r["certified"] else Verdict.UNDECIDED for r in rows
+        }
+
+
+def load(path: str | os.PathLike[str]) -> Records:
+    """The records of a run, read lazily: a folder that ``isostat run`` or `Run` writes.
+
+    Works while the run goes on and after a kill: a record that is not complete is left out.
+
+    Parameters
+    ----------
+    path : folder
+
+    Returns
+    -------
+    Records
+
+    Raises
+    ------
+    BadInput
+        The folder holds no run.
+    """
+    return Records(path)

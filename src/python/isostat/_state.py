@@ -1,0 +1,174 @@
+"""States from arrays, and what follows from their contact matrix."""
+
+from __future__ import annotations
+
+import json
+from typing import Iterable, Sequence
+
+import numpy as np
+
+from ._core import ExactPacking, Inspection, Packing, State, count
+
+_walls = {-1: "left", -2: "bottom", -3: "right", -4: "top"}
+
+
+def contact_pair(contact: Sequence[object]) -> tuple[int, int]:
+    """(i, j) with the codes of walls, from ``(0, 1)``, ``(0, "left")`` or ``(0, -1)``."""
+    i, j = contact
+    codes = {name: code for code, name in _walls.items()}
+    return int(i), codes[j] if isinstance(j, str) else int(j)
+
+
+def _json_contact(contact: Sequence[object]) -> list[object]:
+    i, j = contact
+    if isinstance(j, str):
+        return [int(i), j]
+    return [int(i), _walls.get(int(j), int(j))]
+
+
+def from_arrays(
+    positions: np.ndarray,
+    radii: np.ndarray,
+    length: Sequence[float],
+    contacts: Iterable[Sequence[object]],
+    *,
+    lower: Sequence[str] = ("fixed", "fixed"),
+    upper: Sequence[str] = ("movable", "movable"),
+    stress: Sequence[float] = (1.0, 1.0),
+    reference_length: Sequence[float] | None = None,
+    load: str = "nominal",
+    infinitesimal: np.ndarray | None = None,
+    disk_force: np.ndarray | None = None,
+    fixed: Iterable[int] = (),
+) -> State:
+    """A state from arrays. Every number is kept bit for bit.
+
+    Parameters
+    ----------
+    positions : (n, 2) float
+        Centres. Unit of length: yours.
+    radii : (n,) float
+    length : (2,) float
+        Positions of the right and the top wall; the left and the bottom wall are at 0.
+    contacts : rows (i, j)
+        Two disks, or a disk and ``"left"``, ``"bottom"``, ``"right"``, ``"top"`` (or -1 to -4). They
+        are part of the state: never found from a threshold.
+    lower, upper : pairs of "fixed", "absent", and for `upper` "movable"
+    stress : (2,) float
+        sigma_1 on the right, sigma_2 on the top wall; positive in compression.
+    reference_length : (2,) float, optional
+        Lengths at which nominal stress and strain are defined; default: `length`.
+    load : "nominal" or "true"
+    infinitesimal : (n, 2) float, optional
+        Infinitesimal loads, on which rattlers rest.
+    disk_force : (n, 2) float, optional
+        External forces on disks; stress x length.
+    fixed : numbers of disks that cannot move
+
+    Returns
+    -------
+    State
+
+    Raises
+    ------
+    BadInput
+        The field, the value and what was expected. Gaps and overlaps are not looked at.
+    """
+    positions = np.asarray(positions, dtype=float)
+    radii = np.asarray(radii, dtype=float)
+    if positions.shape != (len(radii), 2):
+        raise ValueError(f"positions has shape {positions.shape}: expected ({len(radii)}, 2)")
+    reference = length if reference_length is None else reference_length
+    content: dict[str, object] = {
+        "format": "isostat-state",
+        "version": 2,
+        "disks": np.column_stack((positions, radii)).tolist(),
+        "length": [float(value) for value in length],
+        "walls": {"lower": list(lower), "upper": list(upper)},
+        "load": {
+            "kind": load,
+            "stress": [float(value) for value in stress],
+            "reference_length": [float(value) for value in reference],
+        },
+        "contacts": [_json_contact(contact) for contact in contacts],
+    }
+    for name, value in (("infinitesimal", infinitesimal), ("disk_force", disk_force)):
+        if value is not None:
+            content[name] = np.asarray(value, dtype=float).tolist()
+    if held := [int(disk) for disk in fixed]:
+        content["fixed"] = held
+    return State.parse(json.dumps(content), "State.from_arrays")
+
+
+def contact_matrix(state: State | ExactPacking):
+    """The contact matrix H, rounded to doubles: ``H @ forces == external_force``.
+
+    Parameters
+    ----------
+    state : State or ExactPacking
+
+    Returns
+    -------
+    scipy.sparse.csc_matrix, shape (N_f, N)
+        Row d is degree of freedom d (`dof_names`), column l contact l; unit normals. ``H.T @ v`` are the
+        rates at which contacts close when the degrees of freedom move with v. Each entry has a relative
+        error of some 1e-16; the rank of this matrix proves nothing (see `count` and `ExactPacking`).
+    """
+    from scipy.sparse import csc_matrix
+
+    if isinstance(state, State):
+        parts, shape = state._matrix()
+        return csc_matrix(parts, shape=shape, copy=False)
+    columns = state.exact_columns()
+    rows = [row for column in columns for row in column]
+    values = [float(value) for column in columns for value in column.values()]
+    starts = np.cumsum([0] + [len(column) for column in columns])
+    dofs = len(state.packing.dof_names)
+    return csc_matrix((values, rows, starts), shape=(dofs, len(columns)))
+
+
+def mechanism(state: State, contact: Sequence[object]) -> np.ndarray:
+    """The motion that opens one contact of an isostatic state and keeps the others closed.
+
+    In double precision, for pictures and experiments: nothing is proved of it.
+
+    Parameters
+    ----------
+    state : State
+        With N = N_f contacts and a regular contact matrix.
+    contact : (i, j)
+        One of its contacts.
+
+    Returns
+    -------
+    (N_f,) float
+        Velocities of the degrees of freedom; the gap of `contact` grows with rate 1.
+    """
+    from scipy.sparse.linalg import spsolve
+
+    wanted = contact_pair(contact)
+    places = np.flatnonzero((state.contacts == wanted).all(axis=1))
+    if len(places) != 1:
+        raise ValueError(f"{wanted} is not a contact of this state")
+    matrix = contact_matrix(state)
+    if matrix.shape[0] != matrix.shape[1]:
+        raise ValueError(
+            f"N_f = {matrix.shape[0]}, N = {matrix.shape[1]}: expected as many contacts"
+        )
+    rates = np.zeros(matrix.shape[1])
+    rates[places[0]] = -1.0
+    return spsolve(matrix.T.tocsc(), rates)
+
+
+def disk_velocities(
+    state: State | Packing, velocities: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Velocities of degrees of freedom as those of disks (n, 2) and of the upper walls (2,)."""
+    disks, walls = np.zeros((len(state), 2)), np.zeros(2)
+    for name, value in zip(state.dof_names, velocities):
+        if " of disk " in name:
+            axis, _, number = name.partition(" of disk ")
+            disks[int(number), "xy".index(axis)] = value
+        else:
+            walls[("right wall", "top wall").index(name)] = value
+    return disks, walls

@@ -1,0 +1,112 @@
+#include "convert.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/core/threads.hpp>
+
+namespace isostat::python {
+
+namespace {
+
+constexpr int no_contact = -9;
+
+/// An attribute of a Python file of this package.
+py::object ours(const char* file, const char* name) {
+    return py::module_::import(file).attr(name);
+}
+
+std::pair<int, int> codes(const Contact& contact) {
+    switch (contact.kind) {
+    case ContactKind::disk_disk: return {contact.i, contact.j};
+    case ContactKind::lower_wall: return {contact.i, -1 - contact.j};
+    case ContactKind::upper_wall: return {contact.i, -3 - contact.j};
+    case ContactKind::held: break;
+    }
+    return {contact.i, no_contact};
+}
+
+} // namespace
+
+py::array_t<int> contact_array(const std::vector<Contact>& contacts) {
+    py::array_t<int> array({static_cast<py::ssize_t>(contacts.size()), py::ssize_t{2}});
+    auto rows = array.mutable_unchecked<2>();
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const auto row = static_cast<py::ssize_t>(l);
+        std::tie(rows(row, 0), rows(row, 1)) = codes(contacts[l]);
+    }
+    return array;
+}
+
+py::object contact_pair(const Contact& contact) {
+    return contact.i < 0 ? py::object(py::none()) : py::cast(codes(contact));
+}
+
+Contact contact_of(std::pair<int, int> pair) {
+    const auto [i, j] = pair;
+    if (i >= 0 && j >= 0 && i != j) {
+        return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+    }
+    if (i >= 0 && j <= -1 && j >= -4) {
+        return j >= -2 ? Contact{ContactKind::lower_wall, i, -1 - j} : Contact{ContactKind::upper_wall, i, -3 - j};
+    }
+    if (i >= 0 && j == no_contact) {
+        return {ContactKind::held, i, 0};
+    }
+    throw Error(ErrorKind::bad_input, "contact (" + std::to_string(i) + ", " + std::to_string(j) +
+                                          "): expected (i, j) of two disks, or (i, -1) left, (i, -2) bottom, (i, -3) "
+                                          "right, (i, -4) top wall, (i, -9) held coordinate");
+}
+
+py::array_t<double> interval_array(const std::vector<Interval>& intervals) {
+    py::array_t<double> array({static_cast<py::ssize_t>(intervals.size()), py::ssize_t{2}});
+    auto rows = array.mutable_unchecked<2>();
+    for (std::size_t l = 0; l < intervals.size(); ++l) {
+        rows(static_cast<py::ssize_t>(l), 0) = intervals[l].lower;
+        rows(static_cast<py::ssize_t>(l), 1) = intervals[l].upper;
+    }
+    return array;
+}
+
+py::object verdict_object(Verdict verdict) {
+    return ours("isostat._words", "Verdict")(std::string(to_string(verdict)));
+}
+
+void raise(const Failure& failure) {
+    const py::object type = ours("isostat._words", "failure_of")(to_string(failure.kind));
+    PyErr_SetObject(type.ptr(), py::str(failure.message).ptr());
+    throw py::error_already_set();
+}
+
+void check_signals() {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) {
+        throw py::error_already_set();
+    }
+}
+
+/// `Error` of the library becomes isostat.BadInput, ...
+void bind_errors(py::module_& /*module*/) {
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            std::rethrow_exception(std::move(thrown));
+        } catch (const Error& error) {
+            const py::object type = ours("isostat._words", "error_of")(error.exit_status());
+            PyErr_SetString(type.ptr(), error.what());
+        }
+    });
+}
+
+} // namespace isostat::python
+
+PYBIND11_MODULE(_core, module) {
+    using namespace isostat::python;
+    module.doc() = "Compiled part of isostat.";
+    module.attr("version") = ISOSTAT_VERSION;
+    module.def("set_threads", &isostat::set_threads, py::arg("count"),
+               "Threads of this process: they change times and never a bit of a result.");
+    module.def("available_cores", &isostat::available_cores, "Cores that this process may use.");
+    bind_errors(module);
+    bind_state(module);
+    bind_proofs(module);
+    bind_exact(module);
+    bind_preparation(module);
+}

@@ -1,0 +1,134 @@
+// Packings to begin with: prepared ones, and those of other programs.
+#include "convert.hpp"
+
+#include <isostat/crafted/plateau.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+namespace isostat::python {
+
+namespace {
+
+/// Ctrl-C during a preparation: its progress asks, its flag stops it, and KeyboardInterrupt follows.
+template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions options, Work work) {
+    std::atomic<bool> stop{false};
+    std::optional<py::error_already_set> raised;
+    options.stop = &stop;
+    options.progress = [&](const PreparationProgress&) {
+        const py::gil_scoped_acquire acquire;
+        if (!raised && PyErr_CheckSignals() != 0) {
+            raised.emplace();
+            stop = true;
+        }
+    };
+    PreparationReport<2> report;
+    Result<State<2>> result = unlocked([&] { return work(options, report); });
+    if (raised) {
+        throw py::error_already_set(*raised);
+    }
+    return std::make_shared<PyState>(PyState{value_or_raise(std::move(result)), {}});
+}
+
+std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<double, double> diameters,
+                                       double jitter, std::optional<std::vector<double>> radii) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    options.diameters.smallest = diameters.first;
+    options.diameters.largest = diameters.second;
+    options.jitter = jitter;
+    options.radii = radii.value_or(std::vector<double>());
+    return stoppable(options, [](const PreparationOptions& o, PreparationReport<2>& r) { return prepare<2>(o, r); });
+}
+
+std::shared_ptr<PyState> vertex_near(const Packing<2>& packing, std::array<double, 2> stress, std::uint64_t seed) {
+    PreparationOptions options;
+    options.stress = stress[0];
+    options.ratio = stress[1] / stress[0];
+    options.seed = seed;
+    return stoppable(options, [&packing](const PreparationOptions& o, PreparationReport<2>& r) {
+        return find_vertex<2>(packing, o, r);
+    });
+}
+
+Packing<2> read_any(const std::filesystem::path& path, const std::string& walls,
+                    std::optional<std::array<double, 4>> box, const std::string& radius, const std::string& diameter) {
+    ForeignOptions options;
+    options.walls = walls == "none" ? ForeignWalls::none : walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::box;
+    options.box = box;
+    if (!radius.empty()) {
+        options.size = SizeStatement{SizeMeaning::radius, radius, 0};
+    } else if (!diameter.empty()) {
+        options.size = SizeStatement{SizeMeaning::diameter, diameter, 0};
+    }
+    return read_foreign(path, options).packing;
+}
+
+void bind_plateau(py::module_& module) {
+    using crafted::Plateau, crafted::PlateauCounts, crafted::PlateauRange, crafted::PlateauStep;
+    py::class_<PlateauCounts>(module, "PlateauCounts", "Counts of one contact list.")
+        .def_readonly("dofs", &PlateauCounts::dof_count, "N_f.")
+        .def_readonly("contacts", &PlateauCounts::contact_count, "N.")
+        .def_readonly("rank", &PlateauCounts::rank, "Of the stored coordinates.")
+        .def_readonly("h", &PlateauCounts::hyperstaticity, "N - rank.")
+        .def_readonly("k", &PlateauCounts::mechanisms, "N_f - rank.")
+        .def_property_readonly(
+            "isostatic", [](const PlateauCounts& self) { return self.isostatic; },
+            "Verdict on: h = 0 and no internal mechanism.");
+    py::class_<PlateauStep>(module, "PlateauStep", "Counts at one threshold.")
+        .def_readonly("threshold", &PlateauStep::threshold, "Pairs of at most this gap are contacts; length.")
+        .def_readonly("rattlers", &PlateauStep::rattlers, "Disks that are not in the backbone.")
+        .def_readonly("backbone", &PlateauStep::backbone, "PlateauCounts without rattlers.")
+        .def_readonly("all", &PlateauStep::all, "PlateauCounts with all disks.");
+    py::class_<PlateauRange>(module, "PlateauRange", "Thresholds t with first <= t < last; both ends are exact.")
+        .def_readonly("first", &PlateauRange::first, "Length.")
+        .def_readonly("last", &PlateauRange::last, "Length.")
+        .def_readonly("open", &PlateauRange::open, "It goes on beyond the largest threshold.")
+        .def_readonly("contacts", &PlateauRange::contacts, "N of the backbone at `first`.")
+        .def_readonly("rattlers", &PlateauRange::rattlers, "At `first`.");
+    py::class_<Plateau>(module, "Plateau", "Counts against the gap threshold.")
+        .def_readonly("steps", &Plateau::steps, "PlateauStep of each row asked for.")
+        .def_readonly("ranges", &Plateau::ranges, "Where the backbone is proved isostatic, at every threshold inside.")
+        .def_readonly("special", &Plateau::special, "Where counting says isostatic and the rank does not.")
+        .def_readonly("no_self_stress_below", &Plateau::no_self_stress_below,
+                      "h = 0 in the backbone at every smaller threshold.")
+        .def_readonly("deepest_overlap", &Plateau::deepest_overlap, "The smallest gap; negative: overlap.")
+        .def_readonly("changes", &Plateau::changes, "Different gaps: thresholds at which the contact list changes.");
+    module.def(
+        "plateau",
+        [](const Packing<2>& packing, double first, double last, int rows) {
+            return crafted::plateau(packing, first, last, rows);
+        },
+        py::arg("packing"), py::arg("first"), py::arg("last"), py::arg("rows") = 0,
+        py::call_guard<py::gil_scoped_release>(),
+        "Plateau of the stored coordinates between two thresholds (length; gaps are compared exactly); `rows`: about "
+        "how many steps, 0 all.");
+    module.def(
+        "backbone_at",
+        [](const Packing<2>& packing, double threshold) {
+            return contact_array(unlocked([&] { return crafted::backbone_at(packing, threshold); }));
+        },
+        py::arg("packing"), py::arg("threshold"), "(N, 2) contacts of the backbone at a threshold.");
+}
+
+} // namespace
+
+void bind_preparation(py::module_& module) {
+    module.def("prepare", &prepare_disks, py::arg("disks"), py::kw_only(), py::arg("seed") = 1,
+               py::arg("diameters") = std::pair(1.0, 2.0), py::arg("jitter") = 0.0, py::arg("radii") = py::none(),
+               "State: random disks to an equilibrium under sigma_1 = sigma_2 = 1. `diameters`: bounds of a uniform "
+               "law; `radii`: a list instead. Seconds for a thousand disks; Ctrl-C ends it. Raises a Failure.");
+    module.def("find_vertex", &vertex_near, py::arg("packing"), py::kw_only(),
+               py::arg("stress") = std::array<double, 2>{1, 1}, py::arg("seed") = 1,
+               "State: the equilibrium downhill from a nearly jammed Packing in a box with two movable walls, proved. "
+               "Raises Tie, Undecided, NotConverged, ... Ctrl-C ends it.");
+    module.def("read_packing", &read_any, py::arg("path"), py::kw_only(), py::arg("walls") = "box",
+               py::arg("box") = py::none(), py::arg("radius") = "", py::arg("diameter") = "",
+               py::call_guard<py::gil_scoped_release>(),
+               "Packing from another program: LAMMPS data and dumps, extended XYZ, CSV, tables. `walls`: \"box\" (two "
+               "movable), \"fixed\", \"none\"; `box`: (xlo, xhi, ylo, yhi); `radius` or `diameter`: the column that "
+               "holds it, where its name does not say.");
+    bind_plateau(module);
+}
+
+} // namespace isostat::python

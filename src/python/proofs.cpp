@@ -1,0 +1,257 @@
+// inspect, certify, verify: what is known and proved of one state, and of a run.
+#include "convert.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/certificate/inspect.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/checker/verify_run.hpp>
+#include <isostat/io/certificate_file.hpp>
+#include <isostat/io/files.hpp>
+
+namespace isostat::python {
+
+namespace {
+
+/// A certificate with what is not in its file: the verdict and what was refuted.
+struct Certified {
+    Certificate certificate;
+    Verdict verdict = Verdict::undecided;
+    std::vector<std::string> refuted;
+};
+
+Certified certified(Certificate certificate) {
+    certificate.program = "isostat " ISOSTAT_VERSION;
+    Certification result = certify(certificate.state);
+    certificate.claims = std::move(result.claims);
+    return {std::move(certificate), result.verdict, std::move(result.refuted)};
+}
+
+Certified certify_file(const std::filesystem::path& path) {
+    Certificate certificate;
+    certificate.input = path.filename().string();
+    certificate.input_hash = sha256(read_text(path));
+    certificate.state = read_state<2>(path).state;
+    return certified(std::move(certificate));
+}
+
+Certified certify_state(const PyState& state) {
+    Certificate certificate;
+    certificate.input = "State";
+    certificate.state = state.state;
+    certificate.input_hash = sha256(state_text<2>(certificate.state));
+    return certified(std::move(certificate));
+}
+
+/// One property of the claims: `field` of the claim if it is there, else None.
+template <class Claim, class Get> auto claim(std::optional<Claim> CertificateClaims::*member, Get get) {
+    return [member, get](const Certified& self) -> py::object {
+        const auto& there = self.certificate.claims.*member;
+        return there ? py::object(get(*there)) : py::object(py::none());
+    };
+}
+
+py::object load_end(const LoadEndClaim& end) {
+    return end.unbounded ? py::object(py::none()) : py::make_tuple(end.stress, end.opens);
+}
+
+void bind_certificate(py::module_& module) {
+    using Claims = CertificateClaims;
+    py::class_<Certified>(
+        module, "Certificate",
+        "What is proved of a state, for `verify`. A claim that was not proved is None; `undecided` says why.")
+        .def_property_readonly(
+            "verdict", [](const Certified& self) { return self.verdict; },
+            "Verdict on: the true vertex is an isostatic, stable equilibrium without overlap.")
+        .def_readonly("refuted", &Certified::refuted, "Sentences: claims that are proved to be wrong.")
+        .def_property_readonly(
+            "undecided", [](const Certified& self) { return self.certificate.claims.undecided; },
+            "Sentences: one per claim that is absent.")
+        .def_property_readonly(
+            "state",
+            [](const Certified& self) {
+                return PyState{self.certificate.state, {}};
+            },
+            "The state it speaks of.")
+        .def_property_readonly("counting",
+                               claim(&Claims::counting,
+                                     [](const CountingClaim& c) {
+                                         py::dict dict;
+                                         dict["dofs"] = c.dof_count;
+                                         dict["contacts"] = c.contact_count;
+                                         dict["rank"] = c.rank;
+                                         dict["h"] = c.hyperstaticity;
+                                         dict["k"] = c.hypostaticity;
+                                         return dict;
+                                     }),
+                               "{\"dofs\", \"contacts\", \"rank\", \"h\", \"k\"}, exact; None.")
+        .def_property_readonly(
+            "vertex",
+            claim(&Claims::vertex, [](const VertexClaim& c) { return py::make_tuple(c.radius, c.unique_radius); }),
+            "(radius, unique_radius): a true vertex lies within `radius` of the stored coordinates, no other one "
+            "within `unique_radius`; length. None.")
+        .def_property_readonly(
+            "forces", claim(&Claims::forces, [](const ForcesClaim& c) { return interval_array(c.finite); }),
+            "(N, 2) ends of the intervals that hold the forces at the true vertex; stress x length. None.")
+        .def_property_readonly(
+            "structural_zeros",
+            claim(&Claims::forces, [](const ForcesClaim& c) { return py::cast(c.structural_zeros); }),
+            "Places of contacts whose force is exactly 0 for combinatorial reasons; None.")
+        .def_property_readonly(
+            "infinitesimal_forces",
+            claim(&Claims::forces, [](const ForcesClaim& c) { return interval_array(c.infinitesimal); }),
+            "(z, 2) ends of intervals of the infinitesimal forces in the structural zeros; None.")
+        .def_property_readonly(
+            "smallest_gap",
+            claim(&Claims::gaps, [](const GapsClaim& c) { return py::make_tuple(c.smallest, c.where); }),
+            "(gap, contact): every other pair has at least this gap; where. None.")
+        .def_property_readonly(
+            "low", claim(&Claims::load_interval, [](const LoadIntervalClaim& c) { return load_end(c.low); }),
+            "((lower, upper), contact): lower end of the supported interval of the loaded stress, enclosed, and what "
+            "opens there. None: unbounded or not proved.")
+        .def_property_readonly(
+            "high", claim(&Claims::load_interval, [](const LoadIntervalClaim& c) { return load_end(c.high); }),
+            "((lower, upper), contact): upper end. None: unbounded or not proved.")
+        .def_property_readonly(
+            "stable", [](const Certified& self) { return self.certificate.claims.stable; },
+            "True: claimed a strict local minimum of the potential. False: no claim.")
+        .def(
+            "text", [](const Certified& self) { return certificate_text(self.certificate); },
+            "The JSON text of the certificate file.")
+        .def(
+            "write",
+            [](const Certified& self, const std::filesystem::path& path) { write_certificate(path, self.certificate); },
+            py::arg("path"), "Writes the certificate file in one step. Raises CannotWrite.");
+    module.def("certify", &certify_file, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
+               "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
+               "than an inspection; it is not interrupted by Ctrl-C before it ends.");
+    module.def("certify", &certify_state, py::arg("state"), py::call_guard<py::gil_scoped_release>(),
+               "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
+               "than an inspection; it is not interrupted by Ctrl-C before it ends.");
+}
+
+void bind_inspection(py::module_& module) {
+    using Seen = Inspection<2>;
+    const auto record = [](auto member) { return [member](const Seen& self) { return self.record.*member; }; };
+    using Record = EquilibriumRecord<2>;
+    py::class_<Seen, std::shared_ptr<Seen>>(
+        module, "Inspection",
+        "What is known of a state without moving it; forces and ends of intervals are middles of proved intervals.")
+        .def_readonly("counting", &Seen::counting, "Counting: N_f, N, rank, h, k.")
+        .def_property_readonly(
+            "contacts", [](const Seen& self) { return contact_array(self.contacts); },
+            "(N, 2) contacts of the state, then coordinates that had to be held.")
+        .def_property_readonly("forces", vector_of(&Seen::forces),
+                               "(N,) forces, one per row of `contacts`; stress x length, positive in compression.")
+        .def_property_readonly(
+            "force_intervals", [](const Seen& self) { return interval_array(self.truth.finite); },
+            "(N, 2) proved intervals of the forces at the true vertex; (0, 2) without one.")
+        .def_property_readonly("structural_zero", vector_of(&Seen::structural_zero),
+                               "(N,) 1: the force is exactly 0 for every load on the walls.")
+        .def_property_readonly("rattlers", vector_of(&Seen::rattlers),
+                               "Numbers of the disks without a force-carrying contact.")
+        .def_property_readonly("verdict", record(&Record::verdict),
+                               "Verdict on: an isostatic equilibrium without overlap.")
+        .def_property_readonly(
+            "stable", [](const Seen& self) { return self.stable; },
+            "Verdict on: a strict local minimum of the potential. Refuted: a maximum along the mechanism.")
+        .def_property_readonly(
+            "second_order", [](const Seen& self) { return self.second_order; },
+            "(value, bound): second derivative of the potential along the mechanism (k = 1).")
+        .def_property_readonly(
+            "remark", [](const Seen& self) { return self.remark; },
+            "Where it is no equilibrium: which contact, and by how much.")
+        .def_property_readonly("sigma2", record(&Record::stress), "Loaded stress.")
+        .def_property_readonly(
+            "sigma2_low", record(&Record::stress_low),
+            "Lower end of the supported interval of the loaded stress; -inf: unbounded; nan: not decided.")
+        .def_property_readonly("sigma2_high", record(&Record::stress_high),
+                               "Upper end; inf: unbounded; nan: not decided.")
+        .def_property_readonly("opens_low", record(&Record::opens_low),
+                               "Contact whose force vanishes at `sigma2_low`; None.")
+        .def_property_readonly("opens_high", record(&Record::opens_high),
+                               "Contact whose force vanishes at `sigma2_high`; None.")
+        .def_property_readonly("force_bound", record(&Record::force_bound), "Proved bound of the error of every force.")
+        .def_property_readonly("min_gap", record(&Record::min_gap),
+                               "Lower bound of the gaps of all other pairs; length.")
+        .def_property_readonly("sigma_min_bound", record(&Record::sigma_min_bound),
+                               "Proved lower bound of the smallest singular value of the contact matrix.")
+        .def_property_readonly("strain", record(&Record::strain), "[eps_1, eps_2], positive in compression.")
+        .def_property_readonly("potential", record(&Record::potential), "W = -sum F q.")
+        .def_property_readonly("decided_by", record(&Record::decided_by),
+                               "The arithmetic that settled it: \"double\", \"double-double\", \"mpfr\", \"exact\".");
+    module.def(
+        "inspect",
+        [](const PyState& state) { return value_or_raise(unlocked([&] { return inspect_vertex(state.state); })); },
+        py::arg("state"),
+        "Inspection of a State: rank, forces, supported interval, gaps, stability. Raises NotIsostatic when h > 0 or "
+        "the rank is not proved, Undecided when no bound was proved.");
+}
+
+RunVerification verify_folder(const std::filesystem::path& folder, const py::object& progress) {
+    const py::gil_scoped_release release;
+    return verify_run(folder, [&progress](const VerificationProgress& at) {
+        check_signals();
+        if (!progress.is_none()) {
+            const py::gil_scoped_acquire acquire;
+            progress(at.arcs + at.equilibria, at.all_arcs + at.all_equilibria);
+        }
+    });
+}
+
+void bind_verification(py::module_& module) {
+    py::class_<ClaimCheck>(module, "ClaimCheck", "The answer of the checker to one claim.")
+        .def_readonly("claim", &ClaimCheck::claim, "Its name.")
+        .def_readonly("claimed", &ClaimCheck::claimed, "False: the certificate does not claim it.")
+        .def_property_readonly(
+            "verdict", [](const ClaimCheck& self) { return self.verdict; }, "Verdict on the claim.")
+        .def_readonly("detail", &ClaimCheck::detail, "One line: what was proved, or why not.")
+        .def_property_readonly(
+            "numbers",
+            [](const ClaimCheck& self) {
+                py::dict dict;
+                for (const auto& [name, value] : self.numbers) {
+                    dict[py::str(name)] = value;
+                }
+                return dict;
+            },
+            "The numbers behind it, rounded outwards.");
+    py::class_<Verification>(module, "Verification", "The answers of the checker to a certificate.")
+        .def_property_readonly(
+            "verdict", [](const Verification& self) { return self.verdict; },
+            "Refuted: a claim is; undecided: one is undecided or absent; else proved.")
+        .def_readonly("checks", &Verification::checks, "ClaimCheck of each claim.");
+    using Run = RunVerification;
+    py::class_<Run>(module, "RunVerification", "What became of the records of a run.")
+        .def_property_readonly(
+            "verdict", [](const Run& self) { return self.verdict; },
+            "Proved: every equilibrium and both ends of every arc; the ways between them only at level `arcs`: see "
+            "`words`.")
+        .def_property_readonly(
+            "words", [](const Run& self) { return words(self); }, "The answer in words.")
+        .def_readonly("finished", &Run::finished, "False: the run goes on, or was killed; nothing else was looked at.")
+        .def_readonly("wrong", &Run::wrong, "The first record that is wrong: file, record, what.")
+        .def_readonly("undecided", &Run::undecided, "What could not be checked.")
+        .def_readonly("arcs", &Run::arcs, "Records of arcs.")
+        .def_readonly("arcs_proved", &Run::arcs_proved, "Arcs whose ends were proved.")
+        .def_readonly("ways_proved", &Run::ways_proved, "Arcs whose way was proved.")
+        .def_readonly("equilibria", &Run::equilibria, "Rows of equilibria.csv.")
+        .def_readonly("equilibria_proved", &Run::equilibria_proved, "Rows proved.");
+    const auto release = py::call_guard<py::gil_scoped_release>();
+    module.def(
+        "_verify_certificate", [](const Certified& certified) { return verify(certified.certificate); },
+        py::arg("certificate"), release);
+    module.def(
+        "_verify_file", [](const std::filesystem::path& path) { return verify(read_certificate(path)); },
+        py::arg("path"), release);
+    module.def("_verify_folder", &verify_folder, py::arg("folder"), py::arg("progress"));
+}
+
+} // namespace
+
+void bind_proofs(py::module_& module) {
+    bind_certificate(module);
+    bind_inspection(module);
+    bind_verification(module);
+}
+
+} // namespace isostat::python

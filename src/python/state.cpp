@@ -1,0 +1,271 @@
+// State and Packing: arrays that look into the library's memory.
+#include "convert.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/rigidity/counting.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+namespace isostat::python {
+
+namespace {
+
+const char* word(WallKind kind) {
+    return kind == WallKind::absent ? "absent" : kind == WallKind::fixed ? "fixed" : "movable";
+}
+
+WallKind wall_kind(const std::string& name) {
+    for (const WallKind kind : {WallKind::absent, WallKind::fixed, WallKind::movable}) {
+        if (name == word(kind)) {
+            return kind;
+        }
+    }
+    throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");
+}
+
+py::dict walls_dict(const Walls<2>& walls) {
+    const auto words = [](const std::array<WallKind, 2>& kinds) {
+        return py::make_tuple(word(kinds[0]), word(kinds[1]));
+    };
+    py::dict dict;
+    dict["lower"] = words(walls.lower);
+    dict["upper"] = words(walls.upper);
+    return dict;
+}
+
+py::array positions(const Packing<2>& packing, py::handle owner) {
+    return view(packing.q.data(), {packing.disk_count(), 2}, owner);
+}
+
+py::array lengths(const Packing<2>& packing, py::handle owner) {
+    return view(packing.q.data() + 2 * packing.radius.size(), {2}, owner);
+}
+
+/// Names of the degrees of freedom: "x of disk 3", "top wall".
+std::vector<std::string> dof_names(const Packing<2>& packing) {
+    const DofMap<2> dofs(packing);
+    std::vector<std::string> names;
+    for (int d = 0; d < dofs.dof_count(); ++d) {
+        names.push_back(dofs.name(d));
+    }
+    return names;
+}
+
+std::vector<std::string> contact_names(const std::vector<Contact>& contacts) {
+    std::vector<std::string> names;
+    names.reserve(contacts.size());
+    for (const Contact& contact : contacts) {
+        names.push_back(to_string<2>(contact));
+    }
+    return names;
+}
+
+/// Moves a vector into an array without a copy.
+template <class T> py::array taken(std::vector<T>&& vector) {
+    auto* kept = new std::vector<T>(std::move(vector));
+    const py::capsule owner(kept, [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
+    return py::array(py::dtype::of<T>(), {static_cast<py::ssize_t>(kept->size())}, {}, kept->data(), owner);
+}
+
+/// (data, indices, indptr), shape: the arguments of scipy.sparse.csc_matrix.
+py::tuple matrix_parts(const Packing<2>& packing, const std::vector<Contact>& contacts) {
+    sparse::Matrix<double> h = contact_matrix<2>(packing, DofMap<2>(packing), contacts);
+    return py::make_tuple(py::make_tuple(taken(std::move(h.value)), taken(std::move(h.row)), taken(std::move(h.start))),
+                          py::make_tuple(h.rows, h.cols));
+}
+
+Packing<2> packing_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& centres,
+                      const std::vector<double>& radii, std::array<double, 2> length,
+                      const std::array<std::string, 2>& lower, const std::array<std::string, 2>& upper,
+                      const std::vector<bool>& fixed) {
+    if (centres.ndim() != 2 || centres.shape(1) != 2 || static_cast<std::size_t>(centres.shape(0)) != radii.size()) {
+        throw Error(ErrorKind::bad_input, "positions: expected an array of shape (n, 2) for n radii");
+    }
+    if (!fixed.empty() && fixed.size() != radii.size()) {
+        throw Error(ErrorKind::bad_input, "fixed: expected one flag per disk");
+    }
+    Packing<2> packing;
+    packing.radius = radii;
+    packing.q.assign(centres.data(), centres.data() + centres.size());
+    packing.q.insert(packing.q.end(), length.begin(), length.end());
+    packing.fixed.assign(fixed.begin(), fixed.end());
+    for (std::size_t a = 0; a < 2; ++a) {
+        packing.walls.lower[a] = wall_kind(lower[a]);
+        packing.walls.upper[a] = wall_kind(upper[a]);
+    }
+    validate(packing, "Packing");
+    return packing;
+}
+
+void bind_packing(py::module_& module) {
+    py::class_<Packing<2>, std::shared_ptr<Packing<2>>>(
+        module, "Packing",
+        "Disks and walls: positions, radii, box. No contacts, no load.\n\nPacking(positions, radii, length, *, "
+        "lower=(\"fixed\", \"fixed\"), upper=(\"movable\", \"movable\"), fixed=[]): (n, 2) and (n,) floats, (Lx, Ly); "
+        "`fixed` has a flag per disk.")
+        .def(py::init(&packing_of), py::arg("positions"), py::arg("radii"), py::arg("length"), py::kw_only(),
+             py::arg("lower") = std::array<std::string, 2>{"fixed", "fixed"},
+             py::arg("upper") = std::array<std::string, 2>{"movable", "movable"},
+             py::arg("fixed") = std::vector<bool>{})
+        .def("__len__", &Packing<2>::disk_count)
+        .def_property_readonly(
+            "positions", [](const py::object& self) { return positions(self.cast<const Packing<2>&>(), self); },
+            "(n, 2) centres; length. A read-only view.")
+        .def_property_readonly(
+            "length", [](const py::object& self) { return lengths(self.cast<const Packing<2>&>(), self); },
+            "(2,) positions of the right and the top wall; length. A read-only view.")
+        .def_property_readonly("radii", vector_of(&Packing<2>::radius), "(n,) radii; length. A read-only view.")
+        .def_property_readonly("fixed", vector_of(&Packing<2>::fixed),
+                               "(n,) flags, 1: cannot move; empty where no disk is fixed.")
+        .def_property_readonly(
+            "walls", [](const Packing<2>& self) { return walls_dict(self.walls); },
+            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly("solid_fraction", &Packing<2>::solid_fraction, "Area of the disks over that of the box.")
+        .def_property_readonly("dof_names", &dof_names,
+                               "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
+}
+
+void bind_state_class(py::module_& module) {
+    const auto state = [](const py::object& self) -> const State<2>& { return self.cast<const PyState&>().state; };
+    py::class_<PyState, std::shared_ptr<PyState>>(
+        module, "State",
+        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.")
+        .def_static("read", &read_state<2>, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+                    "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
+        .def_static("parse", &parse_state<2>, py::arg("text"), py::arg("source") = "State",
+                    py::call_guard<py::gil_scoped_release>(),
+                    "Reads a state from the text of a file; `source` begins messages.")
+        .def(
+            "text", [](const PyState& self) { return state_text<2>(self.state, self.forces); },
+            "The JSON text of the state file.")
+        .def(
+            "write",
+            [](const PyState& self, const std::filesystem::path& path) {
+                write_state<2>(path, self.state, self.forces);
+            },
+            py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
+        .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); })
+        .def_property_readonly(
+            "positions", [state](const py::object& self) { return positions(state(self).packing, self); },
+            "(n, 2) centres; length. A read-only view.")
+        .def_property_readonly(
+            "radii", [state](const py::object& self) { return view(state(self).packing.radius, self); },
+            "(n,) radii; length. A read-only view.")
+        .def_property_readonly(
+            "length", [state](const py::object& self) { return lengths(state(self).packing, self); },
+            "(2,) positions of the right and the top wall; length. A read-only view.")
+        .def_property_readonly(
+            "fixed", [state](const py::object& self) { return view(state(self).packing.fixed, self); },
+            "(n,) flags, 1: cannot move; empty where no disk is fixed.")
+        .def_property_readonly(
+            "walls", [](const PyState& self) { return walls_dict(self.state.packing.walls); },
+            "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly(
+            "contacts", [](const PyState& self) { return contact_array(self.state.contacts); },
+            "(N, 2) integers: disks i < j; or a disk and -1 left, -2 bottom, -3 right, -4 top wall; or a held "
+            "coordinate and -9. A copy.")
+        .def_property_readonly(
+            "contact_names", [](const PyState& self) { return contact_names(self.state.contacts); },
+            "Names of the N contacts: \"3-7\", \"3-left\".")
+        .def_property_readonly(
+            "dof_names", [](const PyState& self) { return dof_names(self.state.packing); },
+            "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".")
+        .def_property_readonly("forces", vector_of(&PyState::forces),
+                               "(N,) forces that the file has, stress x length, positive in compression; empty where "
+                               "it has none. For looking: `inspect` proves them.")
+        .def_property_readonly(
+            "stress", [](const PyState& self) { return self.state.load.stress; },
+            "[sigma_1, sigma_2]: on the right and on the top wall; positive in compression.")
+        .def_property_readonly(
+            "reference_length", [](const PyState& self) { return self.state.load.reference_length; },
+            "[Lx, Ly] at which nominal stress and strain are defined; length.")
+        .def_property_readonly(
+            "loaded_axis", [](const PyState& self) { return self.state.load.loaded_axis; },
+            "Axis whose stress a programme changes: 0 or 1.")
+        .def_property_readonly(
+            "load", [](const PyState& self) { return self.state.load.kind == LoadKind::nominal ? "nominal" : "true"; },
+            "\"nominal\": force = stress x reference length; \"true\": force = stress x length.")
+        .def_property_readonly(
+            "infinitesimal",
+            [state](const py::object& self) {
+                const std::vector<double>& g = state(self).load.infinitesimal;
+                return view(g.data(), {static_cast<py::ssize_t>(g.size() / 2), 2}, self);
+            },
+            "(n, 2) infinitesimal loads, on which rattlers rest, or (0, 2).")
+        .def_property_readonly(
+            "disk_force",
+            [state](const py::object& self) {
+                const std::vector<double>& force = state(self).load.disk_force;
+                return view(force.data(), {static_cast<py::ssize_t>(force.size() / 2), 2}, self);
+            },
+            "(n, 2) external forces on disks, stress x length, or (0, 2).")
+        .def_property_readonly(
+            "external_force",
+            [](const PyState& self) {
+                const State<2>& s = self.state;
+                const std::vector<double> force = on_dofs<2>(s.load.external_force(s.packing), DofMap<2>(s.packing));
+                return py::array_t<double>(static_cast<py::ssize_t>(force.size()), force.data());
+            },
+            "(N_f,) external force on each degree of freedom, stress x length, rounded to nearest.")
+        .def_property_readonly(
+            "solid_fraction", [](const PyState& self) { return self.state.packing.solid_fraction(); },
+            "Area of the disks over that of the box.")
+        .def_property_readonly(
+            "equilibrium", [](const PyState& self) { return self.state.equilibrium; },
+            "Number of this equilibrium in its run.")
+        .def_property_readonly(
+            "provenance", [](const PyState& self) { return self.state.provenance; }, "JSON text: who made it.")
+        .def_property_readonly(
+            "packing", [](const PyState& self) { return self.state.packing; },
+            "The disks and walls, as a Packing (a copy).")
+        .def("_matrix", [](const PyState& self) { return matrix_parts(self.state.packing, self.state.contacts); })
+        .def(
+            "with_stress",
+            [](const PyState& self, std::array<double, 2> stress) {
+                State<2> changed = self.state;
+                changed.load.stress = stress;
+                return parse_state<2>(state_text<2>(changed), "State");
+            },
+            py::arg("stress"), "The same state under other stresses [sigma_1, sigma_2].");
+}
+
+} // namespace
+
+void bind_state(py::module_& module) {
+    bind_packing(module);
+    bind_state_class(module);
+    py::class_<Counting>(module, "Counting", "N_f + h = N + k for the stored coordinates taken as exact numbers.")
+        .def_readonly("dofs", &Counting::dof_count, "N_f.")
+        .def_readonly("contacts", &Counting::contact_count, "N.")
+        .def_readonly("rank", &Counting::rank,
+                      "Proved lower bound of the rank of the contact matrix; the rank where `rank_exact` is proved.")
+        .def_readonly("h", &Counting::hyperstaticity,
+                      "N - rank: self-stresses. An upper bound unless `rank_exact` is proved.")
+        .def_readonly("k", &Counting::mechanisms,
+                      "N_f - rank: mechanisms, rigid motions included. An upper bound unless `rank_exact` is proved.")
+        .def_property_readonly(
+            "rank_exact", [](const Counting& self) { return self.rank_exact; }, "Verdict on: `rank` is the rank.")
+        .def("__repr__", [](const Counting& self) {
+            return "Counting(dofs=" + std::to_string(self.dof_count) +
+                   ", contacts=" + std::to_string(self.contact_count) + ", rank=" + std::to_string(self.rank) +
+                   ", h=" + std::to_string(self.hyperstaticity) + ", k=" + std::to_string(self.mechanisms) + ")";
+        });
+    module.def(
+        "count", [](const PyState& state) { return count_contacts<2>(state.state.packing, state.state.contacts); },
+        py::arg("state"), py::call_guard<py::gil_scoped_release>(),
+        "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "
+        "elimination mod p; the rank is exact where `rank_exact` is proved.");
+    module.def(
+        "count",
+        [](const Packing<2>& packing, const std::vector<std::pair<int, int>>& contacts) {
+            std::vector<Contact> list;
+            for (const auto& pair : contacts) {
+                list.push_back(contact_of(pair));
+            }
+            return count_contacts<2>(packing, list);
+        },
+        py::arg("packing"), py::arg("contacts"), py::call_guard<py::gil_scoped_release>(),
+        "Counting of the exact contact matrix of stored coordinates: count(state), or count(packing, contacts). An "
+        "elimination mod p; the rank is exact where `rank_exact` is proved.");
+}
+
+} // namespace isostat::python

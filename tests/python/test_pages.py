@@ -1,0 +1,68 @@
+"""The commands of the pages run as they stand; the stub and the module have the same names."""
+
+import ast
+import os
+import re
+import subprocess
+import unittest
+
+import isostat
+from common import project
+from isostat import _core
+
+
+class Pages(unittest.TestCase):
+    def test_the_two_commands_of_the_pages(self):
+        for page in ("README.md", "src/python/README.md"):
+            lines = (project / page).read_text().splitlines()
+            commands = [line.strip() for line in lines if "build/release/python" in line]
+            self.assertEqual(len(commands), 1, page)
+            # What is tested is this build, not the release that the page builds.
+            command = commands[0].replace("build/release/python", os.environ["PYTHONPATH"])
+            out = subprocess.run(command, shell=True, cwd=project, capture_output=True, text=True)
+            self.assertEqual((out.returncode, out.stdout.strip()), (0, "20"), out.stderr)
+            before = lines[[line.strip() for line in lines].index(commands[0]) - 1]
+            self.assertEqual(before.strip(), "bash src/python/build", page)
+
+    def test_the_page_names_what_there_is(self):
+        page = (project / "src/python/README.md").read_text()
+        for name in re.findall(r"isostat\.([A-Za-z_]+)", page):
+            self.assertTrue(hasattr(isostat, name), name)
+        for error in isostat.Error.__subclasses__() + isostat.Failure.__subclasses__():
+            self.assertTrue(error is isostat.Failure or f"`{error.__name__}`" in page, error)
+
+    def test_every_public_name_has_a_docstring(self):
+        for name, thing in vars(isostat).items():
+            if name.startswith("_") or not callable(thing):
+                continue
+            self.assertTrue(thing.__doc__, name)
+            if isinstance(thing, type):
+                for member, value in vars(thing).items():
+                    if not member.startswith("_") and not isinstance(value, str):
+                        self.assertTrue(getattr(value, "__doc__", None), f"{name}.{member}")
+
+    def test_the_stub_has_the_names_of_the_module(self):
+        stub = ast.parse((project / "src/python/isostat/_core.pyi").read_text())
+
+        def names(body):
+            found = set()
+            for node in body:
+                if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+                    found.add(node.name)
+                elif isinstance(node, ast.AnnAssign):
+                    found.add(node.target.id)
+            return {name for name in found if not name.startswith("__")}
+
+        def there(thing):
+            return {name for name in vars(thing) if not name.startswith("__")}
+
+        self.assertEqual(names(stub.body), there(_core))
+        added = {"State": {"from_arrays"}}
+        for node in stub.body:
+            if isinstance(node, ast.ClassDef):
+                expected = there(getattr(_core, node.name)) | added.get(node.name, set())
+                self.assertEqual(names(node.body), expected, node.name)
+
+
+if __name__ == "__main__":
+    unittest.main()

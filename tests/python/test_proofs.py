@@ -1,0 +1,123 @@
+"""inspect, certify, verify; verdicts; what Ctrl-C does."""
+
+import math
+import signal
+import subprocess
+import time
+import unittest
+
+import numpy as np
+from common import Folder, project, two_disks
+
+import isostat
+from isostat import Verdict
+
+
+class Verdicts(unittest.TestCase):
+    def test_no_verdict_is_true_or_false(self):
+        for verdict in Verdict:
+            with self.assertRaises(TypeError):
+                bool(verdict)
+            with self.assertRaises(TypeError):
+                assert verdict
+
+
+class Proofs(Folder):
+    def test_inspection_has_the_closed_forms(self):
+        seen = isostat.inspect(two_disks())
+        self.assertIs(seen.verdict, Verdict.PROVED)
+        self.assertIs(seen.stable, Verdict.PROVED)
+        self.assertAlmostEqual(seen.sigma2_low, 1 / (2 * math.sqrt(2)), places=12)
+        self.assertEqual(seen.opens_low, (1, -2))
+        self.assertEqual(seen.sigma2_high, math.inf)
+        self.assertIsNone(seen.opens_high)
+        inside = (seen.force_intervals[:, 0] <= seen.forces) & (
+            seen.forces <= seen.force_intervals[:, 1]
+        )
+        self.assertTrue(inside.all())
+
+    def test_a_state_that_is_not_in_equilibrium_is_refuted(self):
+        seen = isostat.inspect(two_disks(stress=(1.0, 0.1)))
+        self.assertIs(seen.verdict, Verdict.REFUTED)
+        self.assertIn("1-bottom", seen.remark)
+
+    def test_a_state_that_is_not_isostatic_is_an_exception_with_its_id(self):
+        state = isostat.State.from_arrays(
+            [[1, 1]],
+            [1],
+            [2, 2],
+            [
+                (0, "left"),
+                (0, "bottom"),
+                (0, "right"),
+                (0, "top"),
+            ],
+            upper=("fixed", "movable"),
+        )
+        with self.assertRaises(isostat.NotIsostatic) as caught:
+            isostat.inspect(state)
+        self.assertEqual(caught.exception.id, "not_isostatic")
+
+    def test_a_certificate_is_verified_and_a_changed_one_refuted(self):
+        certificate = isostat.certify(two_disks())
+        self.assertIs(certificate.verdict, Verdict.PROVED)
+        self.assertEqual(certificate.counting["rank"], 6)
+        self.assertTrue((certificate.forces[:, 0] > 0).all())
+        (low, high), opens = certificate.low
+        self.assertTrue(low <= 1 / (2 * math.sqrt(2)) <= high)
+        self.assertEqual(opens, (1, -2))
+        self.assertIsNone(certificate.high)
+        checked = isostat.verify(certificate)
+        self.assertIs(checked.verdict, Verdict.PROVED)
+        self.assertEqual(
+            {check.claim for check in checked.checks if check.claimed} >= {"forces", "stable"}, True
+        )
+        path = self.folder / "two.cert.json"
+        certificate.write(path)
+        self.assertIs(isostat.verify(path).verdict, Verdict.PROVED)
+        path.write_text(path.read_text().replace('"rank":6', '"rank":5'))
+        with self.assertRaisesRegex(isostat.BadInput, "digest"):
+            isostat.verify(path)
+
+    def test_a_large_state_from_a_file(self):
+        certificate = isostat.certify(project / "tests/data/vertex400.txt")
+        self.assertIs(certificate.verdict, Verdict.PROVED)
+        self.assertEqual(certificate.forces.shape[1], 2)
+
+    def test_a_run_is_verified_and_a_changed_record_refuted(self):
+        out = self.run_scene()
+        steps = []
+        run = isostat.verify(out, progress=lambda done, total: steps.append((done, total)))
+        self.assertIs(run.verdict, Verdict.PROVED, run.undecided)
+        self.assertEqual(run.equilibria_proved, run.equilibria)
+        self.assertEqual(steps[-1][0], steps[-1][1])
+        records = out / "events.jsonl"
+        records.write_text(records.read_text().replace('"kind":"limit"', '"kind":"tension"', 1))
+        self.assertIs(isostat.verify(out).verdict, Verdict.REFUTED)
+
+    def test_what_the_progress_raises_ends_a_verification(self):
+        out = self.run_scene()
+
+        def stop(done, total):
+            raise StopIteration(f"{done} of {total}")
+
+        with self.assertRaisesRegex(StopIteration, "1 of"):
+            isostat.verify(out, progress=stop)
+
+    def test_ctrl_c_ends_a_preparation(self):
+        process = self.script(
+            "import isostat\nprint('begun', flush=True)\nisostat.prepare(20000)",
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        process.stdout.readline()
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=60)
+        self.assertIn("KeyboardInterrupt", errors)
+        self.assertNotEqual(process.returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,99 @@
+"""isostat.load: a run as arrays, finished, killed or going on."""
+
+import json
+import unittest
+
+import numpy as np
+from common import Folder
+
+import isostat
+
+
+class Records(Folder):
+    def test_arrays_of_a_finished_run(self):
+        out = self.run_scene()
+        run = isostat.load(out)
+        self.assertEqual(run.status, "completed")
+        table = np.genfromtxt(out / "equilibria.csv", delimiter=",", names=True)
+        self.assertEqual(run.equilibria.dtype.names, table.dtype.names)
+        for name in table.dtype.names:
+            np.testing.assert_array_equal(run.equilibria[name], table[name])
+        self.assertEqual(list(run.states), list(range(6)))
+        self.assertEqual(run.positions.shape, (6, 30, 2))
+        self.assertEqual(run.radii.shape, (30,))
+        self.assertEqual([forces.shape for forces in run.forces], [(62,)] * 6)
+        self.assertEqual([contacts.shape for contacts in run.contacts], [(62, 2)] * 6)
+        for number in run.states:
+            np.testing.assert_allclose(run.cell[number], run.states[number].length, rtol=1e-12)
+            self.assertEqual(run.states[number].equilibrium, number)
+        np.testing.assert_array_equal(run.states.last.positions, run.states[5].positions)
+        with self.assertRaises(KeyError):
+            run.states[6]
+
+    def test_events_are_those_of_the_file(self):
+        run = isostat.load(self.run_scene())
+        lines = [json.loads(line) for line in (run.path / "events.jsonl").read_text().splitlines()]
+        self.assertEqual(len(run.events), len(lines))
+        walls = {-1: "left", -2: "bottom", -3: "right", -4: "top"}
+        for event, line in zip(run.events, lines):
+            self.assertEqual(event["kind"], line["kind"])
+            self.assertEqual(event["eps2"], line["eps2"])
+            for name in ("opened", "closed"):
+                i, j = event[name]
+                if j != -9:
+                    self.assertEqual(f"{i}-{walls.get(j, j)}", line[name])
+        arcs = run.equilibria["arcs"]
+        self.assertEqual(arcs.sum(), len(run.events))
+
+    def test_files_are_read_when_they_are_asked_for(self):
+        run = isostat.load(self.run_scene())
+        (run.path / "events.jsonl").write_text("not json\n")
+        self.assertEqual(len(run.equilibria), 6)
+        with self.assertRaises(ValueError):
+            run.events
+
+    def test_a_record_in_the_middle_of_being_written_is_left_out(self):
+        run = isostat.load(self.run_scene())
+        whole = len(run.equilibria), len(run.events)
+        for name in ("equilibria.csv", "events.jsonl"):
+            path = run.path / name
+            text = path.read_text()
+            path.write_text(text[: len(text) - 7])
+        (run.path / "states" / "eq_000003.json").unlink()
+        run.reload()
+        self.assertEqual((len(run.equilibria), len(run.events)), (whole[0] - 1, whole[1] - 1))
+        self.assertNotIn(3, run.states)
+        self.assertEqual(len(run.positions), 5)
+
+    def test_a_run_that_has_just_begun(self):
+        out = self.folder / "begun"
+        (out / "states").mkdir(parents=True)
+        (out / "run.json").write_text('{"status": "running"}')
+        (out / "equilibria.csv").write_text("# number,pre")
+        run = isostat.load(out)
+        self.assertEqual((run.status, len(run.equilibria), len(run.events)), ("running", 0, 0))
+
+    def test_a_folder_without_a_run_is_bad_input(self):
+        with self.assertRaisesRegex(isostat.BadInput, "run.json"):
+            isostat.load(self.folder)
+
+    def test_names_of_contacts(self):
+        from isostat._records import contact_of_name
+
+        known = {
+            "3-7": (3, 7),
+            "3-left": (3, -1),
+            "3-top": (3, -4),
+            "held x of disk 3": (6, -9),
+            "held y of disk 3": (7, -9),
+            "held right wall": (20, -9),
+            "held top wall": (21, -9),
+        }
+        for name, contact in known.items():
+            self.assertEqual(contact_of_name(name, 10), contact)
+        with self.assertRaises(isostat.BadInput):
+            contact_of_name("3-nowhere", 10)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -92,7 +92,7 @@ Arrival Foresight::arrive(const Place& from, std::size_t event, const Opening& o
     ahead_.pop_front();
     Arrival arrival{std::move(arc.followed), {}, {}};
     if (arrival.followed.end) {
-        Proved proved = arc.proof.take();
+        Proved proved = arc.proof.get();
         arrival.open = std::move(proved.open);
         arrival.place = std::move(proved.place);
         if (!arrival.place.evidence || arrival.place.evidence->solver != arrival.followed.solver) {
@@ -130,7 +130,7 @@ Foresight::Arc Foresight::arc_of(const Start& from, std::size_t event, const Ope
     arc.end.packing.q = *arc.followed.end;
     arc.end.contacts[opening.contact] = motion.closed;
     const int fresh = record.power_turn ? static_cast<int>(opening.contact) : -1;
-    arc.proof = Promised<Proved>([end = arc.end, exact = from.load, fresh, factors = arc.followed.solver] {
+    arc.proof = Future<Proved>([end = arc.end, exact = from.load, fresh, factors = arc.followed.solver] {
         Proved proved;
         proved.open = make_place(end, proved.place, exact, fresh, factors);
         if (!proved.open) {

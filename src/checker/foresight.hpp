@@ -50,7 +50,7 @@ class Foresight {
         Opening opening;
         Followed followed;
         State<2> end;
-        Promised<Proved> proof;
+        Future<Proved> proof;
     };
     struct Start {
         const State<2>& state;

@@ -1,5 +1,7 @@
 #include <isostat/core/result.hpp>
 
+#include <stdexcept>
+
 namespace isostat {
 
 const char* to_string(FailureKind kind) {
@@ -16,6 +18,15 @@ const char* to_string(FailureKind kind) {
     case FailureKind::interrupted: return "interrupted";
     }
     return "failure";
+}
+
+void throw_no_value(const Failure& failure) {
+    throw std::logic_error(std::string("the value of a result was asked for, which failed: ") +
+                           to_string(failure.kind) + ": " + failure.message);
+}
+
+void throw_no_failure() {
+    throw std::logic_error("the failure of a result was asked for, which has a value");
 }
 
 } // namespace isostat

@@ -22,7 +22,7 @@
 namespace isostat {
 
 /// Whoever turns `stage` from waiting to begun does the work.
-struct Errand::Task {
+struct Task::State {
     enum Stage : int { waiting, begun, done };
     std::function<void()> work;
     std::exception_ptr failure;
@@ -30,7 +30,7 @@ struct Errand::Task {
     std::atomic<int> stage{waiting};
     bool sent = false; ///< to the other threads
 
-    explicit Task(std::function<void()> w) : work(std::move(w)) {}
+    explicit State(std::function<void()> w) : work(std::move(w)) {}
     bool claim() {
         int expected = waiting;
         return stage.compare_exchange_strong(expected, begun, std::memory_order_acq_rel);
@@ -81,12 +81,12 @@ class Pool {
     ~Pool() { end(); }
 
     /// \pre as for `run`: one thread at a time
-    void send(std::shared_ptr<Errand::Task> task) {
+    void send(std::shared_ptr<Task::State> task) {
         {
-            const std::scoped_lock lock(errands_guard_);
-            errands_.push_back(std::move(task));
+            const std::scoped_lock lock(tasks_guard_);
+            tasks_.push_back(std::move(task));
         }
-        errands_waiting_.fetch_add(1, std::memory_order_release);
+        tasks_waiting_.fetch_add(1, std::memory_order_release);
         ticket_.fetch_add(next_job, std::memory_order_release);
         ticket_.notify_all();
     }
@@ -138,19 +138,19 @@ class Pool {
         return false;
     }
 
-    /// Does one errand that nobody has begun, if there is one.
-    bool take_errand() {
-        while (errands_waiting_.load(std::memory_order_acquire) > 0) {
-            std::shared_ptr<Errand::Task> task;
+    /// Does one task that nobody has begun, if there is one.
+    bool take_task() {
+        while (tasks_waiting_.load(std::memory_order_acquire) > 0) {
+            std::shared_ptr<Task::State> task;
             {
-                const std::scoped_lock lock(errands_guard_);
-                if (errands_.empty()) {
+                const std::scoped_lock lock(tasks_guard_);
+                if (tasks_.empty()) {
                     return false;
                 }
-                task = std::move(errands_.front());
-                errands_.pop_front();
+                task = std::move(tasks_.front());
+                tasks_.pop_front();
             }
-            errands_waiting_.fetch_sub(1, std::memory_order_relaxed);
+            tasks_waiting_.fetch_sub(1, std::memory_order_relaxed);
             if (task->claim()) {
                 task->perform();
                 return true;
@@ -191,15 +191,15 @@ class Pool {
     std::mutex failure_guard_;
     std::exception_ptr failure_;
     std::size_t failed_piece_ = 0;
-    std::mutex errands_guard_;
-    std::deque<std::shared_ptr<Errand::Task>> errands_;
-    std::atomic<int> errands_waiting_{0};
+    std::mutex tasks_guard_;
+    std::deque<std::shared_ptr<Task::State>> tasks_;
+    std::atomic<int> tasks_waiting_{0};
     std::vector<std::thread> workers_; ///< last: they use the rest
 };
 
 namespace {
 
-thread_local bool inside = false; // a piece or an errand is being worked on by this thread
+thread_local bool inside = false; // a piece or a task is being worked on by this thread
 
 } // namespace
 
@@ -207,13 +207,13 @@ void Pool::serve() {
     inside = true;
     long spins = 0;
     while (!ending_.load(std::memory_order_relaxed)) {
-        if (take_one() || take_errand()) {
+        if (take_one() || take_task()) {
             spins = 0;
         } else if (++spins < longest_spin) {
             pause_briefly();
         } else {
             const std::uint64_t seen = ticket_.load(std::memory_order_acquire);
-            if (seen % next_job == 0 && errands_waiting_.load(std::memory_order_relaxed) == 0 &&
+            if (seen % next_job == 0 && tasks_waiting_.load(std::memory_order_relaxed) == 0 &&
                 !ending_.load(std::memory_order_relaxed)) {
                 ticket_.wait(seen, std::memory_order_acquire);
             }
@@ -225,31 +225,31 @@ void Pool::serve() {
 
 namespace {
 
-struct Crew {
+struct SharedPool {
     std::mutex in_use;
     int wanted = 1;
     std::unique_ptr<Pool> pool; ///< made at the first call that has use for it
 };
 
-Crew& crew() {
-    static Crew the_crew;
-    return the_crew;
+SharedPool& shared_pool() {
+    static SharedPool the_pool;
+    return the_pool;
 }
 
 } // namespace
 
 void set_threads(int count) {
     assert(count >= 1);
-    Crew& c = crew();
-    const std::scoped_lock lock(c.in_use);
-    if (count != c.wanted) {
-        c.pool.reset();
-        c.wanted = count;
+    SharedPool& shared = shared_pool();
+    const std::scoped_lock lock(shared.in_use);
+    if (count != shared.wanted) {
+        shared.pool.reset();
+        shared.wanted = count;
     }
 }
 
 int threads() {
-    return crew().wanted;
+    return shared_pool().wanted;
 }
 
 int available_cores() {
@@ -263,83 +263,83 @@ int available_cores() {
 }
 
 void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>& work) {
-    Crew& c = crew();
-    std::unique_lock lock(c.in_use, std::defer_lock);
-    if (pieces < 2 || inside || c.wanted < 2 || !lock.try_lock()) {
+    SharedPool& shared = shared_pool();
+    std::unique_lock lock(shared.in_use, std::defer_lock);
+    if (pieces < 2 || inside || shared.wanted < 2 || !lock.try_lock()) {
         for (std::size_t piece = 0; piece < pieces; ++piece) {
             work(piece);
         }
         return;
     }
-    if (!c.pool) {
-        c.pool = std::make_unique<Pool>(static_cast<std::size_t>(c.wanted - 1));
+    if (!shared.pool) {
+        shared.pool = std::make_unique<Pool>(static_cast<std::size_t>(shared.wanted - 1));
     }
     inside = true;
     const struct Outside {
         ~Outside() { inside = false; }
     } outside;
-    c.pool->run(pieces, work);
+    shared.pool->run(pieces, work);
 }
 
-Errand::Errand(std::function<void()> work) : task_(std::make_shared<Task>(std::move(work))) {
-    Crew& c = crew();
-    std::unique_lock lock(c.in_use, std::defer_lock);
-    if (inside || c.wanted < 2 || !lock.try_lock()) {
+Task::Task(std::function<void()> work) : state_(std::make_shared<State>(std::move(work))) {
+    SharedPool& shared = shared_pool();
+    std::unique_lock lock(shared.in_use, std::defer_lock);
+    if (inside || shared.wanted < 2 || !lock.try_lock()) {
         return;
     }
-    if (!c.pool) {
-        c.pool = std::make_unique<Pool>(static_cast<std::size_t>(c.wanted - 1));
+    if (!shared.pool) {
+        shared.pool = std::make_unique<Pool>(static_cast<std::size_t>(shared.wanted - 1));
     }
-    task_->sent = true;
-    c.pool->send(task_);
+    state_->sent = true;
+    shared.pool->send(state_);
 }
 
-Errand::Errand(Errand&&) noexcept = default;
+Task::Task(Task&&) noexcept = default;
 
-Errand& Errand::operator=(Errand&& other) noexcept {
-    Errand before(std::move(*this));
-    task_ = std::move(other.task_);
+Task& Task::operator=(Task&& other) noexcept {
+    Task before(std::move(*this));
+    state_ = std::move(other.state_);
     return *this;
 }
 
-Errand::~Errand() {
-    if (task_ != nullptr && !task_->claim()) {
-        task_->stage.wait(Task::begun, std::memory_order_acquire);
+Task::~Task() {
+    if (state_ != nullptr && !state_->claim()) {
+        state_->stage.wait(State::begun, std::memory_order_acquire);
     }
 }
 
-bool Errand::underway() const {
-    return task_ != nullptr && task_->sent && task_->stage.load(std::memory_order_acquire) != Task::done;
+bool Task::underway() const {
+    return state_ != nullptr && state_->sent && state_->stage.load(std::memory_order_acquire) != State::done;
 }
 
-void Errand::begin_here() {
-    if (task_ != nullptr && task_->claim()) {
-        task_->perform();
+void Task::begin_here() {
+    if (state_ != nullptr && state_->claim()) {
+        state_->perform();
     }
 }
 
-void Errand::finish() {
-    if (task_ == nullptr) {
+void Task::finish() {
+    if (state_ == nullptr) {
         return;
     }
-    const std::shared_ptr<Task> task = std::move(task_);
-    if (task->claim()) {
-        task->perform();
+    const std::shared_ptr<State> state = std::move(state_);
+    if (state->claim()) {
+        state->perform();
     }
-    for (long spins = 0; task->stage.load(std::memory_order_acquire) != Task::done; ++spins) {
+    for (long spins = 0; state->stage.load(std::memory_order_acquire) != State::done; ++spins) {
         if (spins < longest_spin) {
             pause_briefly();
         } else {
-            task->stage.wait(Task::begun, std::memory_order_acquire);
+            state->stage.wait(State::begun, std::memory_order_acquire);
         }
     }
     for (std::size_t k = 0; k < work_kinds; ++k) {
-        if (task->counted[k] != 0) {
-            count_work(static_cast<Work>(k), task->counted[k]);
+        if (state->counted[k] != 0) {
+            count_work(static_cast<Work>(k), state->counted[k]);
         }
     }
-    if (task->failure) {
-        std::rethrow_exception(task->failure);
+    if (state->failure) {
+        std::rethrow_exception(state->failure);
     }
 }
 

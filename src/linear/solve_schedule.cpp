@@ -99,10 +99,10 @@ SolveSchedule::SolveSchedule(klu_symbolic& symbolic, klu_numeric& numeric)
     : SolveSchedule(std::make_shared<const Parts>(symbolic, numeric)) {}
 
 SolveSchedule::SolveSchedule(const std::shared_ptr<const Parts>& parts)
-    : SolveSchedule(*parts, Promised<Triangle>([parts] { return Triangle(parts->lower, parts->blocks, true); })) {}
+    : SolveSchedule(*parts, Future<Triangle>([parts] { return Triangle(parts->lower, parts->blocks, true); })) {}
 
-SolveSchedule::SolveSchedule(const Parts& parts, Promised<Triangle> lower)
-    : rows_(parts.rows), columns_(parts.columns), upper_(parts.upper, parts.blocks, false), lower_(lower.take()) {
+SolveSchedule::SolveSchedule(const Parts& parts, Future<Triangle> lower)
+    : rows_(parts.rows), columns_(parts.columns), upper_(parts.upper, parts.blocks, false), lower_(lower.get()) {
     const Lines& beside = parts.beside;
     for (std::size_t b = 0; b + 1 < parts.blocks.size(); ++b) {
         beside_start_.push_back(beside_.size());

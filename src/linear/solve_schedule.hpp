@@ -32,7 +32,7 @@ class SolveSchedule {
     struct Parts;
     explicit SolveSchedule(const std::shared_ptr<const Parts>& parts);
     /// The other triangle meanwhile.
-    SolveSchedule(const Parts& parts, Promised<Triangle> lower);
+    SolveSchedule(const Parts& parts, Future<Triangle> lower);
 
     std::vector<int> rows_, columns_; ///< P and Q
     Triangle upper_, lower_;

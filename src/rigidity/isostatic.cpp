@@ -144,33 +144,33 @@ Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::v
     }
     structure.matrix_ =
         std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *structure.dofs_, contacts));
-    auto ordering = std::make_shared<const sparse::Ordering>(*structure.matrix_);
-    if (!ordering->structurally_regular()) {
+    structure.ordering_ = std::make_shared<OrderingOnDemand>(structure.matrix_);
+    const sparse::Ordering& ordering = structure.ordering();
+    if (!ordering.structurally_regular()) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
-                                   dof_count, ordering->structural_rank())};
+                                   dof_count, ordering.structural_rank())};
     }
-    proof.elimination_ = Promised<int>([packing, dofs = structure.dofs_, contacts, ordering] {
+    proof.elimination_ = Future<int>([packing, dofs = structure.dofs_, contacts, ordering = structure.ordering_] {
         count_work(Work::rank_proofs);
         // Full rank over any prime field is a proof; the small field is tried first because it costs half.
         const int rank = exact::rank(
-            reduced_contact_matrix(packing, *dofs, contacts, exact::mersenne31, exact::residue31), *ordering);
+            reduced_contact_matrix(packing, *dofs, contacts, exact::mersenne31, exact::residue31), ordering->get());
         return rank == dofs->dof_count() ? rank
-                                         : exact::rank(exact_contact_matrix(packing, *dofs, contacts), *ordering);
+                                         : exact::rank(exact_contact_matrix(packing, *dofs, contacts), ordering->get());
     });
     structure.contacts_ = std::move(contacts);
     structure.evidence_ = RegularityEvidence::none;
     structure.matching_.resize(static_cast<std::size_t>(dof_count));
     for (std::size_t k = 0; k < structure.matching_.size(); ++k) {
-        structure.matching_[static_cast<std::size_t>(ordering->row_order()[k])] = ordering->column_order()[k];
+        structure.matching_[static_cast<std::size_t>(ordering.row_order()[k])] = ordering.column_order()[k];
     }
-    structure.ordering_ = std::move(ordering);
     return proof;
 }
 
 template <int Dim> bool RankProof<Dim>::is_regular() {
     if (elimination_.pending()) {
-        rank_ = elimination_.take();
+        rank_ = elimination_.get();
     }
     return rank_ == structure_.size();
 }
@@ -196,10 +196,10 @@ IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous, const Pack
     next.contacts_[slot.index()] = contact;
     next.dofs_ = previous.dofs_;
     next.matrix_ = std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *next.dofs_, next.contacts_));
-    next.foreseen_ = guess != nullptr && guess->contacts_ == next.contacts_; // then the pattern is the same
-    next.matching_ = next.foreseen_ ? guess->matching_
-                                    : sparse::repaired_matching(previous.matching_, next.matrix_->start,
-                                                                next.matrix_->row, next.slot_);
+    next.predicted_ = guess != nullptr && guess->contacts_ == next.contacts_; // then the pattern is the same
+    next.matching_ = next.predicted_ ? guess->matching_
+                                     : sparse::repaired_matching(previous.matching_, next.matrix_->start,
+                                                                 next.matrix_->row, next.slot_);
     return next.matching_.empty() ? std::nullopt : std::optional(std::move(next));
 }
 
@@ -218,15 +218,9 @@ template <int Dim> IsostaticStructure<Dim> IsostaticStructure<Dim>::without_proo
     structure.dofs_ = std::move(contacts.dofs_);
     structure.matrix_ = std::move(contacts.matrix_);
     structure.matching_ = std::move(contacts.matching_);
+    structure.ordering_ = std::make_shared<OrderingOnDemand>(structure.matrix_);
     structure.evidence_ = RegularityEvidence::none;
     return structure;
-}
-
-template <int Dim> const sparse::Ordering& IsostaticStructure<Dim>::ordering() const {
-    if (ordering_ == nullptr) {
-        ordering_ = std::make_shared<const sparse::Ordering>(*matrix_);
-    }
-    return *ordering_;
 }
 
 template sparse::Matrix<double> contact_matrix<2>(const Packing<2>&, const DofMap<2>&, const std::vector<Contact>&);

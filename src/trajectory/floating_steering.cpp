@@ -46,17 +46,17 @@ FloatingSteering<Dim>::FloatingSteering(const Origin& from, const ArcStart<Dim>&
 }
 
 template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::propose() {
-    if (stock_.empty()) {
+    if (queue_.empty()) {
         return next();
     }
-    Result<ArcProposal<Dim>> arc = std::move(stock_.front());
-    stock_.pop_front();
+    Result<ArcProposal<Dim>> arc = std::move(queue_.front());
+    queue_.pop_front();
     return arc;
 }
 
 template <int Dim> void FloatingSteering<Dim>::propose_ahead(const std::function<bool()>& enough) {
-    while (!ended_ && !enough() && stock_.size() < static_cast<std::size_t>(options_.max_arcs)) {
-        stock_.push_back(next());
+    while (!ended_ && !enough() && queue_.size() < static_cast<std::size_t>(options_.max_arcs)) {
+        queue_.push_back(next());
     }
 }
 
@@ -70,16 +70,16 @@ template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
     record.margin = std::nan("");
     arc.opening = start_.opening;
     ended_ = true; // unless there is another arc after this one
-    Foretold foretold;
-    foretold.passes = here_ ? here_->passes() : 0; // of others at the start
-    auto path = follow(foretold);
+    Prediction prediction;
+    prediction.passes = here_ ? here_->passes() : 0; // of others at the start
+    auto path = follow(prediction);
     if (!path.ok()) {
         return path.failure();
     }
     if (auto failure = record_arc(record, path.value())) {
         return *failure;
     }
-    if (auto failure = arrive(arc, path.value(), foretold)) {
+    if (auto failure = arrive(arc, path.value(), prediction)) {
         return *failure;
     }
     if (auto failure = record_power(record)) {
@@ -97,7 +97,7 @@ template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
 }
 
 /// With the arc that was begun beside the choice of what opens, if it was.
-template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Foretold& foretold) {
+template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& prediction) {
     const Opening& opening = start_.opening;
     const PowerLoad<Dim> power{&load_, opening.infinitesimal, start_.kind == "limit"};
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
@@ -117,11 +117,11 @@ template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Foretold& fore
         if (departure == nullptr) {
             return attempt(block ? *block : *factorisation_);
         }
-        const std::unique_ptr<ArcDeparture<Dim>> begun = departure->arc.take();
-        foretold.end = begun->expected();
-        if (foretold.end) {
-            foretold.vertex = Promised<ForeseenVertex<Dim>>([this, &end = *foretold.end] {
-                return foresee(*structure_, here_->loaded(), here_->force, factorisation_->approximate(), load_,
+        const std::unique_ptr<ArcDeparture<Dim>> begun = departure->arc.get();
+        prediction.end = begun->expected();
+        if (prediction.end) {
+            prediction.vertex = Future<PredictedVertex<Dim>>([this, &end = *prediction.end] {
+                return predict(*structure_, here_->loaded(), here_->force, factorisation_->approximate(), load_,
                                start_.opening.contact, end);
             });
         }
@@ -151,22 +151,22 @@ std::optional<Failure> FloatingSteering<Dim>::record_arc(ArcRecord<Dim>& record,
 
 /// The vertex at the end of the path: from now on it is `here_`.
 template <int Dim>
-std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Foretold& foretold) {
-    std::optional<ForeseenVertex<Dim>> foreseen;
-    if (foretold.end && foretold.end->closes == path.closed) {
-        foreseen = foretold.vertex.take();
+std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Prediction& prediction) {
+    std::optional<PredictedVertex<Dim>> predicted;
+    if (prediction.end && prediction.end->closes == path.closed) {
+        predicted = prediction.vertex.get();
     }
-    foretold.vertex = {}; // it reads this vertex
+    prediction.vertex = {}; // it reads this vertex
     auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, start_.opening.contact, path.closed,
-                                                  foreseen && foreseen->contacts ? &*foreseen->contacts : nullptr);
+                                                  predicted && predicted->contacts ? &*predicted->contacts : nullptr);
     if (!next) {
         return Failure{FailureKind::not_isostatic,
                        fmt::format("the contacts are structurally singular at the end of {}", names(arc.record))};
     }
-    if (!next->foreseen()) { // a normal turned into or out of an axis: the backbone may be another one
-        foreseen.reset();
+    if (!next->predicted()) { // a normal turned into or out of an axis: the backbone may be another one
+        predicted.reset();
     }
-    ApproximateInverse approximate = operator_at(*next, path.passes + foretold.passes, foreseen);
+    ApproximateInverse approximate = operator_at(*next, path.passes + prediction.passes, predicted);
     if (for_proofs_) {
         arc.contacts = *next;
     }
@@ -177,7 +177,7 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     std::vector<double> guess = here_ ? std::move(here_->force) : std::vector<double>();
     here_ = std::make_unique<FloatingVertex<Dim>>(
         typename FloatingVertex<Dim>::Arrival{std::move(path.end), std::move(unproved), approximate, std::move(guess),
-                                              std::move(path.open), foreseen ? &*foreseen : nullptr},
+                                              std::move(path.open), predicted ? &*predicted : nullptr},
         typename FloatingVertex<Dim>::Context{load_, options_.rule, candidates_, arc_options_});
     if (for_proofs_) {
         arc.approximate = std::move(approximate);
@@ -188,18 +188,18 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     return std::nullopt;
 }
 
-/// An operator close to the inverse, after an arc that cost so many passes: renewed, foreseen, or the one before with
+/// An operator close to the inverse, after an arc that cost so many passes: renewed, predicted, or the one before with
 /// one more exchange.
 template <int Dim>
 ApproximateInverse FloatingSteering<Dim>::operator_at(const ExchangedContacts<Dim>& next, int passes,
-                                                      std::optional<ForeseenVertex<Dim>>& foreseen) {
+                                                      std::optional<PredictedVertex<Dim>>& predicted) {
     rule_.add(passes, factorisation_->approximate());
     if (auto renewed = refactorisation_.after(next.slot(), next.matrix())) {
         rule_.restart();
         return std::move(*renewed);
     }
-    if (foreseen && !for_proofs_) { // the new column is the foreseen one, which only a proof would notice
-        return std::move(*foreseen->approximate);
+    if (predicted && !for_proofs_) { // the new column is the predicted one, which only a proof would notice
+        return std::move(*predicted->approximate);
     }
     return factorisation_->approximate().exchanged(next.slot(), next.matrix());
 }

@@ -36,26 +36,26 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
     FloatingSteering(const Origin& from, const ArcStart<Dim>& start, const RunOptions& options,
                      CandidateList<Dim> candidates, bool for_proofs);
 
-    [[nodiscard]] bool goes_on() const override { return !ended_ || !stock_.empty(); }
+    [[nodiscard]] bool goes_on() const override { return !ended_ || !queue_.empty(); }
     Result<ArcProposal<Dim>> propose() override;
     bool revise(const ArcProof<Dim>& /*refused*/) override { return false; }
 
-    /// Keeps proposals in stock for later calls, until `enough`, the last one or a failure.
+    /// Queues proposals for later calls, until `enough`, the last one or a failure.
     void propose_ahead(const std::function<bool()>& enough);
 
   private:
-    /// What is known at the start of an arc: what its forces cost, and its end foretold, with the vertex there.
-    struct Foretold {
+    /// What is known at the start of an arc: what its forces cost, and its end as predicted, with the vertex there.
+    struct Prediction {
         int passes = 0;
         std::optional<typename ArcDeparture<Dim>::Expected> end;
-        Promised<ForeseenVertex<Dim>> vertex; ///< refers to `end`, and to the vertex at the start
+        Future<PredictedVertex<Dim>> vertex; ///< refers to `end`, and to the vertex at the start
     };
     Result<ArcProposal<Dim>> next();
-    Result<Arc<Dim>> follow(Foretold& foretold);
+    Result<Arc<Dim>> follow(Prediction& prediction);
     [[nodiscard]] std::optional<Failure> record_arc(ArcRecord<Dim>& record, const Arc<Dim>& path) const;
-    [[nodiscard]] std::optional<Failure> arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Foretold& foretold);
+    [[nodiscard]] std::optional<Failure> arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Prediction& prediction);
     [[nodiscard]] ApproximateInverse operator_at(const ExchangedContacts<Dim>& next, int passes,
-                                                 std::optional<ForeseenVertex<Dim>>& foreseen);
+                                                 std::optional<PredictedVertex<Dim>>& predicted);
     [[nodiscard]] std::optional<Failure> record_power(ArcRecord<Dim>& record) const;
     void choose(ArcProposal<Dim>& arc);
 
@@ -69,7 +69,7 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
     ArcOptions arc_options_;
     bool for_proofs_;
     bool ended_ = false;
-    std::deque<Result<ArcProposal<Dim>>> stock_;
+    std::deque<Result<ArcProposal<Dim>>> queue_;
     RefactorisationRule rule_;
     Refactorisation refactorisation_;
     std::unique_ptr<FloatingVertex<Dim>> here_; ///< null: at the start. Last: it uses the rest

@@ -41,26 +41,26 @@ FloatingVertex<Dim>::FloatingVertex(Arrival arrival, const Context& context)
             loaded_.push_back(static_cast<int>(mu));
         }
     }
-    if (arrival.foreseen != nullptr && arrival.foreseen->loaded == loaded_) {
-        backbone_ = std::move(arrival.foreseen->backbone);
+    if (arrival.predicted != nullptr && arrival.predicted->loaded == loaded_) {
+        backbone_ = std::move(arrival.predicted->backbone);
     } else {
-        arrival.foreseen = nullptr;
-        pending_backbone_ = Promised<std::vector<unsigned char>>(
-            [this] { return ContactPattern(packing, structure).carrying(loaded_); });
+        arrival.predicted = nullptr;
+        pending_backbone_ =
+            Future<std::vector<unsigned char>>([this] { return ContactPattern(packing, structure).carrying(loaded_); });
     }
     if (departs() && renew_candidates(context.candidates, packing)) { // not by a task that may be dropped
         arrival.open.clear();
     }
     load_on_dofs_ = force;
-    if (arrival.foreseen != nullptr) {
-        foreseen_passes_ = arrival.foreseen->passes;
-        arrival.guess = std::move(arrival.foreseen->force);
-        if (departs() && arrival.foreseen->opens.valid()) {
-            depart(arrival, arrival.foreseen->opens.index());
+    if (arrival.predicted != nullptr) {
+        predicted_passes_ = arrival.predicted->passes;
+        arrival.guess = std::move(arrival.predicted->force);
+        if (departs() && arrival.predicted->opens.valid()) {
+            depart(arrival, arrival.predicted->opens.index());
         }
     }
     if (departure_) { // the arc by the thread that will follow it, the forces beside it
-        Errand solving([&] { solve(arrival); });
+        Task solving([&] { solve(arrival); });
         begin_arc(arrival);
         if (solving.underway()) { // else the forces come first: they may say that another contact opens
             departure_->arc.begin_here();
@@ -74,7 +74,7 @@ FloatingVertex<Dim>::FloatingVertex(Arrival arrival, const Context& context)
 
 template <int Dim> void FloatingVertex<Dim>::take_backbone() {
     if (pending_backbone_.pending()) {
-        backbone_ = pending_backbone_.take();
+        backbone_ = pending_backbone_.get();
     }
 }
 
@@ -83,7 +83,7 @@ template <int Dim> void FloatingVertex<Dim>::depart(const Arrival& arrival, std:
 }
 
 template <int Dim> void FloatingVertex<Dim>::begin_arc(const Arrival& arrival) {
-    departure_->arc = Promised<std::unique_ptr<ArcDeparture<Dim>>>([this, &there = *departure_, open = arrival.open] {
+    departure_->arc = Future<std::unique_ptr<ArcDeparture<Dim>>>([this, &there = *departure_, open = arrival.open] {
         return std::make_unique<ArcDeparture<Dim>>(packing, structure, there.factorisation, there.opened, +1,
                                                    PowerLoad<Dim>{&context_.load, false, false}, context_.candidates,
                                                    context_.arc, open);
@@ -148,7 +148,7 @@ template <int Dim> double FloatingVertex<Dim>::better_force(std::size_t l, const
     return force[l] - power; // the approach velocity is minus the rate
 }
 
-template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_infinitesimal, bool proved_behind) {
+template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_infinitesimal, bool proof_follows) {
     if (!of_infinitesimal && error_ > 0 && std::abs(force[l]) <= error_) {
         std::vector<double> better = load_on_dofs_;
         factorisation.solve_forces_from(better, force, accuracy);
@@ -156,7 +156,7 @@ template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_
         error_ = 0;
     }
     const std::vector<double>& f = of_infinitesimal ? infinitesimal() : force;
-    return f[l] > (proved_behind ? 0 : accuracy * largest(f));
+    return f[l] > (proof_follows ? 0 : accuracy * largest(f));
 }
 
 template <int Dim> bool FloatingVertex<Dim>::resolves(const Opening& chosen) {

@@ -2,7 +2,7 @@
 /// \file
 /// A vertex on the way of floating steering: private to the room.
 
-#include "trajectory/foreseen_vertex.hpp"
+#include "trajectory/predicted_vertex.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/threads.hpp>
@@ -34,7 +34,7 @@ template <int Dim> class FloatingVertex {
         const ApproximateInverse& approximate; ///< close to the inverse of its matrix
         std::vector<double> guess;             ///< forces in the same slots
         std::vector<Contact> open;             ///< see `Arc`
-        ForeseenVertex<Dim>* foreseen;         ///< of the same pattern, or null
+        PredictedVertex<Dim>* predicted;       ///< of the same pattern, or null
     };
     FloatingVertex(Arrival arrival, const Context& context);
 
@@ -45,7 +45,7 @@ template <int Dim> class FloatingVertex {
 
     [[nodiscard]] bool is_structural_zero(std::size_t l) const { return backbone_[l] == 0; }
     /// Of the factors, for forces.
-    [[nodiscard]] int passes() const { return factorisation.passes() + foreseen_passes_; }
+    [[nodiscard]] int passes() const { return factorisation.passes() + predicted_passes_; }
     /// Degrees of freedom.
     [[nodiscard]] const std::vector<int>& loaded() const { return loaded_; }
     /// Forces of the infinitesimal loads.
@@ -55,7 +55,7 @@ template <int Dim> class FloatingVertex {
     struct Departure {
         ContactId opened;
         Factorisation factorisation;
-        Promised<std::unique_ptr<ArcDeparture<Dim>>> arc;
+        Future<std::unique_ptr<ArcDeparture<Dim>>> arc;
     };
     [[nodiscard]] Departure* departure(const Opening& opening);
     [[nodiscard]] bool has_departure() const { return departure_ != nullptr; }
@@ -68,7 +68,7 @@ template <int Dim> class FloatingVertex {
     /// H f), whose error is the product of those of f and v.
     [[nodiscard]] double better_force(std::size_t l, const std::vector<double>& velocity) const;
     /// Whether the force in a contact is compressive: clearly, but where a proof will tell.
-    [[nodiscard]] bool compressive(std::size_t l, bool of_infinitesimal, bool proved_behind);
+    [[nodiscard]] bool compressive(std::size_t l, bool of_infinitesimal, bool proof_follows);
 
   private:
     [[nodiscard]] bool departs() const { return context_.rule == OpeningRule::most_negative; }
@@ -87,10 +87,10 @@ template <int Dim> class FloatingVertex {
     Context context_;
     std::vector<int> loaded_;
     std::vector<unsigned char> backbone_;
-    Promised<std::vector<unsigned char>> pending_backbone_; ///< while it is made
+    Future<std::vector<unsigned char>> pending_backbone_; ///< while it is made
     std::vector<double> infinitesimal_;
     std::vector<double> load_on_dofs_;
-    int foreseen_passes_ = 0;
+    int predicted_passes_ = 0;
     double error_ = 0;                     ///< of the finite forces, with a margin; 0: they are as accurate as they get
     std::unique_ptr<Departure> departure_; ///< last: it uses the rest
 };

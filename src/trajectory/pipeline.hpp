@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// One task after the other, beside the thread that submits them: private to the room.
+/// One piece of work after the other, beside the thread that submits them: private to the room.
 
 #include <isostat/core/threads.hpp>
 
@@ -12,23 +12,23 @@
 
 namespace isostat {
 
-/// Tasks are done in the order in which they were submitted, each after the one before: beside the caller where a
-/// thread is free, else when the caller asks. The first task without a result ends it: later ones are dropped undone.
+/// Items are worked on in the order in which they were submitted, each after the one before: beside the caller where a
+/// thread is free, else when the caller asks. The first item without a result ends it: later ones are dropped.
 /// What is done, and with which results, does not depend on the number of threads.
-template <class Task, class Result> class Pipeline {
+template <class Item, class Result> class Pipeline {
   public:
-    /// `work` must not touch what the caller uses meanwhile. At most `window` tasks wait; with 0 each is done when it
+    /// `work` must not touch what the caller uses meanwhile. At most `window` items wait; with 0 each is done when it
     /// is submitted.
-    Pipeline(std::function<std::optional<Result>(Task&)> work, std::size_t window)
+    Pipeline(std::function<std::optional<Result>(Item&)> work, std::size_t window)
         : work_(std::move(work)), window_(window) {}
     Pipeline(const Pipeline&) = delete;
     Pipeline& operator=(const Pipeline&) = delete;
     ~Pipeline() { drop(); }
 
-    void submit(Task task) {
+    void submit(Item item) {
         if (window_ == 0) {
             if (!ended_) {
-                take(work_(task));
+                take(work_(item));
             }
             return;
         }
@@ -39,13 +39,13 @@ template <class Task, class Result> class Pipeline {
             if (ended_) {
                 return;
             }
-            tasks_.push_back(std::move(task));
+            items_.push_back(std::move(item));
             idle = !std::exchange(busy_, true);
-            full = tasks_.size() > window_;
+            full = items_.size() > window_;
         }
         if (idle) {
             server_.finish(); // it has nothing left to do
-            server_ = Errand([this] { serve(); });
+            server_ = Task([this] { serve(); });
         }
         if (full || threads() < 2) {
             server_.finish();
@@ -53,7 +53,7 @@ template <class Task, class Result> class Pipeline {
     }
     /// Waits until all is done that was submitted.
     void finish() { server_.finish(); }
-    /// The result of the next task, if it is there.
+    /// The result of the next item, if it is there.
     std::optional<Result> next() {
         const std::scoped_lock lock(guard_);
         if (results_.empty()) {
@@ -68,33 +68,33 @@ template <class Task, class Result> class Pipeline {
         const std::scoped_lock lock(guard_);
         return ended_;
     }
-    /// Tasks that were not begun are not done; waits for the one that was.
+    /// Items that were not begun are dropped; waits for the one that was.
     void drop() {
         {
             const std::scoped_lock lock(guard_);
             ended_ = true;
-            tasks_.clear();
+            items_.clear();
         }
-        server_ = Errand();
+        server_ = Task();
     }
 
   private:
     void serve() {
         while (true) {
-            std::optional<Task> task;
+            std::optional<Item> item;
             {
                 const std::scoped_lock lock(guard_);
-                if (ended_ || tasks_.empty()) {
-                    tasks_.clear();
+                if (ended_ || items_.empty()) {
+                    items_.clear();
                     busy_ = false;
                     return;
                 }
-                task = std::move(tasks_.front());
-                tasks_.pop_front();
+                item = std::move(items_.front());
+                items_.pop_front();
             }
             std::optional<Result> result;
             try {
-                result = work_(*task);
+                result = work_(*item);
             } catch (...) {
                 const std::scoped_lock lock(guard_);
                 ended_ = true;
@@ -113,14 +113,14 @@ template <class Task, class Result> class Pipeline {
         }
     }
 
-    std::function<std::optional<Result>(Task&)> work_;
+    std::function<std::optional<Result>(Item&)> work_;
     std::size_t window_;
     std::mutex guard_;
-    std::deque<Task> tasks_;
+    std::deque<Item> items_;
     std::deque<Result> results_;
     bool busy_ = false;
     bool ended_ = false;
-    Errand server_; ///< last: it uses the rest
+    Task server_; ///< last: it uses the rest
 };
 
 } // namespace isostat

@@ -62,7 +62,7 @@ template <int Dim> bool Rearrangement<Dim>::floats() const {
 
 /// Propose, prove, record, decide, until no force is negative.
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
-    constexpr std::size_t most_waiting = 6;
+    constexpr std::size_t window = 6; // proposals ahead of their proofs
     while (!ended_) {
         if (auto failure = cap()) {
             return failure;
@@ -72,7 +72,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
         }
         ProofChain<Dim> chain(prover_, here_, opening_, at_);
         Proofs proofs([&](ArcProposal<Dim>& arc) { return plain() ? unproved(arc) : chain.prove(arc); },
-                      ahead_ ? most_waiting : 0);
+                      ahead_ ? window : 0);
         const int before = arcs_;
         proposed_ = 0;
         std::optional<Failure> failed; // to propose an arc
@@ -129,9 +129,6 @@ template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steer
         }
         return std::make_unique<BoundedSteering<Dim>>(here_, std::move(start), options().step_fraction,
                                                       prover_.candidates());
-    }
-    if (options().certify == CertifyLevel::arcs) {
-        (void)here_->structure.ordering(); // made at the first call: steering and proofs may ask for it at once
     }
     return std::make_unique<FloatingSteering<Dim>>(
         typename FloatingSteering<Dim>::Origin{here_->packing, here_->structure, here_->factorisation}, start,
@@ -282,7 +279,7 @@ template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prov
     const bool follows = plain() && following_ != nullptr && threads() > 1 &&
                          std::none_of(end.contacts.begin(), end.contacts.end(),
                                       [](const Contact& c) { return c.kind == ContactKind::held; });
-    Errand listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
+    Task listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
     auto begun = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
     listing.finish();
     EndProof<Dim> proof;
@@ -295,14 +292,14 @@ template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prov
         next_ = std::make_unique<NextRearrangement<Dim>>(*beginning, prover.candidates());
     }
     const long step = recorder_.counters.steps;
-    Promised<EndProof<Dim>> proving(
+    Future<EndProof<Dim>> proving(
         [&, hold = end.fresh_hold, step] { return prover.prove_end(std::move(*beginning), at_, hold, zeros_, step); });
     if (next_ && next_->begin(at_.load, *following_, options(), step + 1)) {
         next_->propose_ahead([&] { return !proving.underway() || recorder_.stopped(); });
     } else {
         next_.reset();
     }
-    return proving.take();
+    return proving.get();
 }
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndProof<Dim>& end) const {

@@ -43,7 +43,7 @@ class Refactorisation {
         if (!factors_.pending()) {
             slots_.clear();
             arcs_left_ = std::clamp(static_cast<int>(old.renewal_cost() / passes_beside_an_arc), 1, most_arcs_beside);
-            factors_ = Promised<ApproximateInverse>([old, matrix = std::move(matrix)] { return old.renewed(*matrix); });
+            factors_ = Future<ApproximateInverse>([old, matrix = std::move(matrix)] { return old.renewed(*matrix); });
         }
     }
     /// One more exchange: the new factors with all that they missed, when it is time to take them.
@@ -57,7 +57,7 @@ class Refactorisation {
         if (--arcs_left_ > 0) {
             return std::nullopt;
         }
-        ApproximateInverse inverse = factors_.take();
+        ApproximateInverse inverse = factors_.get();
         for (const int missed : slots_) {
             inverse = inverse.exchanged(missed, matrix);
         }
@@ -69,7 +69,7 @@ class Refactorisation {
     /// on the machine, when they are taken must not.
     static constexpr double passes_beside_an_arc = 9;
     static constexpr int most_arcs_beside = 8;
-    Promised<ApproximateInverse> factors_;
+    Future<ApproximateInverse> factors_;
     std::vector<int> slots_; ///< exchanged since
     int arcs_left_ = 0;
 };

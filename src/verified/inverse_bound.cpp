@@ -131,7 +131,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
         cache.workspace = std::make_shared<BlockCholesky>();
     }
     BlockCholesky& cholesky = *cache.workspace;
-    Errand set([&] { cholesky.set(h, cache.order); });
+    Task set([&] { cholesky.set(h, cache.order); });
     outcome.estimated = estimate(inverse, cache.vector, iterations);
     set.finish();
     double shift = 0.5 * outcome.estimated;

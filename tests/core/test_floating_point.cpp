@@ -128,15 +128,15 @@ BOOST_AUTO_TEST_CASE(every_way_into_the_library_refuses_other_arithmetic) {
 
 BOOST_AUTO_TEST_CASE(a_thread_that_inherited_other_arithmetic_does_no_work) {
     const Threads threads(2);
-    const auto errand = [] {
-        Errand work([] {}); // the worker begins with it and inherits
+    const auto task = [] {
+        Task work([] {}); // the worker begins with it and inherits
         std::fesetround(FE_TONEAREST);
         while (work.underway()) {
             std::this_thread::yield();
         }
         work.finish();
     };
-    BOOST_TEST(status_rounding_up(errand) == 70);
+    BOOST_TEST(status_rounding_up(task) == 70);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -68,21 +68,21 @@ BOOST_AUTO_TEST_CASE(the_exception_of_the_lowest_piece_comes_back_and_the_next_c
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_is_done_once_whoever_does_it, *boost::unit_test::label("threads")) {
+BOOST_AUTO_TEST_CASE(a_task_is_done_once_whoever_does_it, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2, 4}) {
         const Threads threads(count);
         for (int round = 0; round < 500; ++round) {
             std::atomic<int> done{0};
-            std::vector<Errand> errands;
+            std::vector<Task> tasks;
             for (int k = 0; k < round % 7; ++k) {
-                errands.emplace_back([&done] { ++done; });
+                tasks.emplace_back([&done] { ++done; });
             }
             std::vector<int> pieces(5, 0); // the others keep serving
             parallel_pieces(pieces.size(), [&](std::size_t piece) { ++pieces[piece]; });
-            for (Errand& errand : errands) {
-                errand.finish();
-                BOOST_TEST(!errand.pending());
-                errand.finish(); // nothing left
+            for (Task& task : tasks) {
+                task.finish();
+                BOOST_TEST(!task.pending());
+                task.finish(); // nothing left
             }
             BOOST_TEST(done == round % 7);
             BOOST_TEST((pieces == std::vector<int>(pieces.size(), 1)));
@@ -90,59 +90,59 @@ BOOST_AUTO_TEST_CASE(an_errand_is_done_once_whoever_does_it, *boost::unit_test::
     }
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_runs_beside_its_caller, *boost::unit_test::label("threads")) {
+BOOST_AUTO_TEST_CASE(a_task_runs_beside_its_caller, *boost::unit_test::label("threads")) {
     const Threads threads(2);
     std::atomic<bool> begun{false};
-    Errand errand([&] { begun = true; });
+    Task task([&] { begun = true; });
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!begun && std::chrono::steady_clock::now() < until) {
         std::this_thread::yield();
     }
     BOOST_TEST(begun.load());
-    errand.finish();
+    task.finish();
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_is_under_way_only_while_another_thread_has_it, *boost::unit_test::label("threads")) {
-    Errand alone([] {});
+BOOST_AUTO_TEST_CASE(a_task_is_under_way_only_while_another_thread_has_it, *boost::unit_test::label("threads")) {
+    Task alone([] {});
     BOOST_TEST(!alone.underway()); // nobody else will do it
     const Threads threads(2);
     std::atomic<bool> go{false};
-    Errand errand([&] {
+    Task task([&] {
         while (!go) {
             std::this_thread::yield();
         }
     });
-    BOOST_TEST(errand.underway());
+    BOOST_TEST(task.underway());
     go = true;
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (errand.underway() && std::chrono::steady_clock::now() < until) {
+    while (task.underway() && std::chrono::steady_clock::now() < until) {
         std::this_thread::yield();
     }
-    BOOST_TEST(!errand.underway());
-    errand.finish();
+    BOOST_TEST(!task.underway());
+    task.finish();
     std::atomic<int> waited_for{0};
-    parallel_pieces(4, [&](std::size_t) { // samples of an ensemble: their errands are their own work
-        Errand own([] {});
+    parallel_pieces(4, [&](std::size_t) { // samples of an ensemble: their tasks are their own work
+        Task own([] {});
         waited_for += own.underway() ? 1 : 0;
         own.finish();
     });
     BOOST_TEST(waited_for == 0);
 }
 
-BOOST_AUTO_TEST_CASE(one_thread_does_an_errand_when_it_is_asked_for_and_not_at_all_otherwise) {
+BOOST_AUTO_TEST_CASE(one_thread_does_an_task_when_it_is_asked_for_and_not_at_all_otherwise) {
     int done = 0;
     {
-        Errand errand([&] { ++done; });
+        Task task([&] { ++done; });
         BOOST_TEST(done == 0);
-        errand.finish();
+        task.finish();
         BOOST_TEST(done == 1);
-        errand = Errand([&] { ++done; });
-        BOOST_TEST(errand.pending());
+        task = Task([&] { ++done; });
+        BOOST_TEST(task.pending());
     }
     BOOST_TEST(done == 1);
 }
 
-BOOST_AUTO_TEST_CASE(an_errand_begun_by_its_caller_is_done_once_and_tells_when_it_is_finished,
+BOOST_AUTO_TEST_CASE(a_task_begun_by_its_caller_is_done_once_and_tells_when_it_is_finished,
                      *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
@@ -152,66 +152,66 @@ BOOST_AUTO_TEST_CASE(an_errand_begun_by_its_caller_is_done_once_and_tells_when_i
             const auto counted = [before] {
                 return work_done()[static_cast<std::size_t>(Work::factorisations)] - before;
             };
-            Errand errand([&] {
+            Task task([&] {
                 ++done;
                 count_work(Work::factorisations);
             });
-            errand.begin_here();
+            task.begin_here();
             BOOST_TEST(done <= 1); // another thread may be at it
-            BOOST_TEST(errand.pending());
+            BOOST_TEST(task.pending());
             BOOST_TEST(counted() == 0);
-            errand.finish();
+            task.finish();
             BOOST_TEST(done == 1);
             BOOST_TEST(counted() == 1);
-            errand.begin_here(); // nothing left
+            task.begin_here(); // nothing left
             BOOST_TEST(done == 1);
         }
-        Errand bad([] { throw std::runtime_error("bad"); });
+        Task bad([] { throw std::runtime_error("bad"); });
         bad.begin_here();
         BOOST_CHECK_THROW(bad.finish(), std::runtime_error);
     }
     int dropped = 0;
     {
-        Errand errand([&] { ++dropped; });
-        errand.begin_here();
+        Task task([&] { ++dropped; });
+        task.begin_here();
         BOOST_TEST(dropped == 1);
     }
     BOOST_TEST(dropped == 1);
 }
 
-BOOST_AUTO_TEST_CASE(nothing_of_an_errand_is_left_running_when_it_is_dropped, *boost::unit_test::label("threads")) {
+BOOST_AUTO_TEST_CASE(nothing_of_an_task_is_left_running_when_it_is_dropped, *boost::unit_test::label("threads")) {
     const Threads threads(3);
     for (int round = 0; round < 200; ++round) {
         std::vector<int> written(1000, 0);
         {
-            Errand errand([&] { std::fill(written.begin(), written.end(), 1); });
+            Task task([&] { std::fill(written.begin(), written.end(), 1); });
         }
         const int first = written.front();
         BOOST_TEST((written == std::vector<int>(written.size(), first)));
     }
 }
 
-BOOST_AUTO_TEST_CASE(what_an_errand_threw_comes_out_of_finish, *boost::unit_test::label("threads")) {
+BOOST_AUTO_TEST_CASE(what_an_task_threw_comes_out_of_finish, *boost::unit_test::label("threads")) {
     for (const int count : {1, 2}) {
         const Threads threads(count);
-        Promised<int> good([] { return 7; });
-        Promised<int> bad([]() -> int { throw std::runtime_error("bad"); });
-        BOOST_CHECK_THROW((void)bad.take(), std::runtime_error);
-        BOOST_TEST(good.take() == 7);
+        Future<int> good([] { return 7; });
+        Future<int> bad([]() -> int { throw std::runtime_error("bad"); });
+        BOOST_CHECK_THROW((void)bad.get(), std::runtime_error);
+        BOOST_TEST(good.get() == 7);
         BOOST_TEST(!good.pending());
     }
 }
 
-BOOST_AUTO_TEST_CASE(errands_within_errands_and_pieces_end, *boost::unit_test::label("threads")) {
+BOOST_AUTO_TEST_CASE(tasks_within_tasks_and_pieces_end, *boost::unit_test::label("threads")) {
     const Threads threads(2);
     for (int round = 0; round < 100; ++round) {
         std::atomic<int> sum{0};
         const auto nested = [&sum] {
-            Errand inner([&sum] { sum += 1; });
+            Task inner([&sum] { sum += 1; });
             parallel_pieces(4, [&sum](std::size_t) { sum += 10; });
             inner.finish();
         };
-        Errand outer(nested);
+        Task outer(nested);
         parallel_pieces(3, [&](std::size_t) { nested(); });
         outer.finish();
         BOOST_TEST(sum == 4 * 41);

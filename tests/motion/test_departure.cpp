@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_CASE(the_expected_end_is_mostly_the_end_and_never_decides_it) {
 
 BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
     Start start;
-    int foreseen = 0;
+    int predicted = 0;
     for (std::size_t slot = 0; slot < start.state.contacts.size(); slot += 5) {
         ArcDeparture<2> departure = start.depart(slot);
         const auto expected = departure.expected();
@@ -119,7 +119,7 @@ BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
         };
         const auto plain = exchange(arc.value().end, arc.value().closed);
         BOOST_TEST_REQUIRE(plain.has_value());
-        BOOST_TEST(!plain->foreseen());
+        BOOST_TEST(!plain->predicted());
         // The same exchange nearby, and another one.
         const auto near = exchange(expected->end, arc.value().closed);
         const auto other = exchange(arc.value().end, start.state.contacts[slot]);
@@ -130,11 +130,11 @@ BOOST_AUTO_TEST_CASE(an_exchange_does_not_depend_on_the_guess_of_it) {
             BOOST_TEST((guessed->contacts() == plain->contacts()));
             BOOST_TEST((guessed->matrix().value == plain->matrix().value));
             BOOST_TEST((guessed->matching() == plain->matching()));
-            BOOST_TEST(guessed->foreseen() == (guess == &near));
-            foreseen += guessed->foreseen() ? 1 : 0;
+            BOOST_TEST(guessed->predicted() == (guess == &near));
+            predicted += guessed->predicted() ? 1 : 0;
         }
     }
-    BOOST_TEST(foreseen > 10);
+    BOOST_TEST(predicted > 10);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(the_number_of_threads_changes_no_bit_of_the_run, *boost::un
         const State<2> start = prepared(100, 4);
         const Played one = play(start, +1, 8, {}, options);
         BOOST_TEST_REQUIRE(one.records.arcs.size() > 20U);
-        for (const int count : {2, 3, 2}) { // whoever begins an errand first
+        for (const int count : {2, 3, 2}) { // whoever begins a task first
             const auto before = work_done();
             const Played several = [&] {
                 const Threads threads(count);

@@ -2,7 +2,6 @@
 /// \file
 /// A value or the reason why there is none (std::expected is C++23).
 
-#include <cassert>
 #include <string>
 #include <utility>
 #include <variant>
@@ -33,7 +32,13 @@ struct Failure {
     std::string message;
 };
 
-/// Either a value or a `Failure`. \pre of `value()`: `ok()`; of `failure()`: `!ok()` (both asserted).
+/// A `value()` was asked of a failure, or a `failure()` of a value: throws std::logic_error, which says why there is no
+/// value.
+[[noreturn]] void throw_no_value(const Failure& failure);
+[[noreturn]] void throw_no_failure();
+
+/// Either a value or a `Failure`. To ask for the one that is not there is a defect of the caller: in every build it
+/// throws std::logic_error, with the message of the failure if there is one.
 template <class T> class [[nodiscard]] Result {
   public:
     Result(T value) : content_(std::in_place_index<0>, std::move(value)) {} // NOLINT(google-explicit-constructor)
@@ -41,19 +46,26 @@ template <class T> class [[nodiscard]] Result {
         : content_(std::in_place_index<1>, std::move(failure)) {} // NOLINT(google-explicit-constructor)
     [[nodiscard]] bool ok() const { return content_.index() == 0; }
     [[nodiscard]] T& value() {
-        assert(ok());
+        require_value();
         return *std::get_if<0>(&content_);
     }
     [[nodiscard]] const T& value() const {
-        assert(ok());
+        require_value();
         return *std::get_if<0>(&content_);
     }
     [[nodiscard]] const Failure& failure() const {
-        assert(!ok());
+        if (ok()) {
+            throw_no_failure();
+        }
         return *std::get_if<1>(&content_);
     }
 
   private:
+    void require_value() const {
+        if (!ok()) {
+            throw_no_value(failure());
+        }
+    }
     std::variant<T, Failure> content_;
 };
 

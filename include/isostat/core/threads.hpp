@@ -32,15 +32,15 @@ void parallel_pieces(std::size_t pieces, const std::function<void(std::size_t)>&
 /// One piece of work beside what the caller goes on with. A thread that has nothing else to do begins it; `finish` does
 /// it where none has, so that with one thread it is done there and then. What the work reads must not change until
 /// then, and nothing else may read what it writes. Begun or not, its results have the same bits.
-class Errand {
+class Task {
   public:
-    Errand() = default; ///< nothing to do
-    explicit Errand(std::function<void()> work);
-    Errand(Errand&&) noexcept;
+    Task() = default; ///< nothing to do
+    explicit Task(std::function<void()> work);
+    Task(Task&&) noexcept;
     /// As if the one before ended.
-    Errand& operator=(Errand&&) noexcept;
+    Task& operator=(Task&&) noexcept;
     /// Waits for work that was begun; work that was not is never done.
-    ~Errand();
+    ~Task();
 
     /// Does the work in this thread unless another has begun it. `finish` is still due: what the work threw and counted
     /// waits for it.
@@ -48,38 +48,38 @@ class Errand {
     /// Returns when the work is done; throws what it threw. Afterwards there is nothing to do.
     void finish();
     /// There is work that `finish` was not called for.
-    [[nodiscard]] bool pending() const { return task_ != nullptr; }
+    [[nodiscard]] bool pending() const { return state_ != nullptr; }
     /// Another thread does it, or will as soon as it is free, and has not ended: time to go on with something else.
     /// False too where `finish` would do the work itself: with one thread, or within a piece.
     [[nodiscard]] bool underway() const;
 
   private:
     friend class Pool;
-    struct Task;
-    std::shared_ptr<Task> task_;
+    struct State;
+    std::shared_ptr<State> state_;
 };
 
-/// A value that an errand makes.
-template <class Value> class Promised {
+/// A value that a task makes.
+template <class Value> class Future {
   public:
-    Promised() = default;
+    Future() = default;
     template <class Make>
-    explicit Promised(Make make)
+    explicit Future(Make make)
         : value_(std::make_shared<std::optional<Value>>()),
-          errand_([to = value_, make = std::move(make)] { to->emplace(make()); }) {}
+          task_([to = value_, make = std::move(make)] { to->emplace(make()); }) {}
 
     /// \pre pending()
-    [[nodiscard]] Value take() {
-        errand_.finish();
+    [[nodiscard]] Value get() {
+        task_.finish();
         return std::move(**value_);
     }
-    [[nodiscard]] bool pending() const { return errand_.pending(); }
-    [[nodiscard]] bool underway() const { return errand_.underway(); }
-    void begin_here() { errand_.begin_here(); }
+    [[nodiscard]] bool pending() const { return task_.pending(); }
+    [[nodiscard]] bool underway() const { return task_.underway(); }
+    void begin_here() { task_.begin_here(); }
 
   private:
     std::shared_ptr<std::optional<Value>> value_;
-    Errand errand_;
+    Task task_;
 };
 
 /// Number of pieces of at most `size` items each, and the bounds of one: [first, last).

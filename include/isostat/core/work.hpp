@@ -38,7 +38,7 @@ const char* to_string(Work kind);
 void count_work(Work kind, long amount = 1);
 
 /// From now on this thread counts there, and not for the process (null: again for the process). Returns where it
-/// counted. Errands use it: work that nobody waited for is not counted, so that counters do not depend on threads.
+/// counted. Tasks use it: work that nobody waited for is not counted, so that counters do not depend on threads.
 std::array<long, work_kinds>* count_work_in(std::array<long, work_kinds>* counts);
 
 /// Since the start of the process, in the order of `Work`.

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,21 @@ template <int Dim>
 sparse::Matrix<std::uint64_t> exact_contact_matrix(const Packing<Dim>& packing, const DofMap<Dim>& dofs,
                                                    const std::vector<Contact>& contacts);
 
+/// The ordering of a matrix, made by the first who asks; others wait for it.
+class OrderingOnDemand {
+  public:
+    explicit OrderingOnDemand(std::shared_ptr<const sparse::Matrix<double>> matrix) : matrix_(std::move(matrix)) {}
+    const sparse::Ordering& get() {
+        std::call_once(made_, [this] { ordering_.emplace(*matrix_); });
+        return *ordering_;
+    }
+
+  private:
+    std::shared_ptr<const sparse::Matrix<double>> matrix_;
+    std::once_flag made_;
+    std::optional<sparse::Ordering> ordering_;
+};
+
 /// Contact list and matrix after the exchange of one contact. Nothing is proved of it: it is what a proof is asked for.
 template <int Dim> class ExchangedContacts {
   public:
@@ -39,7 +55,7 @@ template <int Dim> class ExchangedContacts {
     /// Place of the new contact in the list (and of its column).
     [[nodiscard]] int slot() const { return slot_; }
     /// The contacts, and so the pattern and the matching, are those of the guess given to `exchange`.
-    [[nodiscard]] bool foreseen() const { return foreseen_; }
+    [[nodiscard]] bool predicted() const { return predicted_; }
 
   private:
     template <int> friend class IsostaticStructure;
@@ -48,7 +64,7 @@ template <int Dim> class ExchangedContacts {
     std::shared_ptr<const sparse::Matrix<double>> matrix_;
     std::vector<int> matching_;
     int slot_ = 0;
-    bool foreseen_ = false;
+    bool predicted_ = false;
 };
 
 /// Evidence that one matrix is regular: a proved positive lower bound of the smallest singular value of the exact
@@ -113,9 +129,9 @@ template <int Dim> class IsostaticStructure {
     [[nodiscard]] RegularityEvidence evidence() const { return evidence_; }
     /// Column matched to each row.
     [[nodiscard]] const std::vector<int>& matching() const { return matching_; }
-    /// Made when it is first asked for: an exchanged structure mostly needs its matching only. Not for concurrent first
-    /// calls.
-    [[nodiscard]] const sparse::Ordering& ordering() const;
+    /// Made when it is first asked for, once for all copies and whatever thread asks: an exchanged structure mostly
+    /// needs its matching only.
+    [[nodiscard]] const sparse::Ordering& ordering() const { return ordering_->get(); }
 
   private:
     template <int> friend class RankProof;
@@ -125,10 +141,10 @@ template <int Dim> class IsostaticStructure {
     std::shared_ptr<const sparse::Matrix<double>> matrix_;
     std::vector<int> matching_;
     RegularityEvidence evidence_ = RegularityEvidence::elimination;
-    mutable std::shared_ptr<const sparse::Ordering> ordering_;
+    std::shared_ptr<OrderingOnDemand> ordering_;
 };
 
-/// `IsostaticStructure::prove` while other work goes on with the same matrix: the elimination is an errand.
+/// `IsostaticStructure::prove` while other work goes on with the same matrix: the elimination is a task.
 template <int Dim> class RankProof {
   public:
     /// Failures that need no elimination: N != N_f, or a structurally singular pattern. Throws as `prove` does.
@@ -143,7 +159,7 @@ template <int Dim> class RankProof {
   private:
     RankProof() = default;
     IsostaticStructure<Dim> structure_;
-    Promised<int> elimination_;
+    Future<int> elimination_;
     int rank_ = -1;
 };
 

@@ -23,9 +23,9 @@ inline double signed_size(const Contact& contact, double force) {
 std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
                           const std::vector<unsigned char>& backbone);
 
-/// The vertex at the end of an arc as the start of the arc foretells it. A guess: what is made of it is checked
+/// The vertex at the end of an arc as the start of the arc predicts it. A guess: what is made of it is checked
 /// against the vertex, or refined there.
-template <int Dim> struct ForeseenVertex {
+template <int Dim> struct PredictedVertex {
     std::optional<ExchangedContacts<Dim>> contacts;
     std::vector<int> loaded;                       ///< degrees of freedom, as at the start
     std::vector<unsigned char> backbone;           ///< with these
@@ -38,12 +38,12 @@ template <int Dim> struct ForeseenVertex {
 /// `from`: the start, with the degrees of freedom loaded there, its forces, and an operator close to the inverse of its
 /// matrix. Cost: one exchange, and two applications of that.
 template <int Dim>
-ForeseenVertex<Dim> foresee(const IsostaticStructure<Dim>& from, const std::vector<int>& loaded,
-                            const std::vector<double>& force, const ApproximateInverse& approximate,
-                            const Load<Dim>& load, ContactId opens, const typename ArcDeparture<Dim>::Expected& end);
+PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vector<int>& loaded,
+                             const std::vector<double>& force, const ApproximateInverse& approximate,
+                             const Load<Dim>& load, ContactId opens, const typename ArcDeparture<Dim>::Expected& end);
 
-extern template ForeseenVertex<2> foresee<2>(const IsostaticStructure<2>&, const std::vector<int>&,
-                                             const std::vector<double>&, const ApproximateInverse&, const Load<2>&,
-                                             ContactId, const ArcDeparture<2>::Expected&);
+extern template PredictedVertex<2> predict<2>(const IsostaticStructure<2>&, const std::vector<int>&,
+                                              const std::vector<double>&, const ApproximateInverse&, const Load<2>&,
+                                              ContactId, const ArcDeparture<2>::Expected&);
 
 } // namespace isostat

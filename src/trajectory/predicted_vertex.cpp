@@ -1,0 +1,55 @@
+#include "trajectory/predicted_vertex.hpp"
+
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/rigidity/contact_pattern.hpp>
+
+namespace isostat {
+
+std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
+                          const std::vector<unsigned char>& backbone) {
+    std::size_t best = f.size();
+    double smallest = 0;
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        const double size = signed_size(contacts[l], f[l]);
+        if (size < smallest && backbone[l] != 0) {
+            smallest = size;
+            best = l;
+        }
+    }
+    return best;
+}
+
+template <int Dim>
+PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vector<int>& loaded,
+                             const std::vector<double>& force, const ApproximateInverse& approximate,
+                             const Load<Dim>& load, ContactId opens, const typename ArcDeparture<Dim>::Expected& end) {
+    PredictedVertex<Dim> predicted;
+    predicted.contacts = IsostaticStructure<Dim>::exchange(from, end.end, opens, end.closes);
+    if (!predicted.contacts) {
+        return predicted;
+    }
+    const sparse::Matrix<double>& h = predicted.contacts->matrix();
+    predicted.loaded = loaded;
+    predicted.backbone =
+        ContactPattern(end.end, from.dofs(), predicted.contacts->contacts(), h, predicted.contacts->matching())
+            .carrying(loaded);
+    const auto structure = IsostaticStructure<Dim>::without_proof(*predicted.contacts);
+    predicted.approximate = approximate.exchanged(predicted.contacts->slot(), h);
+    const Factorisation factorisation(structure, *predicted.approximate);
+    predicted.force = on_dofs(load.external_force(end.end), structure.dofs());
+    // One pass mostly finds out which force is most negative.
+    factorisation.solve_forces_until(predicted.force, force, [](std::span<const double>, double) { return true; });
+    predicted.passes = factorisation.passes();
+    const std::size_t opens_next = most_negative(predicted.force, structure.contacts(), predicted.backbone);
+    if (opens_next < predicted.force.size() && structure.contacts()[opens_next].kind != ContactKind::held) {
+        predicted.opens = ContactId(opens_next);
+        (void)predicted.approximate->mechanism(static_cast<int>(opens_next)); // kept there
+    }
+    return predicted;
+}
+
+template PredictedVertex<2> predict<2>(const IsostaticStructure<2>&, const std::vector<int>&,
+                                       const std::vector<double>&, const ApproximateInverse&, const Load<2>&, ContactId,
+                                       const ArcDeparture<2>::Expected&);
+
+} // namespace isostat

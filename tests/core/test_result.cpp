@@ -1,0 +1,56 @@
+// A result without a value is never read as one, in any build.
+
+#include <isostat/core/result.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+using namespace isostat;
+
+BOOST_AUTO_TEST_SUITE(core)
+
+namespace {
+
+Result<std::unique_ptr<int>> half(int number) {
+    if (number % 2 != 0) {
+        return Failure{FailureKind::undecided, "3 is odd"};
+    }
+    return std::make_unique<int>(number / 2);
+}
+
+template <class Action> std::string thrown(Action action) {
+    try {
+        action();
+    } catch (const std::logic_error& error) {
+        return error.what();
+    }
+    return "nothing was thrown";
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(a_result_gives_what_it_has) {
+    auto four = half(8);
+    BOOST_TEST(four.ok());
+    BOOST_TEST(*four.value() == 4);
+    const auto none = half(3);
+    BOOST_TEST(!none.ok());
+    BOOST_TEST((none.failure().kind == FailureKind::undecided));
+}
+
+BOOST_AUTO_TEST_CASE(the_value_of_a_failure_throws_and_says_why_there_is_none) {
+    auto none = half(3);
+    const auto& constant = none;
+    BOOST_TEST(thrown([&] { (void)none.value(); }).ends_with("undecided: 3 is odd"));
+    BOOST_TEST(thrown([&] { (void)constant.value(); }).ends_with("undecided: 3 is odd"));
+}
+
+BOOST_AUTO_TEST_CASE(the_failure_of_a_value_throws) {
+    const auto four = half(8);
+    BOOST_TEST(thrown([&] { (void)four.failure(); }) == "the failure of a result was asked for, which has a value");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -25,7 +25,7 @@ int main() {
 
     const Result<Inspection<2>> result = inspect_vertex(state);
     if (!result.ok()) {
-        std::printf("%s\n", result.failure().message.c_str());
+        std::printf("%s\n", result.failure().message().c_str());
         return 1;
     }
     const Inspection<2>& inspection = result.value();

@@ -73,7 +73,7 @@ State<2> prepared(int disks, std::uint64_t seed) {
     PreparationReport<2> report;
     auto state = prepare<2>(options, report);
     if (!state.ok()) {
-        throw Error(ErrorKind::bad_input, state.failure().message);
+        throw Error(ErrorKind::bad_input, state.failure().message());
     }
     return state.value();
 }

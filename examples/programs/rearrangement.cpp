@@ -51,7 +51,7 @@ int main() {
         segment.equilibria = 1;
         const SegmentOutcome outcome = run_segment<2>(state, segment, number++, options, counters, printer);
         if (!outcome.completed) {
-            std::printf("%s\n", outcome.failure->message.c_str());
+            std::printf("%s\n", outcome.failure->message().c_str());
             return 1;
         }
         // Closed form: down at 1 / (2 sqrt 2), up at 2 sqrt 2.

@@ -1,5 +1,7 @@
 #include "certificate/state_certifier.hpp"
 
+#include "contact/words.hpp"
+
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
@@ -38,8 +40,8 @@ void StateCertifier::on_equilibrium(const EquilibriumRecord<2>& record, const St
     certified.certified = result.verdict;
     if (result.verdict == Verdict::refuted) {
         certified.verdict = Verdict::refuted;
-        objection_ = Failure{FailureKind::contradiction, fmt::format("equilibrium {} is refuted by its certificate: {}",
-                                                                     record.number, fmt::join(result.refuted, "; "))};
+        objection_ = failed(FailureKind::contradiction, "equilibrium {} is refuted by its certificate: {}",
+                            record.number, fmt::format("{}", fmt::join(result.refuted, "; ")));
     }
     next_.on_equilibrium(certified, state, forces);
 }

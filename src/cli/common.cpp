@@ -170,7 +170,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
     if (!prepared.ok()) {
         const std::string last_stage = report.stages.empty() ? "the start" : report.stages.back().name;
         std::string message = fmt::format("preparation failed at {}: {}: {}", last_stage,
-                                          to_string(prepared.failure().kind), prepared.failure().message);
+                                          to_string(prepared.failure().kind), prepared.failure().message());
         if (report.last) {
             message += advice(scene, prepared.failure(), report.last->radius);
             write_packing<2>(failed_path, *report.last, message);

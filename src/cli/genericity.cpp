@@ -43,7 +43,7 @@ Original read_original(const std::string& file) {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
         const auto inspection = crafted::inspect(crafted.packing);
         if (!inspection.ok()) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message));
+            throw Error(ErrorKind::bad_input, fmt::format("{}: {}", file, inspection.failure().message()));
         }
         out.packing = crafted::approximate(crafted.packing);
         out.contacts = inspection.value().contacts;
@@ -125,7 +125,7 @@ Json sample_json(const GenericitySample& sample) {
     out["seed"] = sample.seed;
     if (sample.failure) {
         out["failure"] = to_string(sample.failure->kind);
-        out["reason"] = sample.failure->message;
+        out["reason"] = sample.failure->message();
         return out;
     }
     out["h"] = 0;
@@ -278,7 +278,7 @@ int genericity(const GenericityArguments& a) {
             if (sample.failure) {
                 auto& reason = reasons[to_string(sample.failure->kind)];
                 if (reason.first++ == 0) {
-                    reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message);
+                    reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message());
                 }
             }
         }

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "contact/words.hpp"
 #include "crafted/peeling.hpp"
 #include "io/json.hpp"
 
@@ -110,22 +111,22 @@ Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing)
     if (a.threshold) {
         const crafted::PlateauStep step = crafted::plateau(packing, {largest}).steps.front();
         if (step.backbone.isostatic != Verdict::proved) {
-            return Failure{
-                step.backbone.isostatic == Verdict::refuted ? FailureKind::not_isostatic : FailureKind::undecided,
-                fmt::format("at the threshold {} the backbone has N_f = {}, N = {}, h = {}, k = {}: expected "
-                            "an isostatic one",
-                            largest, step.backbone.dof_count, step.backbone.contact_count, step.backbone.hyperstaticity,
-                            step.backbone.mechanisms)};
+            return failed(step.backbone.isostatic == Verdict::refuted ? FailureKind::not_isostatic
+                                                                      : FailureKind::undecided,
+                          "at the threshold {} the backbone has N_f = {}, N = {}, h = {}, k = {}: expected "
+                          "an isostatic one",
+                          largest, step.backbone.dof_count, step.backbone.contact_count, step.backbone.hyperstaticity,
+                          step.backbone.mechanisms);
         }
         return Wanted{false, crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
     }
     const double deepest = std::min(crafted::plateau(packing, {largest}).deepest_overlap, largest);
     const crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1);
     if (plateau.ranges.empty()) {
-        return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
-                       fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
-                                   "counts, --contacts nearest takes the vertex downhill whatever its contacts",
-                                   largest)};
+        return failed(plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
+                      "the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
+                      "counts, --contacts nearest takes the vertex downhill whatever its contacts",
+                      largest);
     }
     const auto range =
         *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
@@ -217,10 +218,10 @@ Result<std::string> compared(const Wanted& wanted, const std::vector<Contact>& f
     if (lost.empty() && added.empty()) {
         return fmt::format("{} carry a force, those of the file: {}", found.size(), wanted.words);
     }
-    return Failure{FailureKind::not_isostatic,
-                   fmt::format("the vertex downhill has other contacts than the file ({}): without{}; with{}; expected "
-                               "the same, or --contacts nearest",
-                               wanted.words, names_of(lost), names_of(added))};
+    return failed(FailureKind::not_isostatic,
+                  "the vertex downhill has other contacts than the file ({}): without{}; with{}; expected "
+                  "the same, or --contacts nearest",
+                  wanted.words, names_of(lost), names_of(added));
 }
 
 /// The vertex downhill of a packing of another program.
@@ -269,9 +270,9 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     }
     const crafted::Inspection& exact = inspection.value();
     if (exact.hyperstaticity != 0 || exact.mechanisms != 0) {
-        return Failure{exact.rank_exact == Verdict::proved ? FailureKind::not_isostatic : FailureKind::undecided,
-                       fmt::format("h = {}, k = {}: expected an isostatic packing, whose contacts determine it",
-                                   exact.hyperstaticity, exact.mechanisms)};
+        return failed(exact.rank_exact == Verdict::proved ? FailureKind::not_isostatic : FailureKind::undecided,
+                      "h = {}, k = {}: expected an isostatic packing, whose contacts determine it",
+                      exact.hyperstaticity, exact.mechanisms);
     }
     Imported out;
     State<2>& state = out.state;
@@ -402,7 +403,7 @@ int import(const ImportArguments& arguments) {
     auto found = crafted ? from_crafted(a, text) : from_foreign(a, file);
     const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
     if (!found.ok() || refuted) {
-        const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message;
+        const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
         fmt::print(stderr, "isostat: {}: {}\n", a.file, why);
         return refuted ? failed : status_of(found.failure().kind);
     }

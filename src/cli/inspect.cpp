@@ -161,7 +161,7 @@ int inspect(const InspectArguments& arguments) {
             add_inspection(object, result.value());
         } else {
             object["verdict"] = refuted ? "refuted" : "undecided";
-            object["remark"] = result.failure().message;
+            object["remark"] = result.failure().message();
         }
         object["true_configuration"] = true_vertex_json(truth);
         print_json(object);
@@ -171,7 +171,7 @@ int inspect(const InspectArguments& arguments) {
             print_inspection(result.value());
         } else {
             fmt::print("isostatic equilibrium    {}: {}\n", refuted ? "refuted" : "undecided",
-                       result.failure().message);
+                       result.failure().message());
         }
         print_true_vertex(truth);
     }

@@ -96,7 +96,7 @@ int inspect_packing(const InspectArguments& arguments) {
     const crafted::PackingFile file = crafted::read_packing(arguments.file);
     const Result<crafted::Inspection> result = crafted::inspect(file.packing);
     if (!result.ok()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: {}", arguments.file, result.failure().message));
+        throw Error(ErrorKind::bad_input, fmt::format("{}: {}", arguments.file, result.failure().message()));
     }
     const crafted::Inspection& inspection = result.value();
     if (arguments.common.json) {

@@ -36,9 +36,9 @@ int prepare(const PrepareArguments& arguments) {
     const bool quiet = arguments.common.quiet || arguments.common.json;
     const auto prepared = prepare_start(scene, arguments.common.command, quiet, arguments.output + ".failed.json");
     if (!prepared.ok()) {
-        fmt::print(stderr, "isostat: {}\n", prepared.failure().message);
+        fmt::print(stderr, "isostat: {}\n", prepared.failure().message());
         if (arguments.common.json) {
-            print_json(Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message}});
+            print_json(Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message()}});
         }
         return status_of(prepared.failure().kind);
     }

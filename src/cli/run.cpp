@@ -44,7 +44,7 @@ struct Ending {
 };
 
 Ending ended(const Failure& failure, const std::string& where) {
-    return {run_status(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message)};
+    return {run_status(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message())};
 }
 
 RunHeader header_of(const Scene& scene, const std::string& command) {

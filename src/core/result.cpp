@@ -1,6 +1,7 @@
 #include <isostat/core/result.hpp>
 
 #include <stdexcept>
+#include <utility>
 
 namespace isostat {
 
@@ -20,9 +21,36 @@ const char* to_string(FailureKind kind) {
     return "failure";
 }
 
+Words::Words(std::string fixed) {
+    if (!fixed.empty()) {
+        make_ = [fixed = std::move(fixed)] { return fixed; };
+    }
+}
+
+void Words::name(const Words& others) {
+    contacts.insert(contacts.end(), others.contacts.begin(), others.contacts.end());
+    disks.insert(disks.end(), others.disks.begin(), others.disks.end());
+}
+
+Words& Words::operator+=(const Words& more) {
+    if (!more.empty()) {
+        make_ = [first = std::move(make_), second = more.make_] {
+            return (first ? first() : std::string()) + second();
+        };
+    }
+    name(more);
+    return *this;
+}
+
+Failure located(const Failure& failure, Words where) {
+    where += ": ";
+    where += failure.words;
+    return {failure.kind, std::move(where)};
+}
+
 void throw_no_value(const Failure& failure) {
     throw std::logic_error(std::string("the value of a result was asked for, which failed: ") +
-                           to_string(failure.kind) + ": " + failure.message);
+                           to_string(failure.kind) + ": " + failure.message());
 }
 
 void throw_no_failure() {

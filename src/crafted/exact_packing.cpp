@@ -1,3 +1,5 @@
+#include "contact/words.hpp"
+
 #include <isostat/contact/separation.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
@@ -30,10 +32,12 @@ bool surely_apart(const Bounds& a, const Bounds& b, double reach) {
     return std::nextafter(between, -HUGE_VAL) > reach;
 }
 
-std::string describe(const ExactPacking& packing, int i) {
+Words describe(const ExactPacking& packing, int i) {
     const auto& c = packing.centre[static_cast<std::size_t>(i)];
-    return "disk " + std::to_string(i) + " (x = " + c[0].text() + ", y = " + c[1].text() +
-           ", r = " + packing.radius[static_cast<std::size_t>(i)].text() + ")";
+    Words disk = words("disk {} (x = {}, y = {}, r = {})", i, c[0].text(), c[1].text(),
+                       packing.radius[static_cast<std::size_t>(i)].text());
+    disk.disks.push_back(i);
+    return disk;
 }
 
 /// Sign of gap, cheap where doubles settle it.
@@ -119,8 +123,8 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
                 const Number gap = (lower ? c : packing.length[a] - c) - packing.radius[i];
                 const Contact contact{kind, disk, axis};
                 if (gap.sign() < 0) {
-                    return Failure{FailureKind::overlap, describe(packing, disk) + " overlaps the wall of contact " +
-                                                             to_string<2>(contact) + ": gap = " + gap.text()};
+                    return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}",
+                                  describe(packing, disk), named<2>(contact), gap.text());
                 }
                 if (gap.is_zero() && moves) {
                     out.push_back(contact);
@@ -145,8 +149,8 @@ Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
             const bool moves = !packing.is_fixed(a) || !packing.is_fixed(b);
             const Number defect = sweep.defect(i, j);
             if (defect.sign() < 0) {
-                return Failure{FailureKind::overlap, describe(packing, a) + " and " + describe(packing, b) +
-                                                         " overlap: distance^2 - (sum of radii)^2 = " + defect.text()};
+                return failed(FailureKind::overlap, "{} and {} overlap: distance^2 - (sum of radii)^2 = {}",
+                              describe(packing, a), describe(packing, b), defect.text());
             }
             if (defect.is_zero() && moves) {
                 out.push_back({ContactKind::disk_disk, a, b});

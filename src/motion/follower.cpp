@@ -1,9 +1,8 @@
 #include "motion/follower.hpp"
 
+#include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "motion/geometry.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +85,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
             return std::move(*ending.value());
         }
     }
-    return Failure{FailureKind::unbounded, fmt::format("no new contact after {} predictor steps", steps_)};
+    return failed(FailureKind::unbounded, "no new contact after {} predictor steps", steps_);
 }
 
 /// One attempt at a step. Nothing: the arc goes on, from there or from here.
@@ -131,8 +130,7 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
     if (there.closing != nothing) {
         const Contact closed = options_.closes.value_or(there.closing);
         if (closed != there.closing && !converge_to(there.point.at, closed)) {
-            return Failure{FailureKind::not_converged,
-                           fmt::format("the event at contact {} was not reached", to_string<Dim>(closed))};
+            return failed(FailureKind::not_converged, "the event at contact {} was not reached", named<Dim>(closed));
         }
         return Ending(finish(std::move(there.point), ArcEnd::contact, closed, there.power));
     }
@@ -197,8 +195,7 @@ template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach_event(Ga
 template <int Dim>
 typename Follower<Dim>::Attempt Follower<Dim>::shorten_before(const GapEvent& event, double longest) {
     if (longest < 1e-12 * step_limit_ || pace_.shrink < 1e-9) {
-        return Failure{FailureKind::not_converged,
-                       fmt::format("the event at contact {} was not reached", to_string<Dim>(event.contact))};
+        return failed(FailureKind::not_converged, "the event at contact {} was not reached", named<Dim>(event.contact));
     }
     if (pace_.renewed) {
         pace_.shrink = std::min(pace_.shrink, event.s / step_limit_) * 0.25;
@@ -327,9 +324,8 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
     pace_.shrink = std::min(1.0, 2 * pace_.shrink);
     for (int a = 0; a < Dim; ++a) {
         if (std::abs(here_.at.length(a) / start_.length(a) - 1) > options_.max_length_change) {
-            return Failure{FailureKind::unbounded,
-                           fmt::format("the motion has no end: L along axis {} went from {} to {}", a, start_.length(a),
-                                       here_.at.length(a))};
+            return failed(FailureKind::unbounded, "the motion has no end: L along axis {} went from {} to {}", a,
+                          start_.length(a), here_.at.length(a));
         }
     }
     return std::nullopt;

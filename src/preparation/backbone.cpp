@@ -1,10 +1,11 @@
+#include "contact/words.hpp"
+
 #include <isostat/contact/separation.hpp>
 #include <isostat/core/work.hpp>
 #include <isostat/preparation/backbone.hpp>
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -76,9 +77,8 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
                                                "in double precision, not a proof that there is none)"};
     }
     if (simplex.status() != 0) {
-        return Failure{
-            FailureKind::not_converged,
-            fmt::format("the linear programme of the perturbed start ended with status {}", simplex.status())};
+        return failed(FailureKind::not_converged, "the linear programme of the perturbed start ended with status {}",
+                      simplex.status());
     }
     std::vector<Contact> kept;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
@@ -87,10 +87,10 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
         }
     }
     if (kept.size() != columns) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("the linear programme of the perturbed start kept {} of {} contacts, expected N_f = "
-                                   "{}: no isostatic choice was found (there may be mechanisms)",
-                                   kept.size(), contacts.size(), columns)};
+        return failed(FailureKind::undecided,
+                      "the linear programme of the perturbed start kept {} of {} contacts, expected N_f = "
+                      "{}: no isostatic choice was found (there may be mechanisms)",
+                      kept.size(), contacts.size(), columns);
     }
     return kept;
 }

@@ -1,3 +1,4 @@
+#include "contact/words.hpp"
 #include "preparation/pivots.hpp"
 #include "preparation/polish.hpp"
 #include "preparation/programme.hpp"
@@ -130,14 +131,14 @@ template <int Dim> class VertexSearch {
                     return give_up(pivoted.failure());
                 }
                 if (divided || polished.failure().kind != FailureKind::not_converged) {
-                    return give_up({polished.failure().kind, fmt::format("{}; then: {}", polished.failure().message,
-                                                                         pivoted.failure().message)});
+                    return give_up(
+                        failed(polished.failure().kind, "{}; then: {}", polished.failure(), pivoted.failure()));
                 }
                 weight /= weight_divisor;
                 divided = true;
             }
         }
-        return give_up({FailureKind::not_converged, fmt::format("no vertex after {} programmes", programmes_)});
+        return give_up(failed(FailureKind::not_converged, "no vertex after {} programmes", programmes_));
     }
 
   private:
@@ -193,14 +194,14 @@ template <int Dim> class VertexSearch {
         switch (step.outcome) {
         case ProgrammeStep::Outcome::optimal: return std::nullopt;
         case ProgrammeStep::Outcome::interrupted:
-            return Failure{FailureKind::interrupted, fmt::format("stopped during programme {}", programmes_)};
+            return failed(FailureKind::interrupted, "stopped during programme {}", programmes_);
         case ProgrammeStep::Outcome::infeasible: {
             // Overlaps that cannot be undone within the trust bounds: part the disks first.
             const double needed = dilation_needed(packing_, programme.candidates(packing_));
             if (dilated_ || !(needed > 0)) {
-                return Failure{FailureKind::overlap,
-                               fmt::format("programme {} has no feasible point, overlaps up to {:.3g} of a distance",
-                                           programmes_, needed)};
+                return failed(FailureKind::overlap,
+                              "programme {} has no feasible point, overlaps up to {:.3g} of a distance", programmes_,
+                              needed);
             }
             for (double& x : packing_.q) {
                 x *= 1 + needed;
@@ -210,8 +211,7 @@ template <int Dim> class VertexSearch {
         }
         case ProgrammeStep::Outcome::failed: break;
         }
-        return Failure{FailureKind::not_converged,
-                       fmt::format("Clp ended programme {} with status {}", programmes_, step.status)};
+        return failed(FailureKind::not_converged, "Clp ended programme {} with status {}", programmes_, step.status);
     }
 
     void move(const ProgrammeStep& step) {
@@ -253,7 +253,7 @@ template <int Dim> class VertexSearch {
     Failure give_up(const Failure& why) {
         record(false);
         report_.last = scale_.to_user(packing_, radius_);
-        return {why.kind, "linear programmes: " + why.message};
+        return located(why, "linear programmes");
     }
 
     State<Dim> succeed(Polished<Dim> vertex) {

@@ -1,10 +1,10 @@
 #include "preparation/pivots.hpp"
 
+#include "contact/words.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/statics/statics.hpp>
 #include <isostat/verified/configuration.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -157,7 +157,7 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
                                       std::optional<State<Dim>>& candidate) {
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
-            return Failure{FailureKind::interrupted, fmt::format("stopped after {} pivots", pivot)};
+            return failed(FailureKind::interrupted, "stopped after {} pivots", pivot);
         }
         std::sort(contacts.begin(), contacts.end());
         if (auto failure = newton(packing, contacts, iterations)) {
@@ -187,22 +187,18 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         if (overlapping) {
             const auto leaving = basis.leaving(*overlapping);
             if (!leaving) {
-                return Failure{FailureKind::overlap,
-                               fmt::format("{} cannot be parted", to_string<Dim>(basis.other(*overlapping)))};
+                return failed(FailureKind::overlap, "{} cannot be parted", named<Dim>(basis.other(*overlapping)));
             }
             contacts[*leaving] = basis.other(*overlapping);
             continue;
         }
         const auto motion = basis.open(*pulling);
         if (!motion.entering) {
-            return Failure{FailureKind::unbounded,
-                           fmt::format("opening {} closes no gap", to_string<Dim>(contacts[*pulling]))};
+            return failed(FailureKind::unbounded, "opening {} closes no gap", named<Dim>(contacts[*pulling]));
         }
         if (motion.time * Basis<Dim>::largest(motion.velocity) > limits.step) {
-            return Failure{FailureKind::not_converged,
-                           fmt::format("opening {} moves farther ({:.3g}) than linear gaps hold",
-                                       to_string<Dim>(contacts[*pulling]),
-                                       motion.time * Basis<Dim>::largest(motion.velocity))};
+            return failed(FailureKind::not_converged, "opening {} moves farther ({:.3g}) than linear gaps hold",
+                          named<Dim>(contacts[*pulling]), motion.time * Basis<Dim>::largest(motion.velocity));
         }
         for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
             packing.q[static_cast<std::size_t>(basis.structure().dofs().coordinate_of(static_cast<int>(mu)))] +=
@@ -210,7 +206,7 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         }
         contacts[*pulling] = basis.other(*motion.entering);
     }
-    return Failure{FailureKind::not_converged, fmt::format("no vertex after {} pivots", limits.pivots)};
+    return failed(FailureKind::not_converged, "no vertex after {} pivots", limits.pivots);
 }
 
 template Result<Polished<2>> pivot_to_vertex<2>(Packing<2>, std::vector<Contact>, const Load<2>&, const PivotLimits&,

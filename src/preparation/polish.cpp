@@ -1,10 +1,10 @@
 #include "preparation/polish.hpp"
 
+#include "contact/words.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/statics/decisions.hpp>
 #include <isostat/verified/configuration.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +61,8 @@ std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>&
             if (before <= 64 * grid_step(packing)) {
                 return std::nullopt;
             }
-            return Failure{FailureKind::not_converged,
-                           fmt::format("Newton on the gaps stopped at {:.3g} after {} steps", before, k + 1)};
+            return failed(FailureKind::not_converged, "Newton on the gaps stopped at {:.3g} after {} steps", before,
+                          k + 1);
         }
         packing = std::move(next);
         before = now;
@@ -70,8 +70,7 @@ std::optional<Failure> newton(Packing<Dim>& packing, const std::vector<Contact>&
             return std::nullopt;
         }
     }
-    return Failure{FailureKind::not_converged,
-                   fmt::format("Newton on the gaps: still {:.3g} after {} steps", before, max_newton)};
+    return failed(FailureKind::not_converged, "Newton on the gaps: still {:.3g} after {} steps", before, max_newton);
 }
 
 namespace {
@@ -97,8 +96,7 @@ Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStru
         for (const Contact& other : others) {
             const Enclosure h = gap_at_vertex(packing, vertex, other);
             if (h.negative()) {
-                return Failure{FailureKind::overlap,
-                               fmt::format("{} overlap by {:.3g}", to_string<Dim>(other), -h.value)};
+                return failed(FailureKind::overlap, "{} overlap by {:.3g}", named<Dim>(other), -h.value);
             }
             if (h.positive()) {
                 smallest = std::min(smallest, h.value);
@@ -112,12 +110,10 @@ Result<double> check_other_gaps(const Packing<Dim>& packing, const IsostaticStru
         }
     }
     const Enclosure h = gap_at_vertex(packing, vertex, others.front());
-    return Failure{
-        FailureKind::tie,
-        fmt::format(
-            "{} more gaps than the {} contacts kept are 0 as far as double-double arithmetic can tell, first {} "
-            "({:.3g}, known to {:.3g})",
-            others.size(), contacts.size(), to_string<Dim>(others.front()), h.value, h.radius)};
+    return failed(FailureKind::tie,
+                  "{} more gaps than the {} contacts kept are 0 as far as double-double arithmetic can tell, first {} "
+                  "({:.3g}, known to {:.3g})",
+                  others.size(), contacts.size(), named<Dim>(others.front()), h.value, h.radius);
 }
 
 template <int Dim> int count_rattlers(const Packing<Dim>& packing, const Statics<Dim>& statics) {
@@ -160,20 +156,19 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
         vertex = enclose_vertex_double_double(packing, structure, factorisation, inverse);
     }
     if (vertex.verdict != Verdict::proved) {
-        return Failure{
-            FailureKind::undecided,
-            fmt::format("no true vertex was proved near the stored one: largest |gap| {:.3g}, smallest singular "
-                        "value at least {:.3g}",
-                        vertex.max_gap, inverse.sigma_min)};
+        return failed(FailureKind::undecided,
+                      "no true vertex was proved near the stored one: largest |gap| {:.3g}, smallest singular "
+                      "value at least {:.3g}",
+                      vertex.max_gap, inverse.sigma_min);
     }
     // The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are
     // within `max_gap` of touching, as computed; the grid steps cover the error of computing it.
     const Admissibility admissible = certify_admissible(packing, 2 * vertex.max_gap + 4 * grid_step(packing));
     if (admissible.verdict != Verdict::proved) {
         const bool overlap = admissible.verdict == Verdict::refuted;
-        return Failure{overlap ? FailureKind::overlap : FailureKind::undecided,
-                       fmt::format("{}: {} has gap {:.3g}", overlap ? "overlap" : "non-overlap was not proved",
-                                   to_string<Dim>(admissible.worst), admissible.worst_gap)};
+        return failed(overlap ? FailureKind::overlap : FailureKind::undecided, "{}: {} has gap {:.3g}",
+                      overlap ? "overlap" : "non-overlap was not proved", named<Dim>(admissible.worst),
+                      admissible.worst_gap);
     }
     const Result<double> others = check_other_gaps(packing, structure, factorisation, inverse, vertex);
     if (!others.ok()) {
@@ -190,10 +185,9 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
     }
     if (decision.value().opening) {
         const Opening& opening = *decision.value().opening;
-        return Failure{FailureKind::not_converged,
-                       fmt::format("{}force {:.3g} in contact {} is not compressive",
-                                   opening.infinitesimal ? "infinitesimal " : "", opening.force.value,
-                                   to_string<Dim>(contacts[opening.contact.index()]))};
+        return failed(FailureKind::not_converged, "{}force {:.3g} in contact {} is not compressive",
+                      opening.infinitesimal ? "infinitesimal " : "", opening.force.value,
+                      named<Dim>(contacts[opening.contact.index()]));
     }
     Polished<Dim> result;
     result.max_gap = vertex.max_gap;

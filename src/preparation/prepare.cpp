@@ -1,3 +1,4 @@
+#include "contact/words.hpp"
 #include "preparation/random.hpp"
 #include "preparation/scale.hpp"
 #include "preparation/soft.hpp"
@@ -145,8 +146,7 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
         report.last = scale.to_user(packing, radius);
         report.solid_fraction = packing.solid_fraction();
         const PreparationStage& stage = report.stages.back();
-        return Failure{FailureKind::interrupted,
-                       fmt::format("stopped during {} after {} steps", stage.name, stage.iterations)};
+        return failed(FailureKind::interrupted, "stopped during {} after {} steps", stage.name, stage.iterations);
     };
 
     if (!run("separation", [&](auto& d) { return d.separate(start_overlap, options.max_steps); })) {

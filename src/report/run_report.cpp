@@ -84,7 +84,7 @@ class Writer {
     std::vector<double> solve_forces(const State<2>& state, const fs::path& path) {
         const auto inspection = inspect_vertex(state);
         if (!inspection.ok()) {
-            note(fmt::format("{}: the picture shows no forces: {}", path.string(), inspection.failure().message));
+            note(fmt::format("{}: the picture shows no forces: {}", path.string(), inspection.failure().message()));
             return {};
         }
         std::vector<double> forces = inspection.value().forces;

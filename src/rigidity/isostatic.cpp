@@ -1,3 +1,5 @@
+#include "contact/words.hpp"
+
 #include <isostat/contact/separation.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
@@ -137,19 +139,18 @@ Result<RankProof<Dim>> RankProof<Dim>::begin(const Packing<Dim>& packing, std::v
         return Failure{FailureKind::not_isostatic, "N_f = 0: there are no degrees of freedom, no grain can move"};
     }
     if (dof_count != contact_count) {
-        return Failure{
-            FailureKind::not_isostatic,
-            fmt::format("N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f",
-                        dof_count, contact_count)};
+        return failed(FailureKind::not_isostatic,
+                      "N_f = {} degrees of freedom and N = {} contacts: an isostatic structure has N = N_f", dof_count,
+                      contact_count);
     }
     structure.matrix_ =
         std::make_shared<const sparse::Matrix<double>>(contact_matrix(packing, *structure.dofs_, contacts));
     structure.ordering_ = std::make_shared<OrderingOnDemand>(structure.matrix_);
     const sparse::Ordering& ordering = structure.ordering();
     if (!ordering.structurally_regular()) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("the contact matrix is structurally singular: N_f = N = {}, structural rank {}",
-                                   dof_count, ordering.structural_rank())};
+        return failed(FailureKind::not_isostatic,
+                      "the contact matrix is structurally singular: N_f = N = {}, structural rank {}", dof_count,
+                      ordering.structural_rank());
     }
     proof.elimination_ = Future<int>([packing, dofs = structure.dofs_, contacts, ordering = structure.ordering_] {
         count_work(Work::rank_proofs);
@@ -177,9 +178,9 @@ template <int Dim> bool RankProof<Dim>::is_regular() {
 
 template <int Dim> Result<IsostaticStructure<Dim>> RankProof<Dim>::conclude() {
     if (!is_regular()) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("the rank of the contact matrix mod 2^61-1 is {}, N_f = N = {}: not proved regular",
-                                   rank_, structure_.size())};
+        return failed(FailureKind::not_isostatic,
+                      "the rank of the contact matrix mod 2^61-1 is {}, N_f = N = {}: not proved regular", rank_,
+                      structure_.size());
     }
     IsostaticStructure<Dim> proved = structure_;
     proved.evidence_ = RegularityEvidence::elimination;

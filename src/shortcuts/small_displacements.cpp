@@ -1,3 +1,5 @@
+#include "contact/words.hpp"
+
 #include <isostat/contact/contact_set.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/shortcuts/small_displacements.hpp>
@@ -73,8 +75,8 @@ Result<LinearEvent> find_linear_event(const Packing<Dim>& packing, const Isostat
         }
     }
     if (!std::isfinite(event.length)) {
-        return Failure{FailureKind::unbounded, fmt::format("no listed gap falls when {} opens",
-                                                           to_string<Dim>(structure.contacts()[opened.index()]))};
+        return failed(FailureKind::unbounded, "no listed gap falls when {} opens",
+                      named<Dim>(structure.contacts()[opened.index()]));
     }
     for (const double c : event.velocity) {
         event.displacement.push_back(event.length * c);
@@ -125,7 +127,7 @@ LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeome
     while (true) {
         auto structure = IsostaticStructure<Dim>::prove(at.geometry, contacts);
         if (!structure.ok()) {
-            run.stopped = structure.failure().message;
+            run.stopped = structure.failure().message();
             return run;
         }
         std::optional<Factorisation> factorisation;
@@ -141,7 +143,7 @@ LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeome
             auto decision =
                 decide_opening(*statics, load.stress[axis], OpeningRule::most_negative, ContactId(), std::uint64_t{0});
             if (!decision.ok()) {
-                run.stopped = decision.failure().message;
+                run.stopped = decision.failure().message();
                 return run;
             }
             opening = decision.value().opening;
@@ -151,7 +153,7 @@ LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeome
                 run.equilibria.push_back({load.stress[axis], std::numeric_limits<double>::infinity(),
                                           (reference - at.grains.length(load.loaded_axis)) / reference, arcs});
                 if (!limit.ok() || limit.value().unbounded) {
-                    run.stopped = limit.ok() ? "every load is supported" : limit.failure().message;
+                    run.stopped = limit.ok() ? "every load is supported" : limit.failure().message();
                     return run;
                 }
                 run.equilibria.back().stress_high = limit.value().stress;
@@ -182,7 +184,7 @@ LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeome
         auto event = find_linear_event(at.geometry, structure.value(), *factorisation, opening->contact,
                                        opening->direction, at.pairs, at.linear);
         if (!event.ok()) {
-            run.stopped = event.failure().message;
+            run.stopped = event.failure().message();
             return run;
         }
         for (std::size_t c = 0; c < at.grains.q.size(); ++c) {

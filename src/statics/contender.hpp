@@ -1,6 +1,7 @@
 #pragma once
 // Contacts that may open, and the quantities by which they are ordered: private to the room.
 
+#include "contact/words.hpp"
 #include "statics/proved_minimum.hpp"
 #include "statics/straight_strut.hpp"
 
@@ -21,8 +22,8 @@ struct Contender {
     double multiplier = 0; ///< of a held coordinate, with its sign
 };
 
-template <int Dim> std::string name(const Statics<Dim>& statics, ContactId l) {
-    return to_string<Dim>(statics.structure().contacts()[l.index()]);
+template <int Dim> Named<Dim> name(const Statics<Dim>& statics, ContactId l) {
+    return named<Dim>(statics.structure().contacts()[l.index()]);
 }
 
 template <int Dim> bool is_held(const Statics<Dim>& statics, ContactId l) {

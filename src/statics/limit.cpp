@@ -1,7 +1,5 @@
 #include "statics/contender.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,7 +43,7 @@ template <int Dim> class LimitContest final : public Contest {
     /// Proved sign of the rate of a force in the direction: from the enclosure, or from the ladder.
     Order rate_sign(ContactId l);
     Failure open_rate(ContactId l, const Order& order) const;
-    [[nodiscard]] std::string name_of(ContactId l) const { return name(statics_, l); }
+    [[nodiscard]] Named<Dim> name_of(ContactId l) const { return name(statics_, l); }
     /// Largest slope: what a zero slope is compared with.
     double slope_size() const;
     /// The force at the limit, wherever within its error that is.
@@ -74,10 +72,10 @@ template <int Dim> Order LimitContest<Dim>::rate_sign(ContactId l) {
 }
 
 template <int Dim> Failure LimitContest<Dim>::open_rate(ContactId l, const Order& order) const {
-    return {FailureKind::undecided,
-            fmt::format("the sign of the slope of the force in contact {} is not decided with {} bits: {:.3g}, proved "
-                        "to {:.3g}",
-                        name_of(l), order.bits, statics_.slope(l).value, statics_.slope(l).radius)};
+    return failed(FailureKind::undecided,
+                  "the sign of the slope of the force in contact {} is not decided with {} bits: {:.3g}, proved to "
+                  "{:.3g}",
+                  name_of(l), order.bits, statics_.slope(l).value, statics_.slope(l).radius);
 }
 
 template <int Dim> double LimitContest<Dim>::slope_size() const {
@@ -194,7 +192,7 @@ template <int Dim> Result<Comparison> LimitContest<Dim>::compare(std::size_t riv
     if (perturbed_ != nullptr && needs_first_order(order, std::max(std::abs(limit_.stress), std::abs(sigma_)))) {
         return at_first_order(l, first, order);
     }
-    return by_order(order, fmt::format(", {} ({})", name_of(l), reach(order)));
+    return by_order(order, words(", {} ({})", name_of(l), reach(order)));
 }
 
 /// A force that vanishes in the base is then affine in the load at first order.
@@ -205,10 +203,10 @@ template <int Dim> Result<Comparison> LimitContest<Dim>::with_a_rate_of_order_ep
     }
     const Enclosure f1 = perturbed_->force_at(l, limit_.stress, limit_.stress_error);
     if (!is_tie(rate, slope_size()) || !is_tie(zero, perturbed_->size()) || !f1.positive()) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("the force in {} and its slope vanish in the base; its first-order term at "
-                                   "sigma = {:.17g} is {}: where on the way it changes sign is not followed",
-                                   name_of(l), limit_.stress, shown(f1))};
+        return failed(FailureKind::undecided,
+                      "the force in {} and its slope vanish in the base; its first-order term at "
+                      "sigma = {:.17g} is {}: where on the way it changes sign is not followed",
+                      name_of(l), limit_.stress, shown(f1));
     }
     Comparison result = proved_larger(f1.margin());
     result.settled = TieDecision{
@@ -222,9 +220,9 @@ Result<Comparison> LimitContest<Dim>::at_first_order(ContactId l, ContactId firs
     const Enclosure other = perturbed_->limit_rate(l, limit_.stress, limit_.stress_error);
     return by_first_order({"limit", contacts_[first.index()], mine, contacts_[l.index()], other}, order, direction_ < 0,
                           statics_.rung(),
-                          fmt::format("the forces in {} and {} vanish at one load, sigma = {:.17g} ({}), and the "
-                                      "first-order terms of the two loads",
-                                      name_of(first), name_of(l), limit_.stress, reach(order)));
+                          words("the forces in {} and {} vanish at one load, sigma = {:.17g} ({}), and the "
+                                "first-order terms of the two loads",
+                                name_of(first), name_of(l), limit_.stress, reach(order)));
 }
 
 /// Within a class of forces that vanish together: the infinitesimal loads decide which one reaches zero first.
@@ -276,14 +274,13 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
     }
     LoadLimit limit = contest.limit();
     if (!minimum.tied.empty()) {
-        return Failure{FailureKind::tie,
-                       fmt::format("the forces in the contacts {}{} vanish at one load, sigma = {:.17g}",
-                                   name(statics, ContactId(*minimum.index)), minimum.tied, limit.stress)};
+        return failed(FailureKind::tie, "the forces in the contacts {}{} vanish at one load, sigma = {:.17g}",
+                      name(statics, ContactId(*minimum.index)), minimum.tied, limit.stress);
     }
     const Result<Opening> chosen = first_of_class(statics, limit.tie_class);
     if (!chosen.ok()) {
-        return Failure{chosen.failure().kind, fmt::format("structural tie class of {} contacts: {}",
-                                                          limit.tie_class.size(), chosen.failure().message)};
+        return failed(chosen.failure().kind, "structural tie class of {} contacts: {}", limit.tie_class.size(),
+                      chosen.failure());
     }
     limit.opens = chosen.value().contact;
     limit.margin = std::min(limit.margin, minimum.margin);

@@ -41,7 +41,7 @@ template <int Dim> class Stage {
     }
 
   private:
-    [[nodiscard]] std::string name_of(ContactId l) const { return name(statics_, l); }
+    [[nodiscard]] Named<Dim> name_of(ContactId l) const { return name(statics_, l); }
     [[nodiscard]] Enclosure value(ContactId l) const {
         return finite_ ? statics_.force(l, sigma_) : statics_.infinitesimal(l);
     }
@@ -141,18 +141,17 @@ template <int Dim> std::optional<Failure> Stage<Dim>::settle(const Contender& do
         return settle_at_first_order(l, order);
     }
     if (!order.decided) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("the sign of the {}force in contact {} is not decided with {} bits: {:.3g}, "
-                                   "proved to {:.3g}",
-                                   finite_ ? "" : "infinitesimal ", name_of(l), order.bits, value(l).value,
-                                   value(l).radius)};
+        return failed(FailureKind::undecided,
+                      "the sign of the {}force in contact {} is not decided with {} bits: {:.3g}, "
+                      "proved to {:.3g}",
+                      finite_ ? "" : "infinitesimal ", name_of(l), order.bits, value(l).value, value(l).radius);
     }
     if (order.sign < 0) {
         add_negative(l, order.margin);
     } else if (order.sign > 0) {
         margin_ = std::min(margin_, order.margin);
     } else {
-        zeros_ += (zeros_.empty() ? "" : ", ") + name_of(l);
+        zeros_ += words("{}{}", zeros_.empty() ? "" : ", ", name_of(l));
         if (is_held(statics_, l)) {
             zero_.others.push_back(l);
             turn_.reset();
@@ -165,12 +164,11 @@ template <int Dim> std::optional<Failure> Stage<Dim>::settle_at_first_order(Cont
     const Enclosure f1 = choice_.perturbed->force(l);
     const bool held = is_held(statics_, l);
     if (held || !f1.decided()) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("the force in {} vanishes ({}), {}", name_of(l), reach(order),
-                                   held ? std::string("and held coordinates are not followed at first order")
-                                        : fmt::format("and its first-order term does not tell its sign: {}; a "
-                                                      "higher order may",
-                                                      shown(f1)))};
+        return failed(FailureKind::undecided, "the force in {} vanishes ({}), {}", name_of(l), reach(order),
+                      held ? std::string("and held coordinates are not followed at first order")
+                           : fmt::format("and its first-order term does not tell its sign: {}; a "
+                                         "higher order may",
+                                         shown(f1)));
     }
     choice_.perturbed->log.push_back(
         {"force", contacts_[l.index()], f1, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
@@ -186,9 +184,9 @@ template <int Dim> std::optional<Failure> Stage<Dim>::settle_at_first_order(Cont
 
 template <int Dim> Result<OpeningDecision> Stage<Dim>::nothing_opens() {
     if (!zeros_.empty()) {
-        return Failure{finite_ ? FailureKind::tie : FailureKind::undecided,
-                       fmt::format("the {}force is exactly 0, and not for a structural reason, in: {}",
-                                   finite_ ? "" : "infinitesimal ", zeros_)};
+        return failed(finite_ ? FailureKind::tie : FailureKind::undecided,
+                      "the {}force is exactly 0, and not for a structural reason, in: {}",
+                      finite_ ? "" : "infinitesimal ", zeros_);
     }
     if (without_force_) {
         return Failure{FailureKind::undecided,
@@ -231,8 +229,7 @@ template <int Dim> std::optional<Failure> Stage<Dim>::let_go(Opening& opening) {
     const Order push =
         opening.force.decided() ? Order{true, opening.force.positive() ? 1 : -1} : statics_.sign(force(l));
     if (!push.decided || push.sign == 0) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("which way the held coordinate {} pushes is not decided", name_of(l))};
+        return failed(FailureKind::undecided, "which way the held coordinate {} pushes is not decided", name_of(l));
     }
     opening.direction = push.sign < 0 ? +1 : -1;
     return std::nullopt;

@@ -1,7 +1,5 @@
 #include "statics/contender.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,8 +81,8 @@ template <int Dim> class OpeningContest final : public Contest {
             needs_first_order(order, choice_.perturbed->size())) {
             return at_first_order(order, other, one);
         }
-        return by_order(order, fmt::format("; {} (f = {:.17g}): {}", name(statics_, other.contact), other.force.value,
-                                           reach(order)));
+        return by_order(
+            order, words("; {} (f = {:.17g}): {}", name(statics_, other.contact), other.force.value, reach(order)));
     }
 
   private:
@@ -94,10 +92,9 @@ template <int Dim> class OpeningContest final : public Contest {
         strut_ = true;
         const Enclosure& excess = mate.excess;
         Order order{excess.decided(), excess.positive() == least_ ? -1 : 1, excess.margin(), Rung::combinatorial};
-        return by_order(order,
-                        fmt::format("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
-                                    "loads do not order: {:.3g}, known to {:.3g}",
-                                    name(statics_, mate.contact), other.force.value, excess.value, excess.radius));
+        return by_order(order, words("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
+                                     "loads do not order: {:.3g}, known to {:.3g}",
+                                     name(statics_, mate.contact), other.force.value, excess.value, excess.radius));
     }
 
     /// Difference of two enclosures where that decides, the ladder where it does not.
@@ -117,9 +114,9 @@ template <int Dim> class OpeningContest final : public Contest {
         const Enclosure its = first_order_key(other);
         return by_first_order({"opening", contacts[one.contact.index()], mine, contacts[other.contact.index()], its},
                               order, false, statics_.rung(),
-                              fmt::format("the opening rule cannot order {} and {} ({}), and the first-order terms of "
-                                          "what it compares",
-                                          name(statics_, one.contact), name(statics_, other.contact), reach(order)));
+                              words("the opening rule cannot order {} and {} ({}), and the first-order terms of "
+                                    "what it compares",
+                                    name(statics_, one.contact), name(statics_, other.contact), reach(order)));
     }
 
     ForceExpression quantity(const Contender& c) {
@@ -188,8 +185,8 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, c
     const Minimum& minimum = found.value();
     const Contender& best = contenders[*minimum.index];
     if (!minimum.tied.empty()) {
-        return Failure{FailureKind::tie, fmt::format("the opening rule cannot order the contacts {} (f = {:.17g}){}",
-                                                     name(statics, best.contact), best.force.value, minimum.tied)};
+        return failed(FailureKind::tie, "the opening rule cannot order the contacts {} (f = {:.17g}){}",
+                      name(statics, best.contact), best.force.value, minimum.tied);
     }
     Opening opening{best.contact,
                     false,

@@ -1,5 +1,7 @@
 #include "statics/proved_minimum.hpp"
 
+#include "contact/words.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,7 +67,7 @@ Result<Minimum> proved_minimum(Contest& contest, std::size_t first, const char* 
     return Failure{FailureKind::undecided, contradiction};
 }
 
-Comparison by_order(const Order& order, std::string tie) {
+Comparison by_order(const Order& order, Words tie) {
     Comparison result;
     if (!order.decided || order.sign == 0) {
         result.answer = Comparison::Answer::tied;
@@ -83,11 +85,11 @@ bool needs_first_order(const Order& order, double size) {
 }
 
 Result<Comparison> by_first_order(TieDecision terms, const Order& order, bool falling, Rung rung,
-                                  const std::string& message) {
+                                  const Words& message) {
     const Enclosure difference = falling ? terms.first - terms.other : terms.other - terms.first;
     if (!difference.decided()) {
-        return Failure{FailureKind::undecided, fmt::format("tied at first order too: {} are {} and {}", message,
-                                                           shown(terms.first), shown(terms.other))};
+        return failed(FailureKind::undecided, "tied at first order too: {} are {} and {}", message, shown(terms.first),
+                      shown(terms.other));
     }
     terms.exponent = order.exponent;
     terms.bits = order.bits;

@@ -17,7 +17,7 @@ struct Comparison {
     Answer answer = Answer::left_out; ///< the rival is ...; left out: it does not compete
     double margin = std::numeric_limits<double>::infinity();
     Rung rung = Rung::combinatorial;    ///< that proved it
-    std::string tie;                    ///< with `tied`: who, and how far the two agree
+    Words tie;                          ///< with `tied`: who, and how far the two agree
     std::optional<TieDecision> settled; ///< a tie in the base that first-order terms ordered
 };
 
@@ -36,7 +36,7 @@ class Contest {
 
 struct Minimum {
     std::optional<std::size_t> index; ///< none: as `Contest::stand` says
-    std::string tied;                 ///< not empty: these cannot be told from it
+    Words tied;                       ///< not empty: these cannot be told from it
     double margin = std::numeric_limits<double>::infinity();
     Rung rung = Rung::combinatorial;  ///< highest of the comparisons
     std::vector<TieDecision> settled; ///< first-order comparisons that were needed
@@ -48,15 +48,14 @@ struct Minimum {
 Result<Minimum> proved_minimum(Contest& contest, std::size_t first, const char* contradiction);
 
 /// The answer of a proved comparison of the rival with the smallest so far; `tie` is said of it when there is none.
-Comparison by_order(const Order& order, std::string tie);
+Comparison by_order(const Order& order, Words tie);
 
 /// The base does not tell the two apart: `order` says that a quantity of this size is a tie.
 bool needs_first_order(const Order& order, double size);
 
 /// The rule of first order: `terms.other` is that of the rival, `terms.first` that of the smallest so far. `falling`:
 /// the larger term is the smaller quantity. Failure: `undecided`, with `message` and the two terms.
-Result<Comparison> by_first_order(TieDecision terms, const Order& order, bool falling, Rung rung,
-                                  const std::string& message);
+Result<Comparison> by_first_order(TieDecision terms, const Order& order, bool falling, Rung rung, const Words& message);
 
 /// "proved to 256 bits" or "exactly".
 std::string reach(const Order& order);

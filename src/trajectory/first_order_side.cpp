@@ -1,9 +1,9 @@
 #include "trajectory/first_order_side.hpp"
 
+#include "contact/words.hpp"
+
 #include <isostat/preparation/backbone.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,10 +88,10 @@ std::optional<Failure> FirstOrderSide<Dim>::settle_load(Vertex<Dim>& vertex, con
         Enclosure f = statics.force(id, limit.stress());
         f.radius += limit.error * (std::abs(slope.value) + slope.radius) * (1 + 1e-10);
         if (!f.positive()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("the force in {} is so small, {:.3g}, that the limit load must be known better "
-                                       "than it is stored",
-                                       to_string<Dim>(contacts[id.index()]), f.value)};
+            return failed(FailureKind::undecided,
+                          "the force in {} is so small, {:.3g}, that the limit load must be known better "
+                          "than it is stored",
+                          named<Dim>(contacts[id.index()]), f.value);
         }
     }
     return std::nullopt;
@@ -106,9 +106,8 @@ std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex,
     if (stored.load_zero.i >= 0 && at != contacts.end()) {
         const ContactId l(static_cast<std::size_t>(at - contacts.begin()));
         if (!vertex.statics.slope(l).decided()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("the load at which the force in {} vanishes is not known",
-                                       to_string<Dim>(stored.load_zero))};
+            return failed(FailureKind::undecided, "the load at which the force in {} vanishes is not known",
+                          named<Dim>(stored.load_zero));
         }
         LimitLoad<Dim> meant = zero_load(vertex.statics, l, state_.load);
         meant.stress_rate = stored.stress_rate;

@@ -1,9 +1,8 @@
 #include "trajectory/floating_steering.hpp"
 
+#include "contact/words.hpp"
 #include "trajectory/descent.hpp"
 #include "trajectory/record.hpp"
-
-#include <fmt/format.h>
 
 #include <cmath>
 
@@ -12,9 +11,8 @@ namespace isostat {
 namespace {
 
 /// "the arc that opens 1-2 and closes 3-4".
-template <int Dim> std::string names(const ArcRecord<Dim>& record) {
-    return fmt::format("the arc that opens {} and closes {}", to_string<Dim>(record.opened),
-                       to_string<Dim>(record.closed));
+template <int Dim> Words names(const ArcRecord<Dim>& record) {
+    return words("the arc that opens {} and closes {}", named<Dim>(record.opened), named<Dim>(record.closed));
 }
 
 /// eps_2, in double.
@@ -143,8 +141,7 @@ std::optional<Failure> FloatingSteering<Dim>::record_arc(ArcRecord<Dim>& record,
     const WorkOfArc work = work_of(load_, *packing_, path.end);
     record.work = work.value;
     if (load_.kind == LoadKind::nominal && work.value < -1e-12 * work.size) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("W increased by {:.6g} along {}", -work.value, names(record))};
+        return failed(FailureKind::undecided, "W increased by {:.6g} along {}", -work.value, names(record));
     }
     return std::nullopt;
 }
@@ -160,8 +157,8 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, start_.opening.contact, path.closed,
                                                   predicted && predicted->contacts ? &*predicted->contacts : nullptr);
     if (!next) {
-        return Failure{FailureKind::not_isostatic,
-                       fmt::format("the contacts are structurally singular at the end of {}", names(arc.record))};
+        return failed(FailureKind::not_isostatic, "the contacts are structurally singular at the end of {}",
+                      names(arc.record));
     }
     if (!next->predicted()) { // a normal turned into or out of an axis: the backbone may be another one
         predicted.reset();
@@ -212,8 +209,8 @@ template <int Dim> std::optional<Failure> FloatingSteering<Dim>::record_power(Ar
     const bool infinitesimal = start_.opening.infinitesimal;
     record.power = infinitesimal ? here_->infinitesimal()[slot] : here_->force[slot];
     if ((infinitesimal || !here_->is_structural_zero(slot)) && !here_->compressive(slot, infinitesimal, for_proofs_)) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("the power of the load is not clearly positive at the end of {}", names(record))};
+        return failed(FailureKind::undecided, "the power of the load is not clearly positive at the end of {}",
+                      names(record));
     }
     return std::nullopt;
 }

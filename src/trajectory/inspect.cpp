@@ -180,7 +180,7 @@ Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, cons
     KeptCandidates kept;
     auto gaps = vertex.check_gaps(candidates, kept);
     if (!gaps.ok()) {
-        inspection.remark = gaps.failure().message;
+        inspection.remark = gaps.failure().message();
     } else if (gaps.value().negative) {
         inspection.remark = fmt::format("{} overlap", to_string<Dim>(*gaps.value().negative));
     } else if (const auto pair = fixed_overlap(state.packing)) {

@@ -1,11 +1,10 @@
 #include "trajectory/prover.hpp"
 
+#include "contact/words.hpp"
 #include "trajectory/descent.hpp"
 #include "trajectory/floating_steering.hpp"
 
 #include <isostat/motion/arc.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -32,10 +31,6 @@ void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<D
 }
 
 } // namespace
-
-Failure located(const Failure& failure, const std::string& where) {
-    return {failure.kind, where + ": " + failure.message};
-}
 
 template <int Dim> void ArcProof<Dim>::count(const Decision& decision) {
     decisions.push_back(decision);
@@ -108,8 +103,8 @@ template <int Dim>
 std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
                                           const LimitLoad<Dim>& at) {
     const auto at_end = [&](const Failure& failure) {
-        return located(failure, fmt::format("at the end of the arc that opens {} and closes {}",
-                                            to_string<Dim>(proof.record.opened), to_string<Dim>(proof.record.closed)));
+        return located(failure, words("at the end of the arc that opens {} and closes {}",
+                                      named<Dim>(proof.record.opened), named<Dim>(proof.record.closed)));
     };
     LadderOptions ladder;
     ladder.first_accuracy = first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
@@ -167,11 +162,10 @@ std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<D
     if (proof.descends || at_once) {
         return std::nullopt;
     }
-    return Failure{FailureKind::undecided,
-                   fmt::format("the potential is not proved to decrease along the arc that opens {} and closes {}: by "
-                               "{:.6g}, known to {:.3g}",
-                               to_string<Dim>(proof.record.opened), to_string<Dim>(proof.record.closed), decrease.value,
-                               decrease.radius)};
+    return failed(FailureKind::undecided,
+                  "the potential is not proved to decrease along the arc that opens {} and closes {}: by "
+                  "{:.6g}, known to {:.3g}",
+                  named<Dim>(proof.record.opened), named<Dim>(proof.record.closed), decrease.value, decrease.radius);
 }
 
 /// F.t = f_c (G t)_c at the event, and the new gap closes: the power is positive there iff the new force is.
@@ -192,10 +186,10 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
         if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
             f = side.force(closed);
             if (!f.positive()) {
-                return Failure{FailureKind::undecided,
-                               fmt::format("the new force in {} vanishes, and its first-order term is {:.6g} +- "
-                                           "{:.3g}: the power of the load is not proved positive at the end of the arc",
-                                           to_string<Dim>(record.closed), f.value, f.radius)};
+                return failed(FailureKind::undecided,
+                              "the new force in {} vanishes, and its first-order term is {:.6g} +- "
+                              "{:.3g}: the power of the load is not proved positive at the end of the arc",
+                              named<Dim>(record.closed), f.value, f.radius);
             }
             record.perturbed.push_back(
                 {"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
@@ -216,10 +210,10 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
         return std::nullopt;
     }
     if (!f.positive()) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("the power of the load along the arc that opens {} and closes {} is not proved "
-                                   "positive at its end: force {:.3g} in the new contact, proved to {:.3g}",
-                                   to_string<Dim>(record.opened), to_string<Dim>(record.closed), f.value, f.radius)};
+        return failed(FailureKind::undecided,
+                      "the power of the load along the arc that opens {} and closes {} is not proved "
+                      "positive at its end: force {:.3g} in the new contact, proved to {:.3g}",
+                      named<Dim>(record.opened), named<Dim>(record.closed), f.value, f.radius);
     }
     proof.count({DecisionKind::power, f.margin(), to.statics.rung()});
     return std::nullopt;

@@ -124,9 +124,6 @@ template <int Dim> class ProofChain {
     std::optional<ArcProof<Dim>> refused_;
 };
 
-/// Where a failure happened: put before its message, so that the last line of a run says all.
-Failure located(const Failure& failure, const std::string& where);
-
 extern template struct ArcProof<2>;
 extern template class Prover<2>;
 extern template class ProofChain<2>;

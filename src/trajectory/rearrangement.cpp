@@ -1,5 +1,6 @@
 #include "trajectory/rearrangement.hpp"
 
+#include "contact/words.hpp"
 #include "trajectory/bounded_steering.hpp"
 
 #include <fmt/format.h>
@@ -108,14 +109,16 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
     if (recorder_.stopped()) {
-        return Failure{FailureKind::interrupted, fmt::format("stopped after {} arcs of a rearrangement at sigma = "
-                                                             "{:.17g}",
-                                                             arcs_, at_.stress())};
+        return failed(FailureKind::interrupted,
+                      "stopped after {} arcs of a rearrangement at sigma = "
+                      "{:.17g}",
+                      arcs_, at_.stress());
     }
     if (arcs_ >= options().max_arcs) {
-        return Failure{FailureKind::cap_reached, fmt::format("no equilibrium after {} arcs at sigma = {:.17g}: the "
-                                                             "sample fails here (cap max_arcs)",
-                                                             arcs_, at_.stress())};
+        return failed(FailureKind::cap_reached,
+                      "no equilibrium after {} arcs at sigma = {:.17g}: the "
+                      "sample fails here (cap max_arcs)",
+                      arcs_, at_.stress());
     }
     return std::nullopt;
 }
@@ -175,10 +178,10 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
         recorder_.counters.tally.structural_ties += opening && opening->straight_strut ? 1 : 0;
     }
     if (std::abs(record.strain) > options().max_strain) {
-        return Failure{FailureKind::cap_reached,
-                       fmt::format("|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails "
-                                   "here (cap max_strain = {:.6g})",
-                                   std::abs(record.strain), at_.stress(), options().max_strain)};
+        return failed(FailureKind::cap_reached,
+                      "|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails "
+                      "here (cap max_strain = {:.6g})",
+                      std::abs(record.strain), at_.stress(), options().max_strain);
     }
     if (!proof.next) { // level `plain`
         ended_ = steered_to_.has_value();
@@ -259,10 +262,10 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const Ar
         return located(again.failure(), where(arcs_ + 1));
     }
     if (!again.value().opening) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("{}: every force is positive, and the multiplier of {} is 0 as far as the power "
-                                   "turn is located: whether and where it moves is not decided",
-                                   where(arcs_ + 1), to_string<Dim>(record.opened))};
+        return failed(FailureKind::undecided,
+                      "{}: every force is positive, and the multiplier of {} is 0 as far as the power "
+                      "turn is located: whether and where it moves is not decided",
+                      where(arcs_ + 1), named<Dim>(record.opened));
     }
     goes_on_from(here_, *again.value().opening);
     steering_.reset();
@@ -307,10 +310,10 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return located(*end.failure, at_equilibrium());
     }
     if (end.gaps.negative) {
-        const std::string overlap = to_string<Dim>(*end.gaps.negative) + " overlap";
-        return plain() ? Failure{FailureKind::undecided,
-                                 at_equilibrium() + ": plain steering went past a contact, " + overlap}
-                       : Failure{FailureKind::overlap, at_equilibrium() + ": " + overlap};
+        const auto overlap = named<Dim>(*end.gaps.negative);
+        return plain() ? failed(FailureKind::undecided, "{}: plain steering went past a contact, {} overlap",
+                                at_equilibrium(), overlap)
+                       : failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(), overlap);
     }
     const Result<OpeningDecision>& decision = *end.decision;
     if (plain()) {
@@ -319,11 +322,9 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
     if (decision.ok() && !decision.value().opening) {
         return std::nullopt;
     }
-    return Failure{
-        FailureKind::undecided,
-        fmt::format("{}: not found again with {}{}", at_equilibrium(),
-                    options().ties == TiePolicy::perturb ? "the load as it is stored" : "fresh factors and bounds",
-                    decision.ok() ? "" : ": " + decision.failure().message)};
+    return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
+                  options().ties == TiePolicy::perturb ? "the load as it is stored" : "fresh factors and bounds",
+                  decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 
 template <int Dim> std::optional<ArcProof<Dim>> Rearrangement<Dim>::unproved(ArcProposal<Dim>& arc) {

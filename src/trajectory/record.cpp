@@ -1,8 +1,8 @@
 #include "trajectory/record.hpp"
 
 #include "contact/other_pairs.hpp"
+#include "contact/words.hpp"
 
-#include <fmt/format.h>
 #include <qd/dd_real.h>
 
 #include <algorithm>
@@ -166,9 +166,8 @@ std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim
         }
         const auto limit = find_limit(vertex.statics, sigma, direction, vertex.first_order());
         if (!limit.ok()) {
-            return Failure{limit.failure().kind,
-                           fmt::format("{} end of the supported interval: {}", direction > 0 ? "upper" : "lower",
-                                       limit.failure().message)};
+            return failed(limit.failure().kind, "{} end of the supported interval: {}",
+                          direction > 0 ? "upper" : "lower", limit.failure());
         }
         const LoadLimit& end = limit.value();
         stress = end.stress;

@@ -1,3 +1,4 @@
+#include "contact/words.hpp"
 #include "trajectory/rearrangement.hpp"
 
 #include <isostat/core/floating_point.hpp>
@@ -109,7 +110,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::start() {
         return at_start(gaps.failure());
     }
     if (gaps.value().negative) {
-        return Failure{FailureKind::overlap, fmt::format("start: {} overlap", to_string<Dim>(*gaps.value().negative))};
+        return failed(FailureKind::overlap, "start: {} overlap", named<Dim>(*gaps.value().negative));
     }
     if (perturbs()) {
         if (auto failure = first_order_->resume(*vertex_, gaps.value().zero)) {
@@ -195,9 +196,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
     if (!perturbs() || (decision.ok() && !decision.value().opening)) {
         return std::nullopt;
     }
-    return Failure{FailureKind::undecided,
-                   fmt::format("equilibrium at sigma = {:.17g}: not found again with the load as it is stored{}",
-                               sigma(), decision.ok() ? "" : ": " + decision.failure().message)};
+    return failed(FailureKind::undecided,
+                  "equilibrium at sigma = {:.17g}: not found again with the load as it is stored{}", sigma(),
+                  decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 
 /// The same vertex under another load, which is meant as it is stored.
@@ -215,13 +216,13 @@ template <int Dim> std::optional<Failure> Run<Dim>::reload() {
 
 template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
     if (recorder_.stopped()) {
-        return Failure{FailureKind::interrupted, fmt::format("stopped at equilibrium {}", counters_.equilibria)};
+        return failed(FailureKind::interrupted, "stopped at equilibrium {}", counters_.equilibria);
     }
     if (record_.held > 0) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("equilibrium {} still holds {} coordinate(s): it is one at this load only, and no "
-                                   "contact limits it",
-                                   counters_.equilibria, record_.held)};
+        return failed(FailureKind::undecided,
+                      "equilibrium {} still holds {} coordinate(s): it is one at this load only, and no "
+                      "contact limits it",
+                      counters_.equilibria, record_.held);
     }
     auto found = find_limit();
     if (!found.ok()) {
@@ -234,9 +235,8 @@ template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
         return reached;
     }
     if (limit.unbounded) {
-        return Failure{FailureKind::no_limit,
-                       fmt::format("equilibrium {} supports every load in this direction: no contact opens",
-                                   counters_.equilibria)};
+        return failed(FailureKind::no_limit, "equilibrium {} supports every load in this direction: no contact opens",
+                      counters_.equilibria);
     }
     Opening opening;
     opening.contact = limit.opens;
@@ -281,10 +281,9 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
     }
     const double ahead = limit.unbounded ? infinity : segment_.direction * (limit.stress - *segment_.to_stress);
     if (!limit.unbounded && std::abs(ahead) <= limit.stress_error) {
-        return Failure{
-            FailureKind::undecided,
-            fmt::format("the stress {:.17g} to reach cannot be told from the limit {:.17g} of equilibrium {}",
-                        *segment_.to_stress, limit.stress, counters_.equilibria)};
+        return failed(FailureKind::undecided,
+                      "the stress {:.17g} to reach cannot be told from the limit {:.17g} of equilibrium {}",
+                      *segment_.to_stress, limit.stress, counters_.equilibria);
     }
     if (!(ahead > 0)) {
         return false;
@@ -358,17 +357,16 @@ template <int Dim> std::optional<Failure> Run<Dim>::check(const EquilibriumRecor
     const double allowance = 4 * vertex_->enclosure.distance();
     const Admissibility admissible = certify_admissible(vertex_->packing, allowance, &prover_.candidates());
     if (admissible.verdict != Verdict::proved) {
-        return Failure{FailureKind::overlap,
-                       fmt::format("equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),
-                                   to_string<Dim>(admissible.worst), admissible.worst_gap)};
+        return failed(FailureKind::overlap, "equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),
+                      named<Dim>(admissible.worst), admissible.worst_gap);
     }
     const Packing<Dim>& packing = vertex_->packing;
     const bool box = packing.walls == Walls<Dim>::box() && state_.load.disk_force.empty() && packing.fixed.empty();
     const int expected = vertex_->structure.dofs().dof_count() - Dim * record.rattlers;
     if (box && record.held == 0 && record.backbone != expected) {
-        return Failure{FailureKind::undecided,
-                       fmt::format("backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}",
-                                   record.backbone, record.rattlers, Dim, expected)};
+        return failed(FailureKind::undecided,
+                      "backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}", record.backbone,
+                      record.rattlers, Dim, expected);
     }
     return std::nullopt;
 }
@@ -381,9 +379,10 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
     require_floating_point();
     const double stress = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
     if (segment.to_stress && segment.direction * (*segment.to_stress - stress) < 0) {
-        return {false, Failure{FailureKind::no_limit, fmt::format("the stress {:.17g} to reach lies behind the load, "
-                                                                  "which is {:.17g}",
-                                                                  *segment.to_stress, stress)}};
+        return {false, failed(FailureKind::no_limit,
+                              "the stress {:.17g} to reach lies behind the load, "
+                              "which is {:.17g}",
+                              *segment.to_stress, stress)};
     }
     return Run<Dim>(state, segment, segment_number, {options, counters, observer}).run();
 }

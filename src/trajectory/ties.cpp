@@ -1,5 +1,7 @@
 #include "trajectory/ties.hpp"
 
+#include "contact/words.hpp"
+
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
@@ -61,11 +63,10 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
         } else if (rate.negative()) {
             closing.push_back({contact, way(c, rate)});
         } else {
-            return Failure{FailureKind::undecided,
-                           fmt::format("{} touch without being a contact, and the rate of their gap when {} opens is "
-                                       "not told from 0: {}; pairs that move alike are not followed at first order",
-                                       to_string<Dim>(contact),
-                                       to_string<Dim>(from.structure.contacts()[opened.index()]), shown(rate))};
+            return failed(FailureKind::undecided,
+                          "{} touch without being a contact, and the rate of their gap when {} opens is "
+                          "not told from 0: {}; pairs that move alike are not followed at first order",
+                          named<Dim>(contact), named<Dim>(from.structure.contacts()[opened.index()]), shown(rate));
         }
     }
     if (closing.empty()) {
@@ -78,11 +79,10 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
             continue;
         }
         if (!(other.way - first->way).positive()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("tied at first order too: {} and {} touch, and close again after ways of eps "
-                                       "({}) and eps ({})",
-                                       to_string<Dim>(first->contact), to_string<Dim>(other.contact), shown(first->way),
-                                       shown(other.way))};
+            return failed(FailureKind::undecided,
+                          "tied at first order too: {} and {} touch, and close again after ways of eps "
+                          "({}) and eps ({})",
+                          named<Dim>(first->contact), named<Dim>(other.contact), shown(first->way), shown(other.way));
         }
         departure.settled.push_back({"step", first->contact, first->way, other.contact, other.way, 0, 0});
     }
@@ -103,9 +103,9 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact
     for (const auto& [contact, order] : zero) {
         const Enclosure c = side.first.gap(contact);
         if (!c.decided()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("{} touch where {} closes, and their first-order gap is not told from 0: {}",
-                                       to_string<Dim>(contact), to_string<Dim>(closed), shown(c))};
+            return failed(FailureKind::undecided,
+                          "{} touch where {} closes, and their first-order gap is not told from 0: {}",
+                          named<Dim>(contact), named<Dim>(closed), shown(c));
         }
         const bool rests = std::find(resting.begin(), resting.end(), contact) != resting.end();
         if (!stayed && !rests) {
@@ -113,17 +113,17 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact
             const Enclosure back =
                 closed.kind == ContactKind::held ? Enclosure{0, 0} : side.first.rate(slot, +1, contact);
             if (!back.positive()) {
-                return Failure{FailureKind::undecided,
-                               fmt::format("{} touch where {} closes, but are not proved to close there: the rate of "
-                                           "their gap is {} times that of the other; grazing is not followed at first "
-                                           "order",
-                                           to_string<Dim>(contact), to_string<Dim>(closed), shown(back))};
+                return failed(FailureKind::undecided,
+                              "{} touch where {} closes, but are not proved to close there: the rate of "
+                              "their gap is {} times that of the other; grazing is not followed at first "
+                              "order",
+                              named<Dim>(contact), named<Dim>(closed), shown(back));
             }
         }
         if (c.negative()) {
             if (rests) {
-                return Failure{FailureKind::undecided,
-                               fmt::format("{} at rest overlap at first order: {}", to_string<Dim>(contact), shown(c))};
+                return failed(FailureKind::undecided, "{} at rest overlap at first order: {}", named<Dim>(contact),
+                              shown(c));
             }
             arrival.earlier = contact;
             return arrival;
@@ -138,21 +138,20 @@ template <int Dim>
 std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero) {
     FirstOrderVertex<Dim>& side = *vertex.perturbed;
     side.touching.clear();
-    std::string names;
+    Words names;
     for (const auto& [contact, order] : zero) {
         const Enclosure c = side.first.gap(contact);
         if (!c.decided()) {
-            return Failure{FailureKind::undecided,
-                           fmt::format("{} touch, and their first-order gap is not told from 0: {}",
-                                       to_string<Dim>(contact), shown(c))};
+            return failed(FailureKind::undecided, "{} touch, and their first-order gap is not told from 0: {}",
+                          named<Dim>(contact), shown(c));
         }
         if (c.negative()) {
-            names += fmt::format("{}{}", names.empty() ? "" : ", ", to_string<Dim>(contact));
+            names += words("{}{}", names.empty() ? "" : ", ", named<Dim>(contact));
         }
         side.touching.emplace_back(contact, c);
     }
     if (!names.empty()) {
-        return Failure{FailureKind::overlap, "pairs that touch overlap at first order: " + names};
+        return failed(FailureKind::overlap, "pairs that touch overlap at first order: {}", names);
     }
     return std::nullopt;
 }

@@ -1,11 +1,10 @@
 #include "trajectory/vertex.hpp"
 
+#include "contact/words.hpp"
 #include "trajectory/steering.hpp"
 
 #include <isostat/motion/arc.hpp>
 #include <isostat/verified/inverse_bound_multiprecision.hpp>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,12 +37,11 @@ template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
         enclosure = enclose_vertex_double_double(packing, structure, factorisation, inverse);
     }
     if (enclosure.verdict != Verdict::proved) {
-        return Failure{
+        return failed(
             FailureKind::undecided,
-            fmt::format(
-                "no true configuration with exactly these contacts was proved to exist near the stored one: largest "
-                "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
-                enclosure.max_gap, inverse.sigma_min)};
+            "no true configuration with exactly these contacts was proved to exist near the stored one: largest "
+            "|gap| of a contact {:.3g}, smallest singular value at least {:.3g}",
+            enclosure.max_gap, inverse.sigma_min);
     }
     return std::nullopt;
 }
@@ -165,7 +163,7 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             look(contact);
         }
     }
-    std::string names;
+    Words names;
     for (const Contact& contact : doubtful) { // with as many bits as the ladder has
         const Order order = gap_sign_at_vertex(packing, structure, factorisation, inverse, contact);
         if (order.decided && order.sign != 0) {
@@ -180,12 +178,12 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             gaps.zero.emplace_back(contact, order);
             continue;
         }
-        names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", to_string<Dim>(contact),
-                             order.decided ? std::string("exactly 0") : fmt::format("0 to {} bits", order.bits));
+        names += words("{}{} ({})", names.empty() ? "" : ", ", named<Dim>(contact),
+                       order.decided ? Words("exactly 0") : words("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
-        return Failure{ties_are_values ? FailureKind::undecided : FailureKind::tie,
-                       "gaps that are zero beside those of the contacts kept: " + names};
+        return failed(ties_are_values ? FailureKind::undecided : FailureKind::tie,
+                      "gaps that are zero beside those of the contacts kept: {}", names);
     }
     return gaps;
 }

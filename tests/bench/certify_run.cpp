@@ -100,7 +100,7 @@ bool play(const std::string& file, int first, int repeats, bench::Table& costs, 
     PreparationReport<2> report;
     auto prepared = prepare<2>(scene.preparation, report);
     if (!prepared.ok()) {
-        fmt::print(stderr, "{}: not prepared: {}\n", file, prepared.failure().message);
+        fmt::print(stderr, "{}: not prepared: {}\n", file, prepared.failure().message());
         return false;
     }
     State<2> state = prepared.value();
@@ -128,7 +128,7 @@ bool play(const std::string& file, int first, int repeats, bench::Table& costs, 
         outcome = run_segment<2>(state, segment, number++, scene.run, counters, certifier);
         run_time += bench::cpu_milliseconds() - begin - (certifier.total - before);
         if (!outcome.completed) {
-            fmt::print(stderr, "{}, segment {}: {}\n", name, number - 1, outcome.failure->message);
+            fmt::print(stderr, "{}, segment {}: {}\n", name, number - 1, outcome.failure->message());
             good = false;
         }
     }

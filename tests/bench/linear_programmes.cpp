@@ -85,7 +85,7 @@ int solve(const std::string& file, int runs) {
         const auto vertex = find_vertex<2>(start, options, report);
         seconds.push_back(static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC);
         if (!vertex.ok()) {
-            return fail(vertex.failure().message);
+            return fail(vertex.failure().message());
         }
         if (run + 1 == runs) {
             std::vector<std::string> contacts;

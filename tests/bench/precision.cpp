@@ -63,7 +63,7 @@ bool measure(const std::string& family, const Packing<2>& packing, const std::ve
              const std::vector<double>& force, int repeats, std::vector<Line>& lines) {
     const auto proved = IsostaticStructure<2>::prove(packing, contacts);
     if (!proved.ok()) {
-        fmt::print("{}: {}\n", family, proved.failure().message);
+        fmt::print("{}: {}\n", family, proved.failure().message());
         return true;
     }
     const std::vector<mpf_class> reference = oracle::refined_forces(packing, contacts, force, reference_bits);

@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
             cpu.add(process_seconds() - begin);
             wall.add(wall_seconds() - wall_begin);
             if (!result.ok()) {
-                fmt::print(stderr, "{} disks: {}\n", n, result.failure().message);
+                fmt::print(stderr, "{} disks: {}\n", n, result.failure().message());
                 good = false;
             } else if (repeat == 0) {
                 const auto matrix = bench::matrix_of(result.value());

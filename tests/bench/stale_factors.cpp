@@ -45,7 +45,7 @@ Recorder run(const State<2>& start, CertifyLevel level, int equilibria) {
     options.certify = level;
     const auto outcome = run_segment<2>(state, segment, 0, options, counters, recorder);
     if (!outcome.completed) {
-        fmt::print(stderr, "{}: {}\n", to_string(level), outcome.failure->message);
+        fmt::print(stderr, "{}: {}\n", to_string(level), outcome.failure->message());
     }
     return recorder;
 }

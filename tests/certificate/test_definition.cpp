@@ -97,7 +97,7 @@ BOOST_DATA_TEST_CASE(inspection_certificate_checker_and_runs_give_one_answer, kn
     }
     std::optional<LoadLimit> low;
     const auto decision = decided(state, &low);
-    BOOST_REQUIRE_MESSAGE(decision.ok(), (decision.ok() ? "" : decision.failure().message));
+    BOOST_REQUIRE_MESSAGE(decision.ok(), (decision.ok() ? "" : decision.failure().message()));
     const bool negative = truth.signs.negative > 0;
     BOOST_TEST(decision.value().opening.has_value() == negative);
     if (negative) {

@@ -41,7 +41,7 @@ void play(const State<2>& start, const std::vector<Segment>& segments, const std
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
         const SegmentOutcome outcome =
             run_segment<2>(state, segments[k], static_cast<int>(k), options, counters, directory);
-        BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message : ""));
+        BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
     }
     directory.finish(RunStatus::completed, "");
 }

@@ -16,7 +16,7 @@ int main() {
     PreparationReport<2> report;
     const auto prepared = prepare<2>(scene.preparation, report);
     if (!prepared.ok()) {
-        std::printf("%s\n", prepared.failure().message.c_str());
+        std::printf("%s\n", prepared.failure().message().c_str());
         return 1;
     }
     const State<2> state = parse_state<2>(state_text(prepared.value()), "text").state;

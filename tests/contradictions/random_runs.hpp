@@ -212,7 +212,7 @@ inline bool play(RandomRun& run, const fs::path& folder, long stop_at, std::vect
         if (!outcome.completed) {
             const bool open =
                 outcome.failure->kind == FailureKind::tie || outcome.failure->kind == FailureKind::undecided;
-            directory.finish(open ? RunStatus::undecided : RunStatus::failed, outcome.failure->message);
+            directory.finish(open ? RunStatus::undecided : RunStatus::failed, outcome.failure->message());
             return true;
         }
     }

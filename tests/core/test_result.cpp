@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 using namespace isostat;
 
@@ -51,6 +52,24 @@ BOOST_AUTO_TEST_CASE(the_value_of_a_failure_throws_and_says_why_there_is_none) {
 BOOST_AUTO_TEST_CASE(the_failure_of_a_value_throws) {
     const auto four = half(8);
     BOOST_TEST(thrown([&] { (void)four.failure(); }) == "the failure of a result was asked for, which has a value");
+}
+
+BOOST_AUTO_TEST_CASE(words_are_put_together_when_they_are_asked_for) {
+    int asked = 0;
+    Words why([&asked] { return "after " + std::to_string(++asked); });
+    why.contacts = {{ContactKind::disk_disk, 1, 2}};
+    const Failure inner{FailureKind::overlap, why};
+    Words place("arc 3");
+    place.disks = {7};
+    const Failure outer = located(inner, place);
+    BOOST_TEST(asked == 0);
+    BOOST_TEST(outer.message() == "arc 3: after 1");
+    BOOST_TEST((outer.kind == FailureKind::overlap));
+    BOOST_TEST((outer.contacts() == std::vector<Contact>{{ContactKind::disk_disk, 1, 2}}));
+    BOOST_TEST(outer.disks() == std::vector<int>{7});
+    BOOST_TEST(Words().empty());
+    BOOST_TEST(Words("").empty());
+    BOOST_TEST(Words().text().empty());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

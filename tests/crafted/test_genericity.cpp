@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_CASE(a_perturbed_lattice_is_isostatic_on_some_of_its_contacts) {
             int within = 0;
             for (const GenericitySample& sample : answer.samples) {
                 BOOST_TEST_MESSAGE(name << " seed " << sample.seed << ": "
-                                        << (sample.failure ? sample.failure->message
+                                        << (sample.failure ? sample.failure->message()
                                                            : std::to_string(sample.carrying.size()) + " carrying"));
                 if (!sample.failure) {
                     BOOST_TEST(sample.contacts.size() == 20u);

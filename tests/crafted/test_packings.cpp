@@ -20,7 +20,7 @@ BOOST_AUTO_TEST_CASE(every_example_packing_has_the_answers_it_carries) {
             const PackingFile file = read_packing(path);
             BOOST_TEST(file.expected.size() >= 3u);
             const auto inspection = inspect(file.packing);
-            BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message));
+            BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message()));
             for (const std::string& message : check_expected(inspection.value(), file, path)) {
                 BOOST_ERROR(message);
             }

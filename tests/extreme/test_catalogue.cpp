@@ -121,7 +121,7 @@ constexpr int dense = 64; // disks: 400-bit elimination of larger ones takes sec
 
 std::string reason_of(const Failure& failure, const std::string& outcome) {
     const std::string kind = to_string(failure.kind);
-    return kind == outcome ? failure.message : kind + ": " + failure.message;
+    return kind == outcome ? failure.message() : kind + ": " + failure.message();
 }
 
 void check_proved(const State<2>& state, const Inspection<2>& inspection, Row& row) {

@@ -59,7 +59,7 @@ void follow(const std::string& family, const std::string& parameter, State<2> st
         if (!outcome.completed) {
             const FailureKind kind = outcome.failure->kind;
             row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";
-            row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message);
+            row.reason = fmt::format("{}: {}", to_string(kind), outcome.failure->message());
         }
         extreme::add(row);
         if (found > 0) {

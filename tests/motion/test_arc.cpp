@@ -74,7 +74,7 @@ BOOST_AUTO_TEST_CASE(an_arc_ends_where_the_closed_form_says) {
         rolling.stop(2.0);
         rolling.push(-1, 0.1);
         const auto arc = rolling.roll(fraction);
-        BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message));
+        BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
         BOOST_TEST((arc.value().closed == pair(2, 3)));
         BOOST_TEST(Rolling::angle(arc.value()) == 2.0, boost::test_tools::tolerance(1e-14));
         BOOST_TEST(std::abs(gap(arc.value().end, pair(0, 2))) < 1e-14);
@@ -90,8 +90,8 @@ BOOST_AUTO_TEST_CASE(a_grazing_dip_counts_and_a_near_miss_does_not) {
                 rolling.stop(2.0);
                 rolling.push(-1, 0.1);
                 const auto arc = rolling.roll(fraction);
-                BOOST_TEST_REQUIRE(arc.ok(),
-                                   "clearance " << sign * clearance << ": " << (arc.ok() ? "" : arc.failure().message));
+                BOOST_TEST_REQUIRE(arc.ok(), "clearance " << sign * clearance << ": "
+                                                          << (arc.ok() ? "" : arc.failure().message()));
                 BOOST_TEST((arc.value().closed == (sign > 0 ? pair(2, 4) : pair(2, 3))),
                            "clearance " << sign * clearance << " step " << fraction);
             }
@@ -110,7 +110,7 @@ BOOST_AUTO_TEST_CASE(an_exactly_grazing_gap_is_never_followed_by_a_guess_beyond_
         BOOST_TEST((arc.value().closed == pair(2, 3) || arc.value().closed == pair(2, 4)));
     } else {
         BOOST_TEST((arc.failure().kind == FailureKind::undecided || arc.failure().kind == FailureKind::not_converged),
-                   arc.failure().message);
+                   arc.failure().message());
     }
 }
 
@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(the_power_of_the_load_turns_before_the_next_contact) {
 BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_from_the_other_side) {
     Rolling rolling; // once around the fixed disk: every coordinate turns, the opening gap grows and falls
     const auto arc = rolling.roll(0.2);
-    BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message));
+    BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
     BOOST_TEST((arc.value().closed == pair(1, 2)));
     // Mirror image of the start in the line through the centres of the two fixed disks.
     const double line = std::atan2(rolling.state.packing.q[3], rolling.state.packing.q[2]);

@@ -30,7 +30,7 @@ struct Known {
     static Known of(Packing<2> packing, const std::vector<Contact>& contacts) {
         snap_to_grid(packing);
         auto proved = IsostaticStructure<2>::prove(packing, contacts);
-        BOOST_REQUIRE_MESSAGE(proved.ok(), (proved.ok() ? std::string() : proved.failure().message));
+        BOOST_REQUIRE_MESSAGE(proved.ok(), (proved.ok() ? std::string() : proved.failure().message()));
         return {std::move(packing), std::move(proved.value())};
     }
     [[nodiscard]] ArcVertex<2> vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }

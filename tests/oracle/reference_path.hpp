@@ -91,7 +91,7 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
     RunCounters counters;
     const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, records);
     if (outcome.failure) {
-        path.stopped = outcome.failure->message;
+        path.stopped = outcome.failure->message();
     }
     path.equilibria = records.equilibria;
     path.states = records.states;
@@ -133,7 +133,7 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         arc.end_contacts = contacts;
         auto structure = IsostaticStructure<2>::prove(here, arc.contacts);
         if (!structure.ok()) {
-            path.stopped = structure.failure().message;
+            path.stopped = structure.failure().message();
             break;
         }
         const Factorisation factorisation(structure.value());

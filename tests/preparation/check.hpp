@@ -112,7 +112,7 @@ inline void is_proved_vertex(const State<2>& state, double stress) {
     BOOST_TEST((certify_admissible(packing, rounding).verdict == Verdict::proved));
 
     const Result<Inspection<2>> inspection = inspect_vertex(state);
-    BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message));
+    BOOST_REQUIRE_MESSAGE(inspection.ok(), (inspection.ok() ? "" : inspection.failure().message()));
     BOOST_TEST(inspection.value().equilibrium, inspection.value().remark);
     if (packing.disk_count() <= 20) {
         forces_are_compressive(state);

@@ -196,7 +196,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_found_with_interior_points_is_proved_like_any_othe
         options.large_above = 0;
         PreparationReport<2> report;
         const auto found = find_vertex<2>(loose_lattice(6, seed), options, report);
-        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
         check::is_proved_vertex(found.value(), 1);
     }
 }
@@ -215,7 +215,7 @@ BOOST_AUTO_TEST_CASE(a_shaken_vertex_is_found_again) {
             options.seed = 2; // the same infinitesimal loads
             PreparationReport<2> report;
             const auto found = find_vertex<2>(shaken, options, report);
-            BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+            BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
             check::is_proved_vertex(found.value(), 1);
             const auto after = inspect_vertex(found.value());
             for (std::size_t l = 0; l < vertex.contacts.size(); ++l) {
@@ -236,7 +236,7 @@ BOOST_AUTO_TEST_CASE(a_loose_start_without_dynamics_ends_at_a_vertex_too) {
     for (unsigned long long seed = 1; seed <= 4; ++seed) {
         PreparationReport<2> report;
         const auto found = find_vertex<2>(loose_lattice(5, seed), PreparationOptions{}, report);
-        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+        BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
         check::is_proved_vertex(found.value(), 1);
     }
 }
@@ -249,7 +249,7 @@ BOOST_AUTO_TEST_CASE(large_overlaps_of_the_start_are_parted) {
     BOOST_REQUIRE(smallest_gap(start) < -0.3);
     PreparationReport<2> report;
     const auto found = find_vertex<2>(start, PreparationOptions{}, report);
-    BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message));
+    BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
     check::is_proved_vertex(found.value(), 1);
 }
 

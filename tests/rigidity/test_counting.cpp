@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(the_gate_is_closed_to_singular_and_to_rectangular_matrices)
     fewer.contacts.pop_back();
     const auto refused = IsostaticStructure<2>::prove(fewer.packing, fewer.contacts);
     BOOST_TEST_REQUIRE(!refused.ok());
-    BOOST_TEST(refused.failure().message.find("N_f = 6") != std::string::npos, refused.failure().message);
+    BOOST_TEST(refused.failure().message().find("N_f = 6") != std::string::npos, refused.failure().message());
     // Six contacts, but the right and the left wall would have to carry different forces: disk 0 touches neither disk 1
     // nor the top.
     State<2> special = one_disk(1, 1);

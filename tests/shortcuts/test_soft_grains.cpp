@@ -23,7 +23,7 @@ State<2> prepared(int disks, std::uint64_t seed) {
     options.seed = seed;
     PreparationReport<2> report;
     auto state = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message));
+    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message()));
     return state.value();
 }
 

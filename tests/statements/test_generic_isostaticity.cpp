@@ -15,7 +15,7 @@ namespace {
 
 std::vector<Contact> contacts_of(const ExactPacking& packing) {
     auto contacts = crafted::exact_contacts(packing);
-    BOOST_REQUIRE_MESSAGE(contacts.ok(), (contacts.ok() ? "" : contacts.failure().message));
+    BOOST_REQUIRE_MESSAGE(contacts.ok(), (contacts.ok() ? "" : contacts.failure().message()));
     return contacts.value();
 }
 

@@ -151,7 +151,7 @@ struct Recorder : isostat::RunObserver<2> {
 /// One segment from a state, with the records.
 struct Played {
     /// Why it did not complete, for messages.
-    [[nodiscard]] std::string why() const { return outcome.failure ? outcome.failure->message : "completed"; }
+    [[nodiscard]] std::string why() const { return outcome.failure ? outcome.failure->message() : "completed"; }
 
     State<2> state;
     Recorder records;

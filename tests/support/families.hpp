@@ -199,8 +199,8 @@ inline ExactPacking exact_box(const std::vector<std::array<Number, 3>>& disks, c
 inline Answer which_is_closed(const ExactPacking& there, const Contact& first, const Contact& second) {
     const auto contacts = exact_contacts(there);
     if (!contacts.ok()) {
-        const bool named = contacts.failure().message.find(to_string<2>(second)) != std::string::npos;
-        return {named ? -1 : 0, named ? Rung::exact : Rung::none, 0, infinity, contacts.failure().message};
+        const bool named = contacts.failure().message().find(to_string<2>(second)) != std::string::npos;
+        return {named ? -1 : 0, named ? Rung::exact : Rung::none, 0, infinity, contacts.failure().message()};
     }
     const auto has = [&](const Contact& c) {
         return std::find(contacts.value().begin(), contacts.value().end(), c) != contacts.value().end();
@@ -237,7 +237,7 @@ inline Answer exact_grazing(int sign, int decade) {
     const Number at = Number(3) + d;
     const auto contacts = exact_contacts(exact_box({{1, 1, 1}, {3, 1, 1}, {1, 3, 1}, {at, at, Number(1) - d}}, 4, 4));
     if (!contacts.ok()) {
-        return {-1, Rung::exact, 0, infinity, contacts.failure().message};
+        return {-1, Rung::exact, 0, infinity, contacts.failure().message()};
     }
     const bool touches =
         std::find(contacts.value().begin(), contacts.value().end(), pair(2, 3)) != contacts.value().end();
@@ -264,7 +264,7 @@ inline Answer exact_lattice(int sign, int decade) {
     packing.load->wall = {Number(1), Number(2)};
     const auto inspected = inspect(packing);
     if (!inspected.ok()) {
-        return {0, Rung::none, 0, 0, inspected.failure().message};
+        return {0, Rung::none, 0, 0, inspected.failure().message()};
     }
     const auto& seen = inspected.value();
     if (seen.hyperstaticity != 0 || seen.rank_exact != Verdict::proved) {

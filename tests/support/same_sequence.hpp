@@ -21,7 +21,7 @@ inline State<2> prepared(int disks, std::uint64_t seed) {
     options.seed = seed;
     PreparationReport<2> report;
     auto result = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message));
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
     return result.value();
 }
 

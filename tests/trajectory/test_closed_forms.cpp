@@ -154,9 +154,9 @@ BOOST_AUTO_TEST_CASE(three_disks_with_a_large_top_disk_end_on_the_bottom) {
 BOOST_AUTO_TEST_CASE(three_disks_with_a_small_top_disk_close_two_contacts_at_once_and_are_reported_as_tie) {
     const Played played = play(three_disks(1, 1, 0.5, 1, 1), +1, 1);
     BOOST_REQUIRE(played.outcome.failure);
-    BOOST_TEST((played.outcome.failure->kind == FailureKind::tie), played.outcome.failure->message);
+    BOOST_TEST((played.outcome.failure->kind == FailureKind::tie), played.outcome.failure->message());
     // One of the two base disks met the top wall, the other one is named.
-    const std::string& message = played.outcome.failure->message;
+    const std::string& message = played.outcome.failure->message();
     BOOST_TEST((message.find("0-top") != std::string::npos && message.find("1-top") != std::string::npos), message);
     BOOST_TEST(played.state.equilibrium == 0); // the last equilibrium is what remains
 }
@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(three_disks_with_a_small_top_disk_close_two_contacts_at_onc
 BOOST_AUTO_TEST_CASE(three_equal_disks_close_three_contacts_at_once_and_are_reported_as_tie) {
     const Played played = play(three_disks(1, 1, 1, 1, 1), +1, 1);
     BOOST_REQUIRE(played.outcome.failure);
-    BOOST_TEST((played.outcome.failure->kind == FailureKind::tie), played.outcome.failure->message);
+    BOOST_TEST((played.outcome.failure->kind == FailureKind::tie), played.outcome.failure->message());
 }
 
 BOOST_AUTO_TEST_CASE(three_disks_with_unequal_base_radii_have_no_tie) {

@@ -38,13 +38,13 @@ void compare(const std::string& disks, int up, bool down) {
         Segment segment;
         segment.equilibria = up;
         SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, records);
-        BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message : ""));
+        BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
         if (down) {
             segment = {};
             segment.direction = -1;
             segment.to_stress = 1.0;
             outcome = run_segment<2>(state, segment, 1, options, counters, records);
-            BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message : ""));
+            BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
         }
         std::vector<std::string> events;
         for (const ArcRecord<2>& arc : records.arcs) {

@@ -18,7 +18,7 @@ State<2> prepared(int disks, std::uint64_t seed) {
     options.seed = seed;
     PreparationReport<2> report;
     auto result = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message));
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
     return result.value();
 }
 
@@ -265,7 +265,7 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_within_the_first_step_is_found_whatever_
         down.equilibria = 20;
         options.max_strain = 1e9;
         const auto outcome = run_segment<2>(run.state, down, 1, options, run.counters, run.records);
-        BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message : std::string()));
+        BOOST_TEST(outcome.completed, (outcome.failure ? outcome.failure->message() : std::string()));
         std::vector<std::pair<Contact, Contact>> list;
         for (const auto& arc : run.records.arcs) {
             list.emplace_back(arc.opened, arc.closed);

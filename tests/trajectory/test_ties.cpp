@@ -129,7 +129,7 @@ Agreement agree(const State<2>& state, int direction, int equilibria, int seeds)
 }
 
 bool mentions(const Course& course, const std::string& word) {
-    return course.outcome.failure && course.outcome.failure->message.find(word) != std::string::npos;
+    return course.outcome.failure && course.outcome.failure->message().find(word) != std::string::npos;
 }
 
 bool settled_as(const Course& course, const std::string& what) {

@@ -193,7 +193,7 @@ BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
             PreparationReport<2> report;
             auto state = prepare<2>(options, report);
             if (!state.ok()) {
-                BOOST_TEST_MESSAGE("n = " << n << ", seed " << seed << ": " << state.failure().message);
+                BOOST_TEST_MESSAGE("n = " << n << ", seed " << seed << ": " << state.failure().message());
                 continue;
             }
             const Packing<2>& packing = state.value().packing;

@@ -15,6 +15,7 @@ template <int Dim> class RegularTriangulation; // private
 
 /// Every pair that can come into contact before the displacements exceed the list's reach.
 template <int Dim> struct CandidateList {
+    static_assert(has_dimension<Dim>());
     std::vector<Contact> contacts; ///< sorted; all with gap < reach, and perhaps a few beyond by rounding
     double reach = 0; ///< delta: complete as long as twice the largest displacement since `reference` < delta
     std::vector<double> reference; ///< q at which the list was made

@@ -2,27 +2,13 @@
 /// \file
 /// Contacts, gaps and their gradients.
 
+#include <isostat/core/contact.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <array>
-#include <compare>
-#include <cstdint>
 #include <string>
 
 namespace isostat {
-
-/// What touches what. `held` is not a contact: it is a coordinate kept at its value (design: power turns).
-enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };
-
-/// One contact, or one candidate.
-/// - disk_disk: disks i < j;  - lower_wall, upper_wall: disk i and the wall of axis j;  - held: coordinate index i, j =
-/// 0.
-struct Contact {
-    ContactKind kind = ContactKind::disk_disk;
-    int i = 0;
-    int j = 0;
-    friend constexpr auto operator<=>(const Contact&, const Contact&) = default;
-};
 
 /// "12-40", "12-left", "12-top", "held x of disk 3".
 template <int Dim> std::string to_string(const Contact& contact);
@@ -31,6 +17,7 @@ template <int Dim> std::string to_string(const Contact& contact);
 /// components are unit normals. Column l of H is minus this vector restricted to the degrees of freedom (H = G^T, and G
 /// gives approach velocities). For a held coordinate the gradient is +1 on that coordinate.
 template <int Dim> struct GapGradient {
+    static_assert(has_dimension<Dim>());
     int count = 0;
     std::array<int, 2 * Dim> coordinate{};
     std::array<double, 2 * Dim> value{};

@@ -19,6 +19,8 @@ namespace isostat {
 /// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
 /// value. In double r is exact where the coordinates are on the grid, and else correctly rounded.
 template <int Dim> class Separation {
+    static_assert(has_dimension<Dim>());
+
   public:
     /// `disks`: how many the packing has.
     Separation(const Contact& contact, int disks)

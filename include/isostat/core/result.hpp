@@ -2,6 +2,9 @@
 /// \file
 /// A value or the reason why there is none (std::expected is C++23).
 
+#include <isostat/core/contact.hpp>
+
+#include <functional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -26,11 +29,41 @@ enum class FailureKind {
 /// The word used in records and messages.
 const char* to_string(FailureKind kind);
 
-/// The reason, with the numbers that were measured and the contacts or disks concerned in `message`.
+/// Words for a reader, put together when they are asked for, and what they name.
+class Words {
+  public:
+    Words() = default;                                      ///< none
+    Words(std::string fixed);                               // NOLINT(google-explicit-constructor)
+    Words(const char* fixed) : Words(std::string(fixed)) {} // NOLINT(google-explicit-constructor)
+    /// `make` must own all that it needs.
+    explicit Words(std::function<std::string()> make) : make_(std::move(make)) {}
+
+    std::vector<Contact> contacts; ///< in the order in which they are named
+    std::vector<int> disks;        ///< disks that are named by themselves
+
+    [[nodiscard]] bool empty() const { return make_ == nullptr; }
+    [[nodiscard]] std::string text() const { return make_ ? make_() : std::string(); }
+    /// What these name is named too.
+    void name(const Words& others);
+    /// One after the other.
+    Words& operator+=(const Words& more);
+
+  private:
+    std::function<std::string()> make_;
+};
+
+/// The reason: words with the numbers that were measured, and the contacts or disks concerned.
 struct Failure {
     FailureKind kind;
-    std::string message;
+    Words words;
+
+    [[nodiscard]] std::string message() const { return words.text(); }
+    [[nodiscard]] const std::vector<Contact>& contacts() const { return words.contacts; }
+    [[nodiscard]] const std::vector<int>& disks() const { return words.disks; }
 };
+
+/// Where a failure happened: put before its message, so that the last line of a run says all.
+Failure located(const Failure& failure, Words where);
 
 /// A `value()` was asked of a failure, or a `failure()` of a value: throws std::logic_error, which says why there is no
 /// value.

@@ -30,6 +30,7 @@ struct ArcOptions {
 
 /// The load whose power is watched along the arc: -dW/ds = F_ext . dq/ds must stay positive.
 template <int Dim> struct PowerLoad {
+    static_assert(has_dimension<Dim>());
     const Load<Dim>* load = nullptr;
     bool infinitesimal = false;  ///< only rattlers move: the power is that of the infinitesimal loads
     bool starts_at_zero = false; ///< first arc at a limit load: the power grows from 0
@@ -40,6 +41,7 @@ enum class ArcEnd : unsigned char { contact, power_turn };
 
 /// End of an arc. \post kept gaps are 0 to rounding at `end`, which is on the dyadic grid.
 template <int Dim> struct Arc {
+    static_assert(has_dimension<Dim>());
     Packing<Dim> end;
     ArcEnd kind = ArcEnd::contact;
     Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)

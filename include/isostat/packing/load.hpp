@@ -29,6 +29,7 @@ struct WallForce {
 /// Load of a packing. Forces in the unit (stress unit x length unit); a compressive stress is positive and pushes the
 /// upper wall inwards. Coordinates are indexed as in `Packing::q`.
 template <int Dim> struct Load {
+    static_assert(has_dimension<Dim>());
     LoadKind kind = LoadKind::nominal;
     std::array<double, Dim> stress{};           ///< sigma_1, sigma_2 (axis 0, axis 1)
     std::array<double, Dim> reference_length{}; ///< L_a at which nominal stress and strain are defined

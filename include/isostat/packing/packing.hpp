@@ -1,7 +1,8 @@
 #pragma once
 /// \file
-/// The grains and where they are: disks (Dim = 2; spheres later) and flat walls normal to the axes.
+/// The grains and where they are: disks (Dim = 2; spheres are not written yet) and flat walls normal to the axes.
 
+#include <isostat/core/dimension.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/ids.hpp>
 
@@ -23,6 +24,7 @@ enum class WallKind : unsigned char { absent, fixed, movable };
 
 /// The walls: `lower[a]` at coordinate 0 of axis a (never movable), `upper[a]` at L_a.
 template <int Dim> struct Walls {
+    static_assert(has_dimension<Dim>());
     std::array<WallKind, Dim> lower{};
     std::array<WallKind, Dim> upper{};
     /// The paper's box: two fixed lower walls, two movable upper walls.
@@ -39,6 +41,7 @@ template <int Dim> struct Walls {
 /// an index into q. Invariant (checked by `validate`): every radius from `shortest_length` to `longest_length`, every
 /// coordinate finite, those of disks and walls at most `longest_length`.
 template <int Dim> struct Packing {
+    static_assert(has_dimension<Dim>());
     std::vector<double> radius; ///< n radii
     std::vector<double> q;      ///< Dim*(n+1) coordinates
     Walls<Dim> walls = Walls<Dim>::box();
@@ -65,6 +68,8 @@ template <int Dim> struct Packing {
 /// Which coordinates of a packing are degrees of freedom, numbered 0 .. N_f-1 in the order of q.
 /// In the paper's box without fixed disks the numbering is the identity and N_f = 2n + 2.
 template <int Dim> class DofMap {
+    static_assert(has_dimension<Dim>());
+
   public:
     explicit DofMap(const Packing<Dim>& packing);
     /// N_f.

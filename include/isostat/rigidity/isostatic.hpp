@@ -47,6 +47,8 @@ class OrderingOnDemand {
 
 /// Contact list and matrix after the exchange of one contact. Nothing is proved of it: it is what a proof is asked for.
 template <int Dim> class ExchangedContacts {
+    static_assert(has_dimension<Dim>());
+
   public:
     [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
     [[nodiscard]] const sparse::Matrix<double>& matrix() const { return *matrix_; }
@@ -98,6 +100,8 @@ inline constexpr std::size_t most_coordinates = 1'000'000;
 /// nothing of the true equilibrium near the stored configuration. The one way around the gate is named for what it is,
 /// `without_proof`, and the evidence says so for ever.
 template <int Dim> class IsostaticStructure {
+    static_assert(has_dimension<Dim>());
+
   public:
     /// By elimination mod p (statement T4): the full exact check.
     /// `not_isostatic` when N != N_f, when the pattern is structurally singular, or when the rank mod 2^61 - 1 is

@@ -20,6 +20,8 @@ namespace isostat {
 /// configuration and eps > 0 infinitesimal. sigma is the loaded stress (sigma_2). Forces: stress x length; positive in
 /// compression.
 template <int Dim> class Statics {
+    static_assert(has_dimension<Dim>());
+
   public:
     /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for
     /// (most vertices of a rearrangement need neither). The arguments must outlive the object. With `vertex` every

@@ -19,6 +19,7 @@ namespace isostat {
 
 /// One arc: a contact opened, the mechanism followed, a contact (or a power turn) met.
 template <int Dim> struct ArcRecord {
+    static_assert(has_dimension<Dim>());
     long step = 0;       ///< number of the arc in the run, from 1
     int equilibrium = 0; ///< number of the equilibrium that its rearrangement leads to, if it leads to one
     int arc = 0;         ///< number within the rearrangement, from 1
@@ -47,6 +48,7 @@ template <int Dim> struct ArcRecord {
 
 /// One equilibrium, checked.
 template <int Dim> struct EquilibriumRecord {
+    static_assert(has_dimension<Dim>());
     int number = 0;        ///< 0 = the start
     int segment = 0;       ///< segment of the programme
     double stress = 0;     ///< sigma_2 at which it was reached
@@ -179,6 +181,8 @@ struct Segment;
 /// Receives the records of a run as they are made. Each call returns before the run goes on: a killed run has written
 /// everything that it had found. After each equilibrium the run asks for an objection, and ends with it.
 template <int Dim> class RunObserver {
+    static_assert(has_dimension<Dim>());
+
   public:
     virtual ~RunObserver() = default;
     /// Before a segment of a programme (`play`): its number, its goal, equilibria that were made in it already (after a

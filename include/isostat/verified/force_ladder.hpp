@@ -57,6 +57,8 @@ struct LoadTerms {
 /// gained nothing; exact numbers need only the proof of rank that `structure` is. Solutions are computed when asked
 /// for. The arguments must outlive the object.
 template <int Dim> class ForceLadder {
+    static_assert(has_dimension<Dim>());
+
   public:
     ForceLadder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                 const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},

@@ -29,7 +29,7 @@ std::optional<State<2>> start(const std::string& source) {
     PreparationReport<2> report;
     auto prepared = prepare(options, report);
     if (!prepared.ok()) {
-        fmt::print(stderr, "{}: not prepared: {}\n", source, prepared.failure().message);
+        fmt::print(stderr, "{}: not prepared: {}\n", source, prepared.failure().message());
         return std::nullopt;
     }
     return prepared.value();
@@ -103,7 +103,7 @@ Stretch run_stretch(const State<2>& from, const StretchOptions& options) {
     out.klu = watcher.klu.median();
     out.umfpack = watcher.umfpack.median();
     if (outcome.failure && outcome.failure->kind != FailureKind::interrupted) {
-        out.failure = outcome.failure->message;
+        out.failure = outcome.failure->message();
     }
     return out;
 }

@@ -108,7 +108,7 @@ isostat::State<2> prepared(int disks, std::uint64_t seed) {
     isostat::PreparationReport<2> report;
     auto state = isostat::prepare<2>(options, report);
     if (!state.ok()) {
-        throw std::runtime_error(fmt::format("{} disks, seed {}: {}", disks, seed, state.failure().message));
+        throw std::runtime_error(fmt::format("{} disks, seed {}: {}", disks, seed, state.failure().message()));
     }
     return state.value();
 }

@@ -105,7 +105,7 @@ template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, 
 template <int Dim>
 CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
                                    const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
-    assert(fraction > 0 && fraction <= 0.82);
+    assert(fraction > 0 && fraction <= largest_candidate_fraction);
     count_work(Work::candidate_searches);
     CandidateList<Dim> list;
     list.reach = fraction * packing.min_radius();

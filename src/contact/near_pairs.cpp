@@ -133,7 +133,7 @@ template <int Dim>
 NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
                           const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
     using Triangulation = RegularTriangulation<Dim>;
-    assert(reach > 0 && reach <= 0.82 * (1 + 2 * u) * packing.min_radius());
+    assert(reach > 0 && reach <= largest_candidate_fraction * (1 + 2 * u) * packing.min_radius());
     if (packing.disk_count() > 0 && lengths_are_plain(packing) &&
         packing.max_radius() <= largest_ratio * packing.min_radius()) {
         auto triangulation =

@@ -39,8 +39,7 @@ std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Conta
 }
 
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    constexpr double fraction = 0.82; // the largest that the theorem allows
-    CandidateList<Dim> candidates = find_candidates(packing, fraction);
+    CandidateList<Dim> candidates = find_candidates(packing, largest_candidate_fraction);
     OtherPairs pairs{without(std::move(candidates.contacts), contacts, packing.disk_count()), candidates.reach};
     if (pairs.near.empty()) {
         pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};

@@ -169,9 +169,7 @@ exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofM
         const Separation<2> separation(contact, packing.disk_count());
         std::array<Number, 2> normal;
         if (contact.kind == ContactKind::disk_disk) {
-            const Number scale = (packing.radius[static_cast<std::size_t>(contact.i)] +
-                                  packing.radius[static_cast<std::size_t>(contact.j)])
-                                     .inverse();
+            const Number scale = touching_distance(packing.radius, contact).inverse();
             normal = separation.of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); },
                                          std::minus<>());
             for (Number& component : normal) {

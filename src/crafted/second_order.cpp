@@ -73,8 +73,7 @@ std::vector<std::vector<Number>> stress_form(const ExactPacking& packing, const 
             };
             relative[m] = separation.of_disks(velocity, std::minus<>());
         }
-        const Number weight = forces[l] / (packing.radius[static_cast<std::size_t>(contact.i)] +
-                                           packing.radius[static_cast<std::size_t>(contact.j)]);
+        const Number weight = forces[l] / touching_distance(packing.radius, contact);
         for (std::size_t a = 0; a < k; ++a) {
             for (std::size_t b = 0; b < k; ++b) {
                 const Number dot = relative[a][0] * relative[b][0] + relative[a][1] * relative[b][1];

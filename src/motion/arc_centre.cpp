@@ -11,7 +11,7 @@ std::unique_ptr<ArcCentre<Dim>> ArcCentre<Dim>::make(Packing<Dim> packing, std::
     }
     auto centre = std::make_unique<ArcCentre>();
     centre->packing_ = std::move(packing);
-    centre->own_ = std::make_unique<Own>(std::move(structure.value()));
+    centre->own_ = std::make_unique<FactorisedStructure<Dim>>(std::move(structure.value()));
     const InverseBound bound = bound_inverse(centre->own_->structure, centre->own_->factorisation, cache);
     if (bound.verdict != Verdict::proved) {
         return nullptr;

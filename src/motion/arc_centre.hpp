@@ -1,6 +1,8 @@
 #pragma once
 // Where a piece of an arc is developed: private to the room.
 
+#include "motion/factorised_structure.hpp"
+
 #include <isostat/motion/arc_certificate.hpp>
 
 #include <memory>
@@ -23,13 +25,8 @@ template <int Dim> class ArcCentre {
     [[nodiscard]] double sigma_min() const { return sigma_min_; }
 
   private:
-    struct Own {
-        explicit Own(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
-        IsostaticStructure<Dim> structure;
-        Factorisation factorisation;
-    };
     Packing<Dim> packing_;
-    std::unique_ptr<Own> own_;
+    std::unique_ptr<FactorisedStructure<Dim>> own_;
     const IsostaticStructure<Dim>* structure_ = nullptr;
     const Factorisation* factorisation_ = nullptr;
     double sigma_min_ = 0;

@@ -152,7 +152,7 @@ template <int Dim> std::optional<Failure> Chord<Dim>::renew(const Packing<Dim>& 
     if (!proved.ok()) {
         return proved.failure();
     }
-    own_ = std::make_unique<Own>(std::move(proved.value()));
+    own_ = std::make_unique<FactorisedStructure<Dim>>(std::move(proved.value()));
     ++factorisations_;
     make_mechanism();
     return std::nullopt;

@@ -2,6 +2,7 @@
 // The chord method on the kept gaps of an arc: private to the room.
 
 #include "motion/acceleration.hpp"
+#include "motion/factorised_structure.hpp"
 
 #include <isostat/core/result.hpp>
 #include <isostat/linear/factorisation.hpp>
@@ -59,11 +60,6 @@ template <int Dim> class Chord {
     [[nodiscard]] int passes() const { return passes_; }
 
   private:
-    struct Own {
-        explicit Own(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
-        IsostaticStructure<Dim> structure;
-        Factorisation factorisation;
-    };
     [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return own_ ? own_->structure : *structure_; }
     [[nodiscard]] const Factorisation& factorisation() const { return own_ ? own_->factorisation : *factorisation_; }
     void make_mechanism();
@@ -77,7 +73,7 @@ template <int Dim> class Chord {
 
     const IsostaticStructure<Dim>* structure_;
     const Factorisation* factorisation_;
-    std::unique_ptr<Own> own_; ///< in place of the two, once renewed
+    std::unique_ptr<FactorisedStructure<Dim>> own_; ///< in place of the two, once renewed
     std::size_t slot_;
     std::size_t size_;
     Vector approach_; ///< per contact; overwritten by a pass

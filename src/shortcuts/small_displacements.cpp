@@ -95,7 +95,7 @@ template <int Dim> struct Approximation {
 };
 
 template <int Dim> std::vector<Contact> pairs_near(const Packing<Dim>& packing, std::vector<Contact> contacts) {
-    std::vector<Contact> pairs = find_candidates(packing, 0.8).contacts;
+    std::vector<Contact> pairs = find_candidates(packing, candidate_fraction).contacts;
     pairs.insert(pairs.end(), contacts.begin(), contacts.end());
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

@@ -1,6 +1,7 @@
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
+#include <isostat/contact/separation.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -68,8 +69,7 @@ Enclosure curvature_of_potential(const Vertex<Dim>& vertex, const std::vector<do
             continue;
         }
         const double bend = gap_curvature(vertex.packing, contacts[l], v.data());
-        const double d = vertex.packing.radius[static_cast<std::size_t>(contacts[l].i)] +
-                         vertex.packing.radius[static_cast<std::size_t>(contacts[l].j)];
+        const double d = touching_distance(vertex.packing.radius, contacts[l]);
         // |u_t|^2 changes by at most (2 |u_t| + e) e: the velocities change, and the normal turns by 4 away / d at
         // most.
         const double e = 2 * velocity_error + 8 * largest * 4 * away / d;

@@ -1,7 +1,7 @@
 #pragma once
 // What the bounds of the true vertex share (statement V4): private to the room.
 
-#include <isostat/contact/contact.hpp>
+#include <isostat/contact/separation.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,15 +12,7 @@ namespace isostat {
 
 /// Sum of the radii of a contact: the length that scales the rounding of its gap.
 template <int Dim> double target(const Packing<Dim>& packing, const Contact& contact) {
-    switch (contact.kind) {
-    case ContactKind::disk_disk:
-        return packing.radius[static_cast<std::size_t>(contact.i)] +
-               packing.radius[static_cast<std::size_t>(contact.j)];
-    case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return packing.radius[static_cast<std::size_t>(contact.i)];
-    case ContactKind::held: return 0;
-    }
-    return 0;
+    return touching_distance(packing.radius, contact);
 }
 
 /// Products of such doubles, and what rounding leaves of them, keep all digits (V0).

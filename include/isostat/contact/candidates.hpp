@@ -13,6 +13,10 @@ namespace isostat {
 
 template <int Dim> class RegularTriangulation; // private
 
+/// Of the smallest radius: how far candidates are listed, and the most that statement T6 allows.
+inline constexpr double candidate_fraction = 0.8;
+inline constexpr double largest_candidate_fraction = 0.82;
+
 /// Every pair that can come into contact before the displacements exceed the list's reach.
 template <int Dim> struct CandidateList {
     static_assert(has_dimension<Dim>());

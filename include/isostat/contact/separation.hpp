@@ -104,17 +104,18 @@ template <int Dim, class Vector> inline auto wall_distance(const Vector& x, cons
                  [](const Number& a, const Number& b) -> Number { return a - b; });
 }
 
-/// Separation at which the grains touch: R_i + R_j, R_i at a wall, 0 for a held coordinate. `radius`: a number for each
-/// disk.
-inline double touching_distance(const std::vector<double>& radius, const Contact& contact) {
+/// Separation at which the grains touch: R_i + R_j, R_i at a wall, 0 for a held coordinate. `radius`: a number of any
+/// kind for each disk.
+template <class Radii> inline auto touching_distance(const Radii& radius, const Contact& contact) {
+    using Number = std::remove_cvref_t<decltype(radius[0])>;
     switch (contact.kind) {
     case ContactKind::disk_disk:
-        return radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)];
+        return Number(radius[static_cast<std::size_t>(contact.i)] + radius[static_cast<std::size_t>(contact.j)]);
     case ContactKind::lower_wall:
-    case ContactKind::upper_wall: return radius[static_cast<std::size_t>(contact.i)];
-    case ContactKind::held: return 0;
+    case ContactKind::upper_wall: return Number(radius[static_cast<std::size_t>(contact.i)]);
+    case ContactKind::held: break;
     }
-    return 0;
+    return Number(0);
 }
 
 } // namespace isostat

@@ -110,7 +110,4 @@ extern template class ArcDeparture<2>;
 extern template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
                                              ContactId, int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
 
-/// Fraction of the smallest radius within which candidates are listed (statement T6 allows 0.82).
-inline constexpr double candidate_fraction = 0.8;
-
 } // namespace isostat

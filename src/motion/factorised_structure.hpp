@@ -1,0 +1,20 @@
+#pragma once
+// A structure with its factors: private to the room.
+
+#include <isostat/linear/factorisation.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <utility>
+
+namespace isostat {
+
+/// Not movable: the factors refer to the structure.
+template <int Dim> struct FactorisedStructure {
+    explicit FactorisedStructure(IsostaticStructure<Dim> s) : structure(std::move(s)), factorisation(structure) {}
+    FactorisedStructure(const FactorisedStructure&) = delete;
+    FactorisedStructure& operator=(const FactorisedStructure&) = delete;
+    IsostaticStructure<Dim> structure;
+    Factorisation factorisation;
+};
+
+} // namespace isostat

@@ -1,5 +1,6 @@
 #include "contact/near_pairs.hpp"
 
+#include <isostat/contact/candidates.hpp>
 #include <isostat/contact/separation.hpp>
 
 #include <algorithm>

@@ -130,6 +130,58 @@ template <int Dim> int count_rattlers(const Packing<Dim>& packing, const Statics
     return static_cast<int>(std::count(carries.begin(), carries.end(), static_cast<unsigned char>(0)));
 }
 
+/// The true vertex near a packing, with as many digits as it takes.
+template <int Dim>
+Result<VertexEnclosure> enclosed(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                 const Factorisation& factorisation, const InverseBound& inverse) {
+    VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
+    if (vertex.verdict != Verdict::proved) { // large packings: gaps at the rounding of the coordinates are too many
+        vertex = enclose_vertex_double_double(packing, structure, factorisation, inverse);
+    }
+    if (vertex.verdict != Verdict::proved) {
+        return failed(FailureKind::undecided,
+                      "no true vertex was proved near the stored one: largest |gap| {:.3g}, smallest singular "
+                      "value at least {:.3g}",
+                      vertex.max_gap, inverse.sigma_min);
+    }
+    return vertex;
+}
+
+/// The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are within
+/// `max_gap` of touching, as computed; the grid steps cover the error of computing it.
+template <int Dim> std::optional<Failure> overlaps(const Packing<Dim>& packing, double max_gap) {
+    const Admissibility admissible = certify_admissible(packing, 2 * max_gap + 4 * grid_step(packing));
+    if (admissible.verdict == Verdict::proved) {
+        return std::nullopt;
+    }
+    const bool overlap = admissible.verdict == Verdict::refuted;
+    return failed(overlap ? FailureKind::overlap : FailureKind::undecided, "{}: {} has gap {:.3g}",
+                  overlap ? "overlap" : "non-overlap was not proved", named<Dim>(admissible.worst),
+                  admissible.worst_gap);
+}
+
+/// The smallest force that is not a structural zero; a failure when one is not compressive.
+template <int Dim> Result<double> smallest_force(Statics<Dim>& statics, double sigma) {
+    const std::vector<Contact>& contacts = statics.structure().contacts();
+    const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
+    if (!decision.ok()) {
+        return decision.failure();
+    }
+    if (decision.value().opening) {
+        const Opening& opening = *decision.value().opening;
+        return failed(FailureKind::not_converged, "{}force {:.3g} in contact {} is not compressive",
+                      opening.infinitesimal ? "infinitesimal " : "", opening.force.value,
+                      named<Dim>(contacts[opening.contact.index()]));
+    }
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (!statics.is_structural_zero(ContactId(l))) {
+            smallest = std::min(smallest, statics.force(ContactId(l), sigma).value);
+        }
+    }
+    return smallest;
+}
+
 } // namespace
 
 template <int Dim>
@@ -151,26 +203,14 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
         return Failure{FailureKind::undecided,
                        "no bound of the inverse of the contact matrix was proved in double precision"};
     }
-    VertexEnclosure vertex = enclose_vertex(packing, structure, inverse);
-    if (vertex.verdict != Verdict::proved) { // large packings: gaps at the rounding of the coordinates are too many
-        vertex = enclose_vertex_double_double(packing, structure, factorisation, inverse);
+    auto vertex = enclosed(packing, structure, factorisation, inverse);
+    if (!vertex.ok()) {
+        return vertex.failure();
     }
-    if (vertex.verdict != Verdict::proved) {
-        return failed(FailureKind::undecided,
-                      "no true vertex was proved near the stored one: largest |gap| {:.3g}, smallest singular "
-                      "value at least {:.3g}",
-                      vertex.max_gap, inverse.sigma_min);
+    if (auto failure = overlaps(packing, vertex.value().max_gap)) {
+        return *failure;
     }
-    // The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are
-    // within `max_gap` of touching, as computed; the grid steps cover the error of computing it.
-    const Admissibility admissible = certify_admissible(packing, 2 * vertex.max_gap + 4 * grid_step(packing));
-    if (admissible.verdict != Verdict::proved) {
-        const bool overlap = admissible.verdict == Verdict::refuted;
-        return failed(overlap ? FailureKind::overlap : FailureKind::undecided, "{}: {} has gap {:.3g}",
-                      overlap ? "overlap" : "non-overlap was not proved", named<Dim>(admissible.worst),
-                      admissible.worst_gap);
-    }
-    const Result<double> others = check_other_gaps(packing, structure, factorisation, inverse, vertex);
+    const Result<double> others = check_other_gaps(packing, structure, factorisation, inverse, vertex.value());
     if (!others.ok()) {
         return others.failure();
     }
@@ -179,26 +219,15 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
     }
     Statics<Dim> statics(packing, load, structure, factorisation, inverse);
     const double sigma = load.stress[static_cast<std::size_t>(load.loaded_axis)];
-    const Result<OpeningDecision> decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
-    if (!decision.ok()) {
-        return decision.failure();
-    }
-    if (decision.value().opening) {
-        const Opening& opening = *decision.value().opening;
-        return failed(FailureKind::not_converged, "{}force {:.3g} in contact {} is not compressive",
-                      opening.infinitesimal ? "infinitesimal " : "", opening.force.value,
-                      named<Dim>(contacts[opening.contact.index()]));
+    const Result<double> force = smallest_force(statics, sigma);
+    if (!force.ok()) {
+        return force.failure();
     }
     Polished<Dim> result;
-    result.max_gap = vertex.max_gap;
+    result.max_gap = vertex.value().max_gap;
     result.min_gap = others.value();
     result.sigma_min_bound = inverse.sigma_min;
-    result.min_force = std::numeric_limits<double>::infinity();
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (!statics.is_structural_zero(ContactId(l))) {
-            result.min_force = std::min(result.min_force, statics.force(ContactId(l), sigma).value);
-        }
-    }
+    result.min_force = force.value();
     result.rattlers = count_rattlers(packing, statics);
     result.state.packing = std::move(packing);
     result.state.load = std::move(load);

@@ -82,13 +82,7 @@ Packing<Dim> scatter(std::vector<double> radius, double fraction, double aspect,
     return packing;
 }
 
-} // namespace
-
-} // namespace preparation
-
-template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report) {
-    require_floating_point();
-    using namespace preparation;
+void check(const PreparationOptions& options) {
     require_positive("stress", options.stress);
     require_positive("aspect", options.aspect);
     require_positive("loose fraction", options.loose_fraction);
@@ -109,78 +103,110 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     if (!(options.jitter >= 0 && options.jitter < 1)) {
         bad(fmt::format("jitter is {}: expected a number from 0 to below 1", options.jitter));
     }
-    const std::vector<double> radius =
-        with_jitter(options.radii.empty() ? draw_radii(options.diameters, options.disks, options.seed) : options.radii,
-                    options.jitter, options.seed);
+}
 
+std::vector<double> radii_of(const PreparationOptions& options) {
+    return with_jitter(options.radii.empty() ? draw_radii(options.diameters, options.disks, options.seed)
+                                             : options.radii,
+                       options.jitter, options.seed);
+}
+
+/// Soft disks from a random start to a packing under a small pressure, stage by stage, each recorded.
+template <int Dim> class SoftStages {
+  public:
+    SoftStages(Packing<Dim>& packing, const PreparationOptions& options, PreparationReport<Dim>& report)
+        : packing_(packing), options_(options), report_(report), large_(packing.disk_count() > options.large_above) {}
+
+    /// False: interrupted in the last stage that the report has.
+    bool run() {
+        const double pressed = large_ ? first_pressure_large : first_pressure;
+        return soft("separation", [&](auto& d) { return d.separate(start_overlap, options_.max_steps); }) &&
+               soft("compression",
+                    [&](auto& d) { return d.compress(pressed, compression_rate, options_.max_steps); }) &&
+               relax(pressed) && newton();
+    }
+
+  private:
+    /// Pressure falls step by step.
+    bool relax(double pressed) {
+        for (double pressure = pressed;; pressure = std::max(pressure / pressure_divisor, options_.softness)) {
+            double relaxation = options_.relaxation;
+            long steps = options_.max_steps;
+            const bool last = pressure <= options_.softness;
+            if (large_) {
+                relaxation *= last ? relaxation_large : relaxation_between;
+                steps = std::min(steps, last ? steps_large : steps_between);
+            }
+            if (!soft(fmt::format("relaxation at {:.0e}", pressure),
+                      [&](auto& d) { return d.relax(pressure, relaxation, steps); })) {
+                return false;
+            }
+            if (last) {
+                return true;
+            }
+        }
+    }
+    /// For very large packings.
+    bool newton() {
+        if (!large_ || packing_.disk_count() <= options_.newton_above) {
+            return true;
+        }
+        SoftNewton<Dim> steps(packing_, options_.stop);
+        return std::all_of(newton_divisors.begin(), newton_divisors.end(), [&](double divisor) {
+            const double pressure = options_.softness / divisor;
+            return record(fmt::format("newton steps at {:.0e}", pressure), [&](const auto& progress) {
+                return steps.relax(pressure, newton_tolerance, most_newton_steps, progress);
+            });
+        });
+    }
+    template <class Work> bool soft(const std::string& name, const Work& work) {
+        return record(name, [&](const std::function<void(double)>& progress) {
+            SoftDynamics<Dim> dynamics(packing_, large_, options_.stop, progress);
+            return work(dynamics);
+        });
+    }
+    template <class Work> bool record(const std::string& name, const Work& work) {
+        const Stage stage(name, options_);
+        const SoftMeasures measures = work([&](double fraction) {
+            stage.progress(fraction, fmt::format("solid fraction {:.4f}", packing_.solid_fraction()));
+        });
+        PreparationStage entry = stage.finish();
+        entry.completed = measures.converged;
+        entry.iterations = measures.steps;
+        entry.solid_fraction = packing_.solid_fraction();
+        entry.contacts = measures.contacts;
+        entry.residual = measures.residual;
+        entry.pressure_error = measures.pressure_error;
+        entry.overlap = measures.overlap;
+        report_.stages.push_back(entry);
+        return !measures.interrupted;
+    }
+
+    Packing<Dim>& packing_;
+    const PreparationOptions& options_;
+    PreparationReport<Dim>& report_;
+    bool large_;
+};
+
+} // namespace
+
+} // namespace preparation
+
+template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report) {
+    require_floating_point();
+    using namespace preparation;
+    check(options);
+    const std::vector<double> radius = radii_of(options);
     const Scale scale(radius);
     std::vector<double> internal = radius;
     scale.to_internal(internal);
     Packing<Dim> packing = scatter<Dim>(std::move(internal), options.loose_fraction, options.aspect,
                                         derived_seed(options.seed, Stream::positions));
-    const bool large = packing.disk_count() > options.large_above;
-    const double pressed = large ? first_pressure_large : first_pressure;
-    const auto record = [&](const std::string& name, const auto& work) {
-        const Stage stage(name, options);
-        const SoftMeasures measures = work([&](double fraction) {
-            stage.progress(fraction, fmt::format("solid fraction {:.4f}", packing.solid_fraction()));
-        });
-        PreparationStage entry = stage.finish();
-        entry.completed = measures.converged;
-        entry.iterations = measures.steps;
-        entry.solid_fraction = packing.solid_fraction();
-        entry.contacts = measures.contacts;
-        entry.residual = measures.residual;
-        entry.pressure_error = measures.pressure_error;
-        entry.overlap = measures.overlap;
-        report.stages.push_back(entry);
-        return !measures.interrupted;
-    };
-    const auto run = [&](const std::string& name, const auto& work) {
-        return record(name, [&](const std::function<void(double)>& progress) {
-            SoftDynamics<Dim> dynamics(packing, large, options.stop, progress);
-            return work(dynamics);
-        });
-    };
-    const auto interrupted = [&] {
+    if (!SoftStages<Dim>(packing, options, report).run()) {
         report.last = scale.to_user(packing, radius);
         report.solid_fraction = packing.solid_fraction();
         const PreparationStage& stage = report.stages.back();
         return failed(FailureKind::interrupted, "stopped during {} after {} steps", stage.name, stage.iterations);
-    };
-
-    if (!run("separation", [&](auto& d) { return d.separate(start_overlap, options.max_steps); })) {
-        return interrupted();
-    }
-    if (!run("compression", [&](auto& d) { return d.compress(pressed, compression_rate, options.max_steps); })) {
-        return interrupted();
-    }
-    for (double pressure = pressed;; pressure = std::max(pressure / pressure_divisor, options.softness)) {
-        double relaxation = options.relaxation;
-        long steps = options.max_steps;
-        if (large) {
-            const bool last = pressure <= options.softness;
-            relaxation *= last ? relaxation_large : relaxation_between;
-            steps = std::min(steps, last ? steps_large : steps_between);
-        }
-        if (!run(fmt::format("relaxation at {:.0e}", pressure),
-                 [&](auto& d) { return d.relax(pressure, relaxation, steps); })) {
-            return interrupted();
-        }
-        if (pressure <= options.softness) {
-            break;
-        }
-    }
-    if (large && packing.disk_count() > options.newton_above) {
-        SoftNewton<Dim> newton(packing, options.stop);
-        for (const double divisor : newton_divisors) {
-            const double pressure = options.softness / divisor;
-            if (!record(fmt::format("newton steps at {:.0e}", pressure), [&](const auto& progress) {
-                    return newton.relax(pressure, newton_tolerance, most_newton_steps, progress);
-                })) {
-                return interrupted();
-            }
-        }
     }
     return find_vertex(scale.to_user(packing, radius), options, report);
 }

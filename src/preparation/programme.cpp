@@ -90,85 +90,41 @@ BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const R
     return programme;
 }
 
+template <int Dim> bool ContactProgramme<Dim>::stopped() const {
+    return stop_ != nullptr && stop_->load(std::memory_order_relaxed);
+}
+
 template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>& packing, double eps) {
     Rows rows;
     collect(packing, rows);
-    const int columns = static_cast<int>(packing.q.size());
-    const auto disks = static_cast<int>(infinitesimal_->size());
-    const auto count = static_cast<int>(rows.contact.size());
-
     const BoxedProgramme programme = boxed(packing, rows, eps);
-    const std::vector<double>& upper = programme.bound;
-    const std::vector<double>& cost = programme.cost;
-    const std::vector<double>& row_lower = programme.lower;
-    std::vector<double> lower(upper.size());
-    std::transform(upper.begin(), upper.end(), lower.begin(), [](double bound) { return -bound; });
-    const auto asked = [this] { return stop_ != nullptr && stop_->load(std::memory_order_relaxed); };
     ProgrammeStep step;
     if (inside_) {
         count_work(Work::linear_programmes);
         const bool solved = solve_inside(rows, programme, step);
-        if (asked()) {
+        if (stopped()) {
             step.outcome = ProgrammeStep::Outcome::interrupted;
         }
-        if (solved || asked()) {
+        if (solved || stopped()) {
             return step;
         }
     }
-    CoinPackedMatrix matrix(true, rows.row.data(), rows.column.data(), rows.value.data(),
-                            static_cast<CoinBigIndex>(rows.value.size()));
-    matrix.setDimensions(count, columns);
+    solve_simplex(packing, rows, programme, step);
+    return step;
+}
 
+template <int Dim>
+void ContactProgramme<Dim>::solve_simplex(const Packing<Dim>& packing, Rows& rows, const BoxedProgramme& programme,
+                                          ProgrammeStep& step) {
     ClpSimplex simplex;
-    simplex.setLogLevel(0);
-    simplex.loadProblem(matrix, lower.data(), upper.data(), cost.data(), row_lower.data(), nullptr);
-    simplex.setPrimalTolerance(tolerance);
-    simplex.setDualTolerance(tolerance);
-    simplex.setPerturbation(100); // none: the multipliers are the result
     StopHandler handler(stop_);
+    load(simplex, rows, programme);
     simplex.passInEventHandler(&handler);
-
     bool primal = false;
     if (first_) {
-        std::vector<int> degree(static_cast<std::size_t>(packing.disk_count()), 0);
-        int nonbasic = 0;
-        for (std::size_t k = 0; k < rows.gap.size(); ++k) {
-            if (rows.gap[k] <= 0) {
-                ++nonbasic;
-                ++degree[static_cast<std::size_t>(rows.contact[k].i)];
-                if (rows.contact[k].kind == ContactKind::disk_disk) {
-                    ++degree[static_cast<std::size_t>(rows.contact[k].j)];
-                }
-            }
-        }
-        const auto hanging =
-            static_cast<int>(std::count_if(degree.begin(), degree.end(), [](int d) { return d < Dim; }));
-        primal = nonbasic + Dim * hanging >= dense_enough * columns;
-        if (primal) {
-            for (int k = 0; k < count; ++k) {
-                simplex.setRowStatus(k, rows.gap[static_cast<std::size_t>(k)] <= 0 ? ClpSimplex::atLowerBound
-                                                                                   : ClpSimplex::basic);
-            }
-            for (int k = 0; k < columns; ++k) {
-                const bool loose = k < disks && degree[static_cast<std::size_t>(k / Dim)] < Dim;
-                simplex.setColumnStatus(k, loose ? ClpSimplex::superBasic : ClpSimplex::basic);
-            }
-            std::fill_n(simplex.primalColumnSolution(), columns, 0.0);
-            std::fill_n(simplex.primalRowSolution(), count, 0.0);
-        }
+        primal = start_from_overlaps(simplex, packing, rows);
     } else {
-        std::size_t old = 0;
-        for (int k = 0; k < count; ++k) {
-            const Contact& contact = rows.contact[static_cast<std::size_t>(k)];
-            while (old < row_contact_.size() && row_contact_[old] < contact) {
-                ++old;
-            }
-            const bool known = old < row_contact_.size() && row_contact_[old] == contact;
-            simplex.setRowStatus(k, known ? static_cast<ClpSimplex::Status>(row_status_[old]) : ClpSimplex::basic);
-        }
-        for (int k = 0; k < columns; ++k) {
-            simplex.setColumnStatus(k, static_cast<ClpSimplex::Status>(column_status_[static_cast<std::size_t>(k)]));
-        }
+        start_from_last(simplex, rows);
     }
     count_work(Work::linear_programmes);
     if (primal) {
@@ -176,53 +132,118 @@ template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>
     } else {
         simplex.dual();
     }
-    long pivots = simplex.numberIterations();
-    if (simplex.status() != 0 && !asked()) {
+    step.pivots = simplex.numberIterations();
+    if (simplex.status() != 0 && !stopped()) {
         // A bad basis can pass for an infeasible programme: believe only what the slack basis says.
         simplex.allSlackBasis(true);
         simplex.dual();
-        pivots += simplex.numberIterations();
+        step.pivots += simplex.numberIterations();
     }
-
     step.status = simplex.status();
-    step.pivots = pivots;
-    step.changes = pivots;
-    if (asked()) {
+    step.changes = step.pivots;
+    if (stopped()) {
         step.outcome = ProgrammeStep::Outcome::interrupted;
-        return step;
-    }
-    if (simplex.status() == 1) {
+    } else if (simplex.status() == 1) {
         step.outcome = ProgrammeStep::Outcome::infeasible;
-        return step;
+    } else if (simplex.status() == 0) {
+        step.outcome = ProgrammeStep::Outcome::optimal;
+        take_solution(simplex, rows, step);
     }
-    if (simplex.status() != 0) {
-        return step;
+}
+
+template <int Dim>
+void ContactProgramme<Dim>::load(ClpSimplex& simplex, const Rows& rows, const BoxedProgramme& programme) {
+    CoinPackedMatrix matrix(true, rows.row.data(), rows.column.data(), rows.value.data(),
+                            static_cast<CoinBigIndex>(rows.value.size()));
+    matrix.setDimensions(static_cast<int>(rows.contact.size()), static_cast<int>(programme.bound.size()));
+    std::vector<double> lower(programme.bound.size());
+    std::transform(programme.bound.begin(), programme.bound.end(), lower.begin(), [](double bound) { return -bound; });
+    simplex.setLogLevel(0);
+    simplex.loadProblem(matrix, lower.data(), programme.bound.data(), programme.cost.data(), programme.lower.data(),
+                        nullptr);
+    simplex.setPrimalTolerance(tolerance);
+    simplex.setDualTolerance(tolerance);
+    simplex.setPerturbation(100); // none: the multipliers are the result
+}
+
+/// Overlapping pairs as the first basis, if they are enough; the point 0 is feasible then.
+template <int Dim>
+bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packing<Dim>& packing, const Rows& rows) {
+    const auto columns = static_cast<int>(packing.q.size());
+    const auto count = static_cast<int>(rows.contact.size());
+    const int disks = Dim * packing.disk_count();
+    std::vector<int> degree(static_cast<std::size_t>(packing.disk_count()), 0);
+    int nonbasic = 0;
+    for (std::size_t k = 0; k < rows.gap.size(); ++k) {
+        if (rows.gap[k] <= 0) {
+            ++nonbasic;
+            ++degree[static_cast<std::size_t>(rows.contact[k].i)];
+            if (rows.contact[k].kind == ContactKind::disk_disk) {
+                ++degree[static_cast<std::size_t>(rows.contact[k].j)];
+            }
+        }
     }
-    step.outcome = ProgrammeStep::Outcome::optimal;
+    const auto hanging = static_cast<int>(std::count_if(degree.begin(), degree.end(), [](int d) { return d < Dim; }));
+    if (nonbasic + Dim * hanging < dense_enough * columns) {
+        return false;
+    }
+    for (int k = 0; k < count; ++k) {
+        simplex.setRowStatus(k,
+                             rows.gap[static_cast<std::size_t>(k)] <= 0 ? ClpSimplex::atLowerBound : ClpSimplex::basic);
+    }
+    for (int k = 0; k < columns; ++k) {
+        const bool loose = k < disks && degree[static_cast<std::size_t>(k / Dim)] < Dim;
+        simplex.setColumnStatus(k, loose ? ClpSimplex::superBasic : ClpSimplex::basic);
+    }
+    std::fill_n(simplex.primalColumnSolution(), columns, 0.0);
+    std::fill_n(simplex.primalRowSolution(), count, 0.0);
+    return true;
+}
+
+/// The basis of the programme before, row by contact.
+template <int Dim> void ContactProgramme<Dim>::start_from_last(ClpSimplex& simplex, const Rows& rows) const {
+    std::size_t old = 0;
+    for (std::size_t k = 0; k < rows.contact.size(); ++k) {
+        const Contact& contact = rows.contact[k];
+        while (old < row_contact_.size() && row_contact_[old] < contact) {
+            ++old;
+        }
+        const bool known = old < row_contact_.size() && row_contact_[old] == contact;
+        simplex.setRowStatus(static_cast<int>(k),
+                             known ? static_cast<ClpSimplex::Status>(row_status_[old]) : ClpSimplex::basic);
+    }
+    for (std::size_t k = 0; k < column_status_.size(); ++k) {
+        simplex.setColumnStatus(static_cast<int>(k), static_cast<ClpSimplex::Status>(column_status_[k]));
+    }
+}
+
+/// The optimum into the step, and its basis into this.
+template <int Dim>
+void ContactProgramme<Dim>::take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step) {
+    const std::size_t columns = static_cast<std::size_t>(simplex.numberColumns());
     const double* const solution = simplex.primalColumnSolution();
     step.displacement.assign(solution, solution + columns);
-    for (int k = 0; k < disks; ++k) {
-        step.largest = std::max(step.largest, std::abs(solution[k]));
+    for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {
+        step.largest = std::max(step.largest, std::abs(step.displacement[k]));
     }
     row_contact_ = std::move(rows.contact);
     row_status_.resize(row_contact_.size());
-    column_status_.resize(packing.q.size());
-    for (int k = 0; k < count; ++k) {
-        const ClpSimplex::Status status = simplex.getRowStatus(k);
-        row_status_[static_cast<std::size_t>(k)] = status;
+    column_status_.resize(columns);
+    for (std::size_t k = 0; k < row_contact_.size(); ++k) {
+        const ClpSimplex::Status status = simplex.getRowStatus(static_cast<int>(k));
+        row_status_[k] = status;
         if (status != ClpSimplex::basic) {
-            step.contacts.push_back(row_contact_[static_cast<std::size_t>(k)]);
+            step.contacts.push_back(row_contact_[k]);
         }
     }
-    for (int k = 0; k < columns; ++k) {
-        const ClpSimplex::Status status = simplex.getColumnStatus(k);
-        column_status_[static_cast<std::size_t>(k)] = status;
+    for (std::size_t k = 0; k < columns; ++k) {
+        const ClpSimplex::Status status = simplex.getColumnStatus(static_cast<int>(k));
+        column_status_[k] = status;
         step.bounds += status != ClpSimplex::basic ? 1 : 0;
     }
     first_ = false;
-    inside_ =
-        method_ == ProgrammeMethod::interior || (method_ == ProgrammeMethod::interior_first && pivots > few_changes);
-    return step;
+    inside_ = method_ == ProgrammeMethod::interior ||
+              (method_ == ProgrammeMethod::interior_first && step.pivots > few_changes);
 }
 
 template <int Dim>

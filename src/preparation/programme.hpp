@@ -12,6 +12,8 @@
 #include <functional>
 #include <vector>
 
+class ClpSimplex;
+
 namespace isostat::preparation {
 
 /// What solves the programmes.
@@ -82,7 +84,13 @@ template <int Dim> class ContactProgramme {
     void collect(const Packing<Dim>& packing, Rows& rows) const;
     [[nodiscard]] BoxedProgramme boxed(const Packing<Dim>& packing, const Rows& rows, double eps) const;
     [[nodiscard]] InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
+    [[nodiscard]] bool stopped() const;
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
+    void solve_simplex(const Packing<Dim>& packing, Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
+    static void load(ClpSimplex& simplex, const Rows& rows, const BoxedProgramme& programme);
+    static bool start_from_overlaps(ClpSimplex& simplex, const Packing<Dim>& packing, const Rows& rows);
+    void start_from_last(ClpSimplex& simplex, const Rows& rows) const;
+    void take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step);
 
     const std::vector<double>* infinitesimal_;
     double trust_;

@@ -2,6 +2,7 @@
 #include "checker/maker.hpp"
 #include "checker/oracle_claims.hpp"
 #include "checker/small_states.hpp"
+#include "support/scale.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
@@ -277,7 +278,7 @@ BOOST_AUTO_TEST_CASE(random_forgeries_prove_nothing_that_is_wrong) {
     const std::string digits = "0123456789.-e";
     int read = 0;
     int proved = 0;
-    for (int trial = 0; trial < 1500; ++trial) {
+    for (int trial = 0; trial < testing::scaled(1500); ++trial) {
         std::string spoilt = text;
         for (std::size_t k = 1 + below(2); k > 0; --k) {
             std::size_t at = below(spoilt.size());

@@ -6,6 +6,7 @@
 #include "checker/inverse.hpp"
 #include "checker/maker.hpp"
 #include "checker/small_states.hpp"
+#include "support/scale.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/state_file.hpp>
@@ -129,7 +130,7 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
     const std::vector<checker::Range> enclosed = forces_at(vertex);
     checker::Rational farthest = 0; // of the way to an end
     std::mt19937_64 random(1);
-    for (int sample = 0; sample < 200; ++sample) {
+    for (int sample = 0; sample < testing::scaled(200); ++sample) {
         checker::TrueVertex point = vertex;
         point.radius = 0;
         for (const int k : problem.coordinate_of) {
@@ -163,7 +164,7 @@ BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
     std::mt19937_64 random(2);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const checker::Velocities::Solution enclosed = checker::Velocities(wide).opening(l, 1);
-        for (int sample = 0; sample < 20; ++sample) {
+        for (int sample = 0; sample < testing::scaled(20); ++sample) {
             for (const int k : point.problem.coordinate_of) {
                 const auto c = static_cast<std::size_t>(k);
                 const int sign = random() % 2 == 0 ? 1 : -1;
@@ -203,7 +204,7 @@ BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap) {
     using namespace isostat::checker;
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> place(0.5, 40);
-    for (int trial = 0; trial < 2000; ++trial) {
+    for (int trial = 0; trial < testing::scaled(2000); ++trial) {
         State<2> state = small_states::with_a_rattler();
         const auto disks = static_cast<std::size_t>(2 + trial % 7);
         state.contacts.clear();

@@ -58,4 +58,42 @@ BOOST_AUTO_TEST_CASE(what_plan_leaves_out_is_not_done) {
     BOOST_TEST(seen_unused.size() == 4U);
 }
 
+// Exact numbers: work that is done twice, or not at all, shows. What cannot be told beforehand is how often a
+// checkpoint is written, which depends on seconds.
+BOOST_AUTO_TEST_CASE(two_small_scenes_cost_what_they_did_with_any_number_of_threads) {
+    const std::map<std::string, std::map<std::string, long>> known{{"loading",
+                                                                    {{"candidate_searches", 13},
+                                                                     {"overlap_proofs", 14},
+                                                                     {"rank_proofs", 13},
+                                                                     {"factorisations", 14},
+                                                                     {"inverse_bounds", 39},
+                                                                     {"states_written", 4}}},
+                                                                   {"certified-arcs",
+                                                                    {{"candidate_searches", 26},
+                                                                     {"overlap_proofs", 14},
+                                                                     {"rank_proofs", 69},
+                                                                     {"factorisations", 172},
+                                                                     {"inverse_bounds", 95},
+                                                                     {"states_written", 4}}}};
+    for (const auto& [scene, expected] : known) {
+        for (const char* threads : {"1", "3"}) {
+            const scratch::Folder folder;
+            expect(run({"run", std::string(ISOSTAT_EXAMPLES) + "/plans/" + scene + ".toml", "-o",
+                        (folder / "r").string(), "-q", "--threads", threads}),
+                   0);
+            const json work = json::parse(scratch::read(folder / "r/work.json"))["counts"];
+            BOOST_TEST_CONTEXT(scene << ", threads " << threads) {
+                for (const auto& [counter, count] : work.items()) {
+                    const auto found = expected.find(counter);
+                    if (counter == "checkpoints") {
+                        BOOST_TEST(count.get<long>() > 0);
+                    } else {
+                        BOOST_TEST(count.get<long>() == (found == expected.end() ? 0 : found->second), counter);
+                    }
+                }
+            }
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,6 +1,7 @@
 #include "../../src/contact/near_pairs.hpp"
 #include "oracle/gaps.hpp"
 #include "oracle/packings.hpp"
+#include "support/scale.hpp"
 
 #include <isostat/contact/candidates.hpp>
 
@@ -150,7 +151,7 @@ BOOST_AUTO_TEST_CASE(one_two_and_collinear_disks) {
 BOOST_AUTO_TEST_CASE(overlapping_packings_are_still_searched_completely) {
     // The theorem does not apply: hidden disks, disks inside others, coincident centres.
     Random random(7);
-    for (int repeat = 0; repeat < 40; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(40); ++repeat) {
         Packing<2> packing = empty_cluster();
         for (int i = 0; i < 40; ++i) {
             append(packing, random.real(0, 10), random.real(0, 10), random.real(0.2, 2));
@@ -324,7 +325,7 @@ BOOST_AUTO_TEST_CASE(verdicts_agree_with_rationals_on_tangent_clusters) {
     Random random(31415);
     int refuted = 0;
     int proved = 0;
-    for (int repeat = 0; repeat < 300; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(300); ++repeat) {
         const int n = 2 + random.integer(8);
         Packing<2> packing = grown_cluster(n, repeat % 2 == 0 ? 1 : 20, random, [] { return 0; });
         const double allowance = repeat % 3 == 0 ? 0 : std::ldexp(packing.min_radius(), -48 - random.integer(8));

@@ -1,4 +1,5 @@
 #include "oracle/packings.hpp"
+#include "support/scale.hpp"
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/contact/contact_set.hpp>
@@ -55,7 +56,7 @@ BOOST_AUTO_TEST_SUITE(gaps)
 
 BOOST_AUTO_TEST_CASE(gaps_and_normals_keep_their_error_bounds) {
     Random random(51);
-    for (int repeat = 0; repeat < 3000; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(3000); ++repeat) {
         const double scale = repeat % 3 == 0 ? 1 : repeat % 3 == 1 ? 1e-8 : 1e8;
         const Packing<2> packing = random_pair(random, scale);
         const Line d = line(packing);
@@ -76,7 +77,7 @@ BOOST_AUTO_TEST_CASE(gaps_and_normals_keep_their_error_bounds) {
 
 BOOST_AUTO_TEST_CASE(gradients_and_curvatures_are_derivatives_of_the_gap) {
     Random random(52);
-    for (int repeat = 0; repeat < 300; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(300); ++repeat) {
         const Packing<2> packing = random_pair(random, 1);
         std::vector<double> v(6);
         for (double& c : v) {
@@ -145,7 +146,7 @@ BOOST_AUTO_TEST_CASE(contacts_have_names) {
 
 BOOST_AUTO_TEST_CASE(contact_sets_contain_exactly_their_members) {
     Random random(53);
-    for (int repeat = 0; repeat < 100; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(100); ++repeat) {
         const int n = 1 + random.integer(8);
         std::vector<Contact> members;
         std::vector<Contact> others;

@@ -1,6 +1,7 @@
 // The triangulation that lists are read from: made by CGAL, and carried along with disks that move.
 #include "contact/near_pairs.hpp"
 #include "oracle/packings.hpp"
+#include "support/scale.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
@@ -115,7 +116,7 @@ BOOST_AUTO_TEST_CASE(a_triangulation_carried_to_where_disks_went_is_the_one_made
     int unchanged = 0;
     int flipped = 0;
     int lost = 0;
-    for (int repeat = 0; repeat < 150; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(150); ++repeat) {
         const double distance = std::ldexp(2.0, -(repeat % 10)); // 2 to 4e-3, the smallest radius being 1
         const Packing<2> from = grown_cluster(50,
                                               repeat % 3 == 0   ? 1
@@ -217,7 +218,7 @@ BOOST_AUTO_TEST_CASE(disks_that_come_to_overlap_are_swept) {
     const auto from = find_candidates(packing, 0.8).triangulation;
     BOOST_REQUIRE(from != nullptr);
     int swept = 0;
-    for (int repeat = 0; repeat < 30; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(30); ++repeat) {
         Packing<2> to = packing;
         const auto i = static_cast<std::size_t>(random.integer(to.disk_count()));
         const auto j = static_cast<std::size_t>(random.integer(to.disk_count()));

@@ -1,5 +1,7 @@
 // Forces, rattlers and degenerate scenes against answers found by other means.
 
+#include "support/scale.hpp"
+
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/isostatic.hpp>
@@ -51,7 +53,7 @@ BOOST_AUTO_TEST_CASE(forces_of_random_chains_agree_with_back_substitution) {
     // Disk k touches disk k - 1 and its own small fixed support: two contacts each, solved from the free end inwards.
     std::mt19937_64 random(41);
     int compared = 0, positive = 0, refused = 0;
-    for (int sample = 0; sample < 1500; ++sample) {
+    for (int sample = 0; sample < isostat::testing::scaled(1500); ++sample) {
         const int length = 1 + static_cast<int>(random() % 4);
         ExactPacking packing;
         packing.load = ExactLoad{};
@@ -142,7 +144,7 @@ BOOST_AUTO_TEST_CASE(a_disk_between_fixed_ones_is_held_exactly_when_its_normals_
     // Against a self-stress: 0 is interior to the hull exactly when h = N - 2 and some self-stress is > 0 everywhere.
     std::mt19937_64 random(43);
     int held = 0, rattlers = 0, bridges = 0;
-    for (int sample = 0; sample < 1500; ++sample) {
+    for (int sample = 0; sample < isostat::testing::scaled(1500); ++sample) {
         ExactPacking packing;
         add(packing, {Number(0), Number(0)}, Number(1), false);
         const auto count = 1 + random() % 4;

@@ -1,5 +1,7 @@
 // Exact order of gaps, and rattlers of all initial parts of a contact list at once, against slow twins.
 
+#include "support/scale.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
@@ -130,7 +132,7 @@ BOOST_AUTO_TEST_CASE(the_order_of_gaps_is_that_of_3000_bits) {
     std::mt19937_64 random(11);
     int equal = 0, close = 0;
     for (const double noise : {0.0, 1e-16, 1e-15, 1e-3}) {
-        for (int sample = 0; sample < 3; ++sample) {
+        for (int sample = 0; sample < testing::scaled(3); ++sample) {
             const Packing<2> packing = near_lattice(random, 4, noise, sample % 2 == 0);
             const GapOrder order(packing);
             const auto contacts = all_candidates(packing, 0.3);
@@ -174,7 +176,7 @@ BOOST_AUTO_TEST_CASE(gaps_of_far_and_tiny_disks_are_ordered) {
 BOOST_AUTO_TEST_CASE(peeling_agrees_with_excluding_contacts_for_every_initial_part) {
     std::mt19937_64 random(12);
     int bridges = 0, rattlers = 0, carrying_contacts = 0;
-    for (int sample = 0; sample < 60; ++sample) {
+    for (int sample = 0; sample < testing::scaled(60); ++sample) {
         Packing<2> packing = near_lattice(random, 4, sample % 3 == 0 ? 0.0 : 0.2, sample % 2 == 0);
         if (sample % 5 == 0) {
             packing.fixed.assign(packing.radius.size(), 0);

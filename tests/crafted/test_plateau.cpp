@@ -1,5 +1,7 @@
 // Counts of foreign packings against the gap threshold.
 
+#include "support/scale.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -152,7 +154,7 @@ BOOST_AUTO_TEST_CASE(a_prepared_packing_with_noise_is_isostatic_over_decades) {
 BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
     std::mt19937_64 random(21);
     int proved = 0, hyperstatic = 0, skipped = 0;
-    for (int sample = 0; sample < 40; ++sample) {
+    for (int sample = 0; sample < isostat::testing::scaled(40); ++sample) {
         // Disks on a lattice, moved and resized: some lists are isostatic, some have rattlers, some are special.
         Packing<2> packing;
         packing.walls = sample % 2 == 0 ? isostat::Walls<2>::box() : isostat::Walls<2>::none();

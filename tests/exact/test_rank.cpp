@@ -1,4 +1,5 @@
 #include "oracle/matrices.hpp"
+#include "support/scale.hpp"
 
 #include <isostat/exact/independent_columns.hpp>
 #include <isostat/exact/rank.hpp>
@@ -115,7 +116,7 @@ BOOST_AUTO_TEST_SUITE(rank)
 
 BOOST_AUTO_TEST_CASE(random_square_matrices_have_their_rational_rank) {
     Random random(11);
-    for (int repeat = 0; repeat < 2500; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(2500); ++repeat) {
         const int n = 1 + random.integer(11);
         const Dense<char> pattern = random_pattern(n, n, random.integer(3 * n), repeat % 5 != 0, random);
         check_square(fill(pattern, n, [&] { return repeat % 2 == 0 ? small_integer(random) : any_double(random); }));
@@ -124,7 +125,7 @@ BOOST_AUTO_TEST_CASE(random_square_matrices_have_their_rational_rank) {
 
 BOOST_AUTO_TEST_CASE(exact_combinations_of_columns_are_never_certified_full) {
     Random random(12);
-    for (int repeat = 0; repeat < 1500; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(1500); ++repeat) {
         const int n = 3 + random.integer(9);
         const Dense<char> pattern = random_pattern(n, n, 4 * n, true, random);
         Dense<double> dense = expand(fill(pattern, n, [&] { return small_integer(random); }));
@@ -147,7 +148,7 @@ BOOST_AUTO_TEST_CASE(exact_combinations_of_columns_are_never_certified_full) {
 
 BOOST_AUTO_TEST_CASE(rectangular_matrices_have_their_rational_rank) {
     Random random(13);
-    for (int repeat = 0; repeat < 1000; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(1000); ++repeat) {
         const int rows = 1 + random.integer(12);
         const int cols = 1 + random.integer(12);
         const Dense<char> pattern = random_pattern(rows, cols, random.integer(3 * rows), repeat % 2 == 0, random);
@@ -159,7 +160,7 @@ BOOST_AUTO_TEST_CASE(rectangular_matrices_have_their_rational_rank) {
 
 BOOST_AUTO_TEST_CASE(zeros_among_the_stored_values_move_the_pivots) {
     Random random(14);
-    for (int repeat = 0; repeat < 1500; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(1500); ++repeat) {
         const int n = 2 + random.integer(30);
         check_mod_p(residues(random_pattern(n, n, 4 * n, true, random), n, random, 10 * (repeat % 6)));
     }
@@ -198,7 +199,7 @@ BOOST_AUTO_TEST_CASE(large_blocks_with_fill_agree_with_dense_elimination) {
 
 BOOST_AUTO_TEST_CASE(dependent_columns_inside_a_large_block_are_counted) {
     Random random(16);
-    for (int repeat = 0; repeat < 30; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(30); ++repeat) {
         const int n = 60;
         auto dense = expand(residues(random_pattern(n, n, 5 * n, true, random), n, random, 0));
         const int dependent = 1 + random.integer(5);
@@ -270,7 +271,7 @@ BOOST_AUTO_TEST_CASE(nearly_singular_matrices_are_regular) {
 
 BOOST_AUTO_TEST_CASE(independent_columns_are_the_first_ones) {
     Random random(18);
-    for (int repeat = 0; repeat < 200; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(200); ++repeat) {
         const int rows = 1 + random.integer(12);
         const int cols = 1 + random.integer(16);
         const auto matrix =

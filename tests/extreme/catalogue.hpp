@@ -1,6 +1,7 @@
 #pragma once
 // The catalogue of extreme cases: what was asked, what came out, and by what it was checked. Every case adds a row; the
-// rows become a table at the end. A wrong answer is a failed test, an honest refusal is a row.
+// rows become a table at the end. A wrong answer is a failed test, and so is an outcome
+// that is not that of the committed table; an honest refusal is a row.
 
 #include "oracle/dense_forces.hpp"
 
@@ -18,7 +19,7 @@ using namespace isostat;
 struct Row {
     std::string family, parameter;
     int disks = 0;
-    std::string outcome; ///< proved, refuted, undecided, refused, stopped, approximate (soft grains)
+    std::string outcome; ///< proved, refuted, undecided, refused, approximate (soft grains)
     std::string reason;  ///< of everything but proved
     std::string rung;
     double bound = -1; ///< proved bound of the error of every force / largest force; negative: none was proved
@@ -26,6 +27,7 @@ struct Row {
     std::string checked; ///< by what
 };
 
+/// The outcome must be that of the committed table, extremes.csv.
 void add(Row row);
 
 class Clock {
@@ -45,9 +47,9 @@ class Clock {
 /// Adds the row. Returns the inspection, if there is one.
 std::optional<Inspection<2>> inspect(const std::string& family, const std::string& parameter, const State<2>& state);
 
-/// Prepares a packing, stopped after `limit` seconds, and inspects it as above when it has at most `dense` disks
+/// Prepares a packing and inspects it as above when it has at most `dense` disks
 /// (larger ones: no overlap by brute force or by the certificate, counting). A failure is a row with its reason.
 std::optional<State<2>> prepared(const std::string& family, const std::string& parameter,
-                                 const PreparationOptions& options, double limit = 5);
+                                 const PreparationOptions& options);
 
 } // namespace extreme

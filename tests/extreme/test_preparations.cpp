@@ -76,17 +76,17 @@ BOOST_AUTO_TEST_CASE(stiffness_of_the_dynamics_up_to_1e8) {
 
 BOOST_AUTO_TEST_CASE(numbers_of_disks) {
     for (const int count : {1, 2, 3, 4, 10, 100, 1000}) {
-        extreme::prepared("number of disks", fmt::format("{}", count), disks(count), 30);
+        extreme::prepared("number of disks", fmt::format("{}", count), disks(count));
     }
 }
 
 BOOST_AUTO_TEST_CASE(five_thousand_disks, *boost::unit_test::label("slow")) {
-    extreme::prepared("number of disks", "5000", disks(5000), 3000);
+    extreme::prepared("number of disks", "5000", disks(5000));
 }
 
 // Too long for every run of the tests: `tests/extreme/run --long`.
 BOOST_AUTO_TEST_CASE(twenty_thousand_disks, *boost::unit_test::disabled()) {
-    extreme::prepared("number of disks", "20000", disks(20000), 3000);
+    extreme::prepared("number of disks", "20000", disks(20000));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

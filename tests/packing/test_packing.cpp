@@ -1,4 +1,5 @@
 #include "oracle/packings.hpp"
+#include "support/scale.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/packing/packing.hpp>
@@ -47,7 +48,7 @@ BOOST_AUTO_TEST_SUITE(packing)
 
 BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_were) {
     Random random(41);
-    for (int repeat = 0; repeat < 400; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(400); ++repeat) {
         const double unit = std::ldexp(1 + random.real(), random.integer(1800) - 900);
         const double low = repeat % 3 == 0 ? -unit : repeat % 3 == 1 ? 0 : 0.9 * unit;
         const Packing<2> before = random_box(20, low, unit, random);
@@ -72,7 +73,7 @@ BOOST_AUTO_TEST_CASE(snapped_coordinates_are_on_the_grid_and_near_where_they_wer
 
 BOOST_AUTO_TEST_CASE(differences_of_snapped_coordinates_are_exact) {
     Random random(42);
-    for (int repeat = 0; repeat < 60; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(60); ++repeat) {
         Packing<2> packing = random_box(12, repeat % 2 == 0 ? -1 : 0, 1, random);
         if (repeat % 3 == 0) { // tiny coordinates have bits far below the step
             packing.q[0] *= 1e-12;
@@ -89,7 +90,7 @@ BOOST_AUTO_TEST_CASE(differences_of_snapped_coordinates_are_exact) {
 
 BOOST_AUTO_TEST_CASE(snapping_is_idempotent_and_commutes_with_powers_of_two) {
     Random random(43);
-    for (int repeat = 0; repeat < 200; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(200); ++repeat) {
         const Packing<2> before = random_box(10, repeat % 2 == 0 ? -1 : 0, 1, random);
         Packing<2> once = before;
         snap_to_grid(once);

@@ -1,4 +1,5 @@
 #include "oracle/matrices.hpp"
+#include "support/scale.hpp"
 
 #include <isostat/sparse/pattern.hpp>
 
@@ -35,7 +36,7 @@ BOOST_AUTO_TEST_SUITE(pattern)
 BOOST_AUTO_TEST_CASE(orderings_match_every_column_and_are_block_upper_triangular) {
     Random random(21);
     int many_blocks = 0;
-    for (int repeat = 0; repeat < 600; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(600); ++repeat) {
         const int n = 1 + random.integer(40);
         const auto matrix = random_values(random_pattern(n, n, random.integer(2 * n), true, random), random);
         const sparse::Ordering ordering(matrix);
@@ -72,7 +73,7 @@ BOOST_AUTO_TEST_CASE(orderings_match_every_column_and_are_block_upper_triangular
 BOOST_AUTO_TEST_CASE(structural_rank_is_the_size_of_a_maximum_matching) {
     Random random(22);
     int deficient = 0;
-    for (int repeat = 0; repeat < 1500; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(1500); ++repeat) {
         const int n = 1 + random.integer(15);
         const auto matrix = random_values(random_pattern(n, n, random.integer(4 * n), false, random), random);
         const sparse::Ordering ordering(matrix);
@@ -97,7 +98,7 @@ BOOST_AUTO_TEST_CASE(structural_rank_is_the_size_of_a_maximum_matching) {
 BOOST_AUTO_TEST_CASE(structural_nonzeros_are_those_of_random_values) {
     Random random(23);
     int zeros = 0;
-    for (int repeat = 0; repeat < 1500; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(1500); ++repeat) {
         const int n = 1 + random.integer(14);
         const auto matrix = random_values(random_pattern(n, n, random.integer(2 * n), true, random), random);
         const sparse::Ordering ordering(matrix);
@@ -152,7 +153,7 @@ BOOST_AUTO_TEST_CASE(a_repaired_matching_is_perfect_exactly_when_there_is_one) {
     Random random(22);
     int repaired = 0;
     int none = 0;
-    for (int repeat = 0; repeat < 800; ++repeat) {
+    for (int repeat = 0; repeat < testing::scaled(800); ++repeat) {
         const int n = 1 + random.integer(30);
         Dense<char> pattern = random_pattern(n, n, random.integer(n), true, random);
         const auto before = random_values(pattern, random);

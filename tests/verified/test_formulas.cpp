@@ -2,6 +2,7 @@
 // hardly above, also where the error itself stays far below. And bounds where the error comes near them.
 #include "oracle/random.hpp"
 #include "support/crafted.hpp"
+#include "support/scale.hpp"
 #include "verified/norm.hpp"
 #include "verified/singular_value.hpp"
 #include "verified/vertex_bounds.hpp"
@@ -179,7 +180,7 @@ BOOST_AUTO_TEST_CASE(rounding_of_entries_is_that_of_V1) {
 
 BOOST_AUTO_TEST_CASE(what_the_entries_lack_is_taken_off_the_singular_value) {
     oracle::Random random(4);
-    for (int trial = 0; trial < 1000; ++trial) {
+    for (int trial = 0; trial < testing::scaled(1000); ++trial) {
         const double square = std::pow(10.0, random.real(-30, 0));
         const double entry_error = std::sqrt(square) * random.real(0, 1.5);
         const Real exact = sqrt(Real(square)) - Real(entry_error);
@@ -366,7 +367,7 @@ BOOST_AUTO_TEST_CASE(motions_are_known_to_the_rounding_of_their_residual) {
     oracle::Random random(8);
     VertexEnclosure here; // the stored place is the true one
     here.verdict = Verdict::proved;
-    for (int trial = 0; trial < 300; ++trial) {
+    for (int trial = 0; trial < testing::scaled(300); ++trial) {
         const State<2> state = between_two(std::pow(10.0, random.real(-4, -1)), random.real(0, std::numbers::pi));
         const Known known(state);
         const std::vector<double> rho(3, 0.0);
@@ -388,7 +389,7 @@ BOOST_AUTO_TEST_CASE(rates_of_gaps_turn_with_the_line_of_a_small_pair) {
     near.verdict = Verdict::proved;
     near.radius = away;
     double largest = 0;
-    for (int trial = 0; trial < 300; ++trial) {
+    for (int trial = 0; trial < testing::scaled(300); ++trial) {
         State<2> state = between_two(random.real(0.8, 2), random.real(0, std::numbers::pi), 1e-3);
         const double place = random.real(0, 2 * std::numbers::pi);
         auto& q = state.packing.q;

@@ -3,6 +3,7 @@
 
 #include "contact/words.hpp"
 #include "statics/proved_minimum.hpp"
+#include "statics/rule_key.hpp"
 #include "statics/straight_strut.hpp"
 
 #include <isostat/statics/decisions.hpp>
@@ -29,9 +30,6 @@ template <int Dim> Named<Dim> name(const Statics<Dim>& statics, ContactId l) {
 template <int Dim> bool is_held(const Statics<Dim>& statics, ContactId l) {
     return statics.structure().contacts()[l.index()].kind == ContactKind::held;
 }
-
-/// a / b, for b > 0; a radius of infinity when that is not proved.
-Enclosure quotient(const Enclosure& a, const Enclosure& b);
 
 /// The quantity of one contact as the ladder evaluates it.
 using Quantity = std::function<ForceExpression(ContactId)>;

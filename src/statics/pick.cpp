@@ -48,12 +48,7 @@ template <int Dim> class OpeningContest final : public Contest {
         : statics_(statics), contenders_(contenders), choice_(choice),
           least_(choice.rule == OpeningRule::least_negative) {
         for (Contender& c : contenders_) {
-            c.key = c.force;
-            if (least_) {
-                c.key.value = -c.key.value;
-            } else if (choice_.rule == OpeningRule::steepest) {
-                c.key = quotient(c.force, mechanism_norm(statics_, c.contact));
-            }
+            c.key = rule_key(choice_.rule, c.force, [&] { return mechanism_norm(statics_, c.contact); });
         }
     }
     [[nodiscard]] std::size_t size() const override { return contenders_.size(); }
@@ -146,14 +141,14 @@ template <int Dim> class OpeningContest final : public Contest {
     std::vector<StrutMate> mates_; ///< of the one that stands
 };
 
-/// Ordered by identity, so that the choice does not depend on the order of the contact list.
+/// Ordered by name, so that the choice does not depend on the order of the contact list.
 template <int Dim>
-Opening pick_at_random(const Statics<Dim>& statics, std::vector<Contender>& contenders, std::uint64_t random_bits) {
+Opening pick_by_name(const Statics<Dim>& statics, std::vector<Contender>& contenders, std::size_t place) {
     std::sort(contenders.begin(), contenders.end(), [&](const Contender& a, const Contender& b) {
         const auto& contacts = statics.structure().contacts();
         return contacts[a.contact.index()] < contacts[b.contact.index()];
     });
-    const Contender& chosen = contenders[random_bits % contenders.size()];
+    const Contender& chosen = contenders[place];
     return {chosen.contact, false, chosen.force, +1, chosen.margin, statics.rung()};
 }
 
@@ -170,8 +165,8 @@ Enclosure quotient(const Enclosure& a, const Enclosure& b) {
 
 template <int Dim>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice) {
-    if (choice.rule == OpeningRule::random) {
-        return pick_at_random(statics, contenders, choice.random_bits);
+    if (const auto place = rule_place(choice.rule, contenders.size(), choice.random_bits)) {
+        return pick_by_name(statics, contenders, *place);
     }
     OpeningContest<Dim> contest(statics, contenders, choice);
     const auto guess =

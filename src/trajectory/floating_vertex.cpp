@@ -1,5 +1,7 @@
 #include "trajectory/floating_vertex.hpp"
 
+#include "statics/rule_key.hpp"
+
 #include <isostat/rigidity/contact_pattern.hpp>
 
 #include <algorithm>
@@ -242,18 +244,15 @@ template <int Dim>
 std::size_t FloatingVertex<Dim>::pick(std::vector<std::size_t> negative, const std::vector<double>& f,
                                       std::uint64_t random_bits) const {
     const auto& contacts = structure.contacts();
-    if (context_.rule == OpeningRule::random) {
+    if (const auto place = rule_place(context_.rule, negative.size(), random_bits)) {
         std::sort(negative.begin(), negative.end(),
                   [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
-        return negative[random_bits % negative.size()];
+        return negative[*place];
     }
     std::size_t best = negative.front();
     double smallest = std::numeric_limits<double>::infinity();
     for (const std::size_t l : negative) {
-        const double size = signed_size(contacts[l], f[l]);
-        const double key = context_.rule == OpeningRule::least_negative ? -size
-                           : context_.rule == OpeningRule::steepest     ? size / mechanism_norm(l)
-                                                                        : size;
+        const double key = rule_key(context_.rule, signed_size(contacts[l], f[l]), [&] { return mechanism_norm(l); });
         if (key < smallest) {
             smallest = key;
             best = l;

@@ -525,13 +525,17 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             continue;
         }
         const bool most = rule == "most_negative";
+        const bool by_name = rule == "least_index";
         bool at_first_order = false; // where a run has more digits to tell the forces apart
         int sign = compare_keys(place, decision.kind != "rattler", other, opened, at_first_order);
-        if (decision.kind != "rattler" && same_at_turn(place, opened, other)) {
+        if (by_name) {
+            sign = place.state->contacts[other] < place.state->contacts[opened] ? -1 : 1;
+            at_first_order = false;
+        } else if (decision.kind != "rattler" && same_at_turn(place, opened, other)) {
             // Finite forces tell only where the turn was rounded to.
             sign = strut_order(place, other, opened).value_or(0);
         }
-        const bool comes_first = most ? sign < 0 : rule == "least_negative" && sign > 0;
+        const bool comes_first = most || by_name ? sign < 0 : rule == "least_negative" && sign > 0;
         if (comes_first && holds_may_explain(place, other, opened)) {
             return Objection{false,
                              fmt::format("{} opens with {}, but the rule '{}' takes {} with {}, unless a coordinate "
@@ -553,7 +557,7 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             compare("force", {event.force, event.force_bound}, chosen, force_tolerance * size, event, 100 * size)) {
         return wrong;
     }
-    if (rule != "most_negative" && rule != "least_negative") {
+    if (rule != "most_negative" && rule != "least_negative" && rule != "least_index") {
         return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule)};
     }
     return {};

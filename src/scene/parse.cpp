@@ -165,7 +165,7 @@ ProgrammeStep read_step(Section& section) {
 void read_run(Section& section, Scene& scene) {
     RunOptions& run = scene.run;
     run.rule =
-        static_cast<OpeningRule>(section.word("rule", 0, {"most_negative", "steepest", "random", "least_negative"}));
+        static_cast<OpeningRule>(section.word("rule", 0, {opening_rule_words.begin(), opening_rule_words.end()}));
     run.rule_seed =
         static_cast<std::uint64_t>(section.integer("rule_seed", static_cast<long>(run.rule_seed), 0, largest_seed));
     run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);

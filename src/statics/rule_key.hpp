@@ -32,7 +32,9 @@ template <class Number, class Norm> Number rule_key(OpeningRule rule, const Numb
 
 /// Of rules that compare no numbers: the place, among `count` contacts sorted by their names, of the one that opens.
 inline std::optional<std::size_t> rule_place(OpeningRule rule, std::size_t count, std::uint64_t random_bits) {
-    return rule == OpeningRule::random ? std::optional<std::size_t>(random_bits % count) : std::nullopt;
+    return rule == OpeningRule::random        ? std::optional<std::size_t>(random_bits % count)
+           : rule == OpeningRule::least_index ? std::optional<std::size_t>(0)
+                                              : std::nullopt;
 }
 
 } // namespace isostat

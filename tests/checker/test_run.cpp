@@ -26,9 +26,7 @@ void play(const State<2>& start, const std::vector<Segment>& segments, const std
           OpeningRule rule = OpeningRule::most_negative) {
     RunHeader header;
     header.program = "test";
-    const std::string word = rule == OpeningRule::most_negative ? "most_negative"
-                             : rule == OpeningRule::steepest    ? "steepest"
-                                                                : "least_negative";
+    const std::string word = opening_rule_words[static_cast<std::size_t>(rule)];
     header.settings = R"({"run":{"rule":")" + word + R"("}})";
     header.states_every = 1;
     RunCounters counters;
@@ -208,6 +206,25 @@ BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete,
     BOOST_TEST((run.verdict == Verdict::proved));
     BOOST_TEST(run.turns_checked > 20);
     same_with_threads(folder / "run", run); // coordinates let go in either direction too
+}
+
+BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits_it) {
+    const scratch::Folder folder;
+    Segment up;
+    up.equilibria = 3;
+    play(crafted::prepared(36, 3), {up}, folder / "run", OpeningRule::least_index);
+    const RunVerification run = verify_run(folder / "run");
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    const std::string header = scratch::read(folder / "run/run.json");
+    scratch::write(folder / "run/run.json", scratch::replaced(header, "least_index", "most_negative"));
+    const RunVerification other = verify_run(folder / "run");
+    BOOST_TEST((other.wrong.find("but the rule 'most_negative' takes") != std::string::npos), other.wrong);
+    play(crafted::prepared(36, 3), {up}, folder / "most");
+    const std::string paper = scratch::read(folder / "most/run.json");
+    scratch::write(folder / "most/run.json", scratch::replaced(paper, "most_negative", "least_index"));
+    const RunVerification most = verify_run(folder / "most");
+    BOOST_TEST((most.wrong.find("but the rule 'least_index' takes") != std::string::npos), most.wrong);
 }
 
 // Under true stresses the power can turn and come back within one step of an arc (0, 1.2e-3, 7e-5, -1.3e-3, 2e-4, 9e-3

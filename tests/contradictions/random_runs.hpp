@@ -29,9 +29,8 @@ struct RandomRun {
     long killed_at = 0; ///< during this arc, and resumed; 0: never
 
     [[nodiscard]] std::string text() const {
-        static constexpr std::array<const char*, 4> rules{"most_negative", "steepest", "random", "least_negative"};
         return fmt::format("{} disks, rule {}, level {}, ties {}, {} segments, states_every {}, killed at {}",
-                           start.packing.disk_count(), rules[static_cast<std::size_t>(options.rule)],
+                           start.packing.disk_count(), opening_rule_words[static_cast<std::size_t>(options.rule)],
                            to_string(options.certify), options.ties == TiePolicy::stop ? "stop" : "perturb",
                            segments.size(), states_every, killed_at);
     }
@@ -123,11 +122,10 @@ class Keeper final : public RunObserver<2> {
 };
 
 inline RunHeader header_of(const RandomRun& run) {
-    static constexpr std::array<const char*, 4> rules{"most_negative", "steepest", "random", "least_negative"};
     RunHeader header;
     header.program = "test";
     header.settings = fmt::format(R"({{"run":{{"rule":"{}","certify":"{}"}}}})",
-                                  rules[static_cast<std::size_t>(run.options.rule)], to_string(run.options.certify));
+                                  opening_rule_words[static_cast<std::size_t>(run.options.rule)], to_string(run.options.certify));
     header.states_every = run.states_every;
     header.witnesses = run.options.certify == CertifyLevel::arcs;
     header.checkpoint_seconds = 0;

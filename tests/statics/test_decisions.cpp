@@ -148,6 +148,9 @@ BOOST_AUTO_TEST_CASE(two_equal_tractions_are_a_tie_and_unequal_ones_are_ordered)
     BOOST_TEST((tied == std::vector<Contact>{{ContactKind::disk_disk, 0, 2}, {ContactKind::disk_disk, 1, 2}}));
     BOOST_TEST((equal.statics.rung() == Rung::exact)); // a tie is proved, not given up
     BOOST_TEST((tie.failure().message().find("exactly equal") != std::string::npos), tie.failure().message());
+    const auto by_name = decide_opening(equal.statics, equal.sigma(), OpeningRule::least_index, ContactId(), 0);
+    BOOST_TEST_REQUIRE(by_name.ok()); // it compares no forces
+    BOOST_TEST((equal.state.contacts[by_name.value().opening->contact.index()] == pair(0, 2)));
     for (const double delta : {1e-1, 1e-3, 1e-6, 1e-9, 1e-12}) {
         Loaded larger_right(three_disks(1, 1 + delta, 0.1, 1, -1));
         Loaded larger_left(three_disks(1 + delta, 1, 0.1, 1, -1));
@@ -206,6 +209,11 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
         drawn.insert(l.value());
     }
     BOOST_TEST(drawn.size() == negative.size());
+    const auto& contacts = loaded.state.contacts;
+    const ContactId first =
+        *std::min_element(negative.begin(), negative.end(),
+                          [&](ContactId a, ContactId b) { return contacts[a.index()] < contacts[b.index()]; });
+    BOOST_TEST((choose(OpeningRule::least_index, 7) == first));
 }
 
 BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undecided) {

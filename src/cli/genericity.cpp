@@ -201,6 +201,62 @@ void print_row(const Genericity& result, double size) {
                force[1], gap[0], gap[1], sigma[0], used);
 }
 
+void print_head(const GenericityArguments& a, const Original& original) {
+    const char* bound = original.exact == Verdict::proved ? "=" : "<=";
+    fmt::print("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
+               original.contacts.size(), original.title, bound, original.hyperstaticity, bound, original.mechanisms);
+    fmt::print("radius times 1 + size u, u uniform in [-1, 1){}; {} samples, seeds {} to {}\n\n",
+               a.keep_equal ? ", the same u for equal radii" : "", a.samples, a.seed,
+               a.seed + static_cast<std::uint64_t>(a.samples) - 1);
+    fmt::print("{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
+               "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
+               "min gap", "median", "min sigma", "arithmetic");
+}
+
+/// The most frequent contact lists of one size.
+void print_lists(const GenericityArguments& a, const Original& original, const Genericity& result, double size) {
+    for (std::size_t k = 0; k < result.lists.size() && k < static_cast<std::size_t>(a.lists) &&
+                            result.lists[k].samples > std::max(1, a.samples / 20);
+         ++k) {
+        fmt::print("size {:.0e}: {} samples {}\n", size, result.lists[k].samples,
+                   list_text(result.lists[k].contacts, original.contacts));
+    }
+}
+
+/// Why samples of one size failed: how many of each kind, and the first of them.
+void print_failures(const Genericity& result, double size) {
+    std::map<std::string, std::pair<int, std::string>> reasons;
+    for (const GenericitySample& sample : result.samples) {
+        if (sample.failure) {
+            auto& reason = reasons[to_string(sample.failure->kind)];
+            if (reason.first++ == 0) {
+                reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message());
+            }
+        }
+    }
+    for (const auto& [kind, reason] : reasons) {
+        fmt::print("size {:.0e}: {} times {}, first {}\n", size, reason.first, kind, reason.second);
+    }
+}
+
+Json report(const GenericityArguments& a, const Original& original, Json results) {
+    Json out;
+    out["format"] = "isostat-genericity 1";
+    out["program"] = program_name();
+    out["command"] = a.common.command;
+    out["file"] = a.file;
+    out["seed"] = a.seed;
+    out["samples"] = a.samples;
+    out["stress"] = number(a.stress);
+    out["keep_equal"] = a.keep_equal;
+    out["original"] = {{"N", original.contacts.size()},
+                       {"h", original.hyperstaticity},
+                       {"k", original.mechanisms},
+                       {"rank_exact", to_string(original.exact)}};
+    out["sizes"] = std::move(results);
+    return out;
+}
+
 } // namespace
 
 int genericity(const GenericityArguments& a) {
@@ -212,16 +268,7 @@ int genericity(const GenericityArguments& a) {
     options.keep_equal = a.keep_equal;
     const bool text = !a.common.json;
     if (text) {
-        const char* bound = original.exact == Verdict::proved ? "=" : "<=";
-        fmt::print("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
-                   original.contacts.size(), original.title, bound, original.hyperstaticity, bound,
-                   original.mechanisms);
-        fmt::print("radius times 1 + size u, u uniform in [-1, 1){}; {} samples, seeds {} to {}\n\n",
-                   a.keep_equal ? ", the same u for equal radii" : "", a.samples, a.seed,
-                   a.seed + static_cast<std::uint64_t>(a.samples) - 1);
-        fmt::print("{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n",
-                   "size", "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force",
-                   "median", "min gap", "median", "min sigma", "arithmetic");
+        print_head(a, original);
     }
     Json results = Json::array();
     std::string csv = "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
@@ -242,49 +289,20 @@ int genericity(const GenericityArguments& a) {
     if (!a.csv.empty()) {
         write_atomically(a.csv, csv);
     }
-    if (!text) {
-        Json out;
-        out["format"] = "isostat-genericity 1";
-        out["program"] = program_name();
-        out["command"] = a.common.command;
-        out["file"] = a.file;
-        out["seed"] = a.seed;
-        out["samples"] = a.samples;
-        out["stress"] = number(a.stress);
-        out["keep_equal"] = a.keep_equal;
-        out["original"] = {{"N", original.contacts.size()},
-                           {"h", original.hyperstaticity},
-                           {"k", original.mechanisms},
-                           {"rank_exact", to_string(original.exact)}};
-        out["sizes"] = std::move(results);
-        print_json(out);
-        return every ? done : undecided;
-    }
-    fmt::print(
-        "\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 than "
-        "N_f, to double-double;\nlists: distinct networks of force-carrying contacts, and samples in the most "
-        "frequent; within: the force "
-        "network is part of the unperturbed contacts;\nmargins: proved lower bounds, smallest and median over "
-        "the samples.\n");
-    for (std::size_t s = 0; s < all.size(); ++s) {
-        for (std::size_t k = 0; k < all[s].lists.size() && k < static_cast<std::size_t>(a.lists) &&
-                                all[s].lists[k].samples > std::max(1, a.samples / 20);
-             ++k) {
-            fmt::print("size {:.0e}: {} samples {}\n", a.sizes[s], all[s].lists[k].samples,
-                       list_text(all[s].lists[k].contacts, original.contacts));
+    if (text) {
+        fmt::print(
+            "\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 "
+            "than "
+            "N_f, to double-double;\nlists: distinct networks of force-carrying contacts, and samples in the most "
+            "frequent; within: the force "
+            "network is part of the unperturbed contacts;\nmargins: proved lower bounds, smallest and median over "
+            "the samples.\n");
+        for (std::size_t s = 0; s < all.size(); ++s) {
+            print_lists(a, original, all[s], a.sizes[s]);
+            print_failures(all[s], a.sizes[s]);
         }
-        std::map<std::string, std::pair<int, std::string>> reasons;
-        for (const GenericitySample& sample : all[s].samples) {
-            if (sample.failure) {
-                auto& reason = reasons[to_string(sample.failure->kind)];
-                if (reason.first++ == 0) {
-                    reason.second = fmt::format("seed {}: {}", sample.seed, sample.failure->message());
-                }
-            }
-        }
-        for (const auto& [kind, reason] : reasons) {
-            fmt::print("size {:.0e}: {} times {}, first {}\n", a.sizes[s], reason.first, kind, reason.second);
-        }
+    } else {
+        print_json(report(a, original, std::move(results)));
     }
     return every ? done : undecided;
 }

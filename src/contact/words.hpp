@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <type_traits>
+#include <utility>
 
 namespace isostat {
 
@@ -31,35 +33,35 @@ inline void collect_names(Words& words, const Failure& inner) {
     words.name(inner.words);
 }
 
+/// What stands for an argument in the text.
+template <class Value> const Value& in_text(const Value& value) {
+    return value;
+}
+template <int Dim> std::string in_text(const Named<Dim>& name) {
+    return to_string<Dim>(name.contact);
+}
+inline std::string in_text(const Words& words) {
+    return words.text();
+}
+inline std::string in_text(const Failure& failure) {
+    return failure.message();
+}
+
+template <class... Values>
+using FormatOfWords = fmt::format_string<decltype(in_text(std::declval<const std::type_identity_t<Values>&>()))...>;
+
 /// As fmt::format. Contacts that are `named`, other words and failures among the arguments are what it names. The
 /// arguments are copied; a character array must be a literal.
-template <class... Values> Words words(fmt::format_string<const Values&...> format, Values... values) {
+template <class... Values> Words words(FormatOfWords<Values...> format, Values... values) {
     Words made([text = fmt::string_view(format), values...]() -> std::string {
-        return fmt::vformat(text, fmt::make_format_args(values...));
+        return fmt::format(fmt::runtime(text), in_text(values)...);
     });
     (collect_names(made, values), ...);
     return made;
 }
 
-template <class... Values>
-Failure failed(FailureKind kind, fmt::format_string<const Values&...> format, Values... values) {
+template <class... Values> Failure failed(FailureKind kind, FormatOfWords<Values...> format, Values... values) {
     return {kind, words<Values...>(format, std::move(values)...)};
 }
 
 } // namespace isostat
-
-template <int Dim> struct fmt::formatter<isostat::Named<Dim>> : fmt::formatter<std::string> {
-    template <class Context> auto format(const isostat::Named<Dim>& name, Context& context) const {
-        return fmt::formatter<std::string>::format(isostat::to_string<Dim>(name.contact), context);
-    }
-};
-template <> struct fmt::formatter<isostat::Words> : fmt::formatter<std::string> {
-    template <class Context> auto format(const isostat::Words& words, Context& context) const {
-        return fmt::formatter<std::string>::format(words.text(), context);
-    }
-};
-template <> struct fmt::formatter<isostat::Failure> : fmt::formatter<std::string> {
-    template <class Context> auto format(const isostat::Failure& failure, Context& context) const {
-        return fmt::formatter<std::string>::format(failure.message(), context);
-    }
-};

@@ -88,7 +88,7 @@ template <int Dim> class Stage {
     std::vector<Contender> doubtful_; ///< forces whose signs the enclosures do not prove
     bool without_force_ = false;      ///< there are contacts whose force is 0 at the turn itself
     double margin_ = infinity;        ///< of the positive forces
-    std::string zeros_;               ///< forces that are exactly 0
+    Words zeros_;                     ///< forces that are exactly 0
     OpeningDecision decision_;
 };
 

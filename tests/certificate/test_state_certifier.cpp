@@ -37,7 +37,7 @@ BOOST_AUTO_TEST_CASE(a_refuted_equilibrium_ends_the_run_and_is_not_recorded_as_p
     const auto objection = wrong.told();
     BOOST_REQUIRE(objection.has_value());
     BOOST_TEST((objection->kind == FailureKind::contradiction));
-    BOOST_TEST(objection->message.find("equilibrium 3 is refuted by its certificate") != std::string::npos);
+    BOOST_TEST(objection->message().find("equilibrium 3 is refuted by its certificate") != std::string::npos);
     BOOST_TEST(wrong.counters.states.refuted == 1);
     BOOST_REQUIRE(wrong.next.equilibria.size() == 1U);
     BOOST_TEST((wrong.next.equilibria[0].verdict == Verdict::refuted));

@@ -1,9 +1,10 @@
 #pragma once
 // The samples of every size, from the folders of their runs.
 
+#include "report/inference.hpp"
+#include "report/statistics.hpp"
+
 #include <isostat/io/run_directory.hpp>
-#include <isostat/report/inference.hpp>
-#include <isostat/report/statistics.hpp>
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,7 @@
 #include "certificate/exact_counting.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
+
 #include <isostat/exact/kernel.hpp>
 
 #include <algorithm>

@@ -2,8 +2,9 @@
 /// \file
 /// What is asked of a state, the same for every rung: load and structural zeros.
 
+#include "rigidity/contact_pattern.hpp"
+
 #include <isostat/contact/state.hpp>
-#include <isostat/rigidity/contact_pattern.hpp>
 
 #include <vector>
 

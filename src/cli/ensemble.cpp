@@ -6,9 +6,10 @@
 #include "cli/mpi/dealer.hpp"
 #endif
 
+#include "ensemble/ensemble.hpp"
+#include "ensemble/processes.hpp"
+
 #include <isostat/core/error.hpp>
-#include <isostat/ensemble/ensemble.hpp>
-#include <isostat/ensemble/processes.hpp>
 #include <isostat/io/files.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "io/vertex_text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/genericity.hpp>
@@ -8,7 +9,6 @@
 #include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/io/vertex_text.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>

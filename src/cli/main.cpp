@@ -1,10 +1,10 @@
 // The command line: what is asked for goes into plain structures, one function per subcommand does it.
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "core/memory.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
-#include <isostat/core/memory.hpp>
 #include <isostat/core/threads.hpp>
 
 #include <CLI/CLI.hpp>

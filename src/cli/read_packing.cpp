@@ -1,11 +1,12 @@
 #include "cli/read_packing.hpp"
 
+#include "io/vertex_text.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/packing_file.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/io/vertex_text.hpp>
 
 #include <fmt/format.h>
 

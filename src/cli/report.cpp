@@ -1,7 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-
-#include <isostat/report/run_report.hpp>
+#include "report/run_report.hpp"
 
 #include <fmt/format.h>
 

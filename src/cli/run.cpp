@@ -3,13 +3,13 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "core/work.hpp"
 #include "io/json.hpp"
+#include "report/run_report.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/work.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
-#include <isostat/report/run_report.hpp>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "contact/gap_sign.hpp"
 #include "contact/near_pairs.hpp"
+#include "contact/separation.hpp"
+#include "core/work.hpp"
 
 #include <isostat/contact/candidates.hpp>
-#include <isostat/contact/separation.hpp>
 #include <isostat/core/floating_point.hpp>
-#include <isostat/core/work.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -1,5 +1,6 @@
+#include "contact/separation.hpp"
+
 #include <isostat/contact/contact.hpp>
-#include <isostat/contact/separation.hpp>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include <isostat/contact/contact_set.hpp>
+#include "contact/contact_set.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "contact/gap_sign.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Interval_nt.h>

@@ -1,7 +1,8 @@
 #include "contact/near_pairs.hpp"
 
+#include "contact/separation.hpp"
+
 #include <isostat/contact/candidates.hpp>
-#include <isostat/contact/separation.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -1,7 +1,8 @@
 #include "contact/other_pairs.hpp"
 
+#include "contact/contact_set.hpp"
+
 #include <isostat/contact/candidates.hpp>
-#include <isostat/contact/contact_set.hpp>
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include <isostat/core/memory.hpp>
+#include "core/memory.hpp"
 
 #include <malloc.h>
 

@@ -1,6 +1,7 @@
+#include "core/work.hpp"
+
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/threads.hpp>
-#include <isostat/core/work.hpp>
 
 #include <mpfr.h>
 #include <sched.h>

@@ -1,4 +1,4 @@
-#include <isostat/core/work.hpp>
+#include "core/work.hpp"
 
 #include <atomic>
 #include <utility>

@@ -1,8 +1,10 @@
-#include <isostat/contact/separation.hpp>
-#include <isostat/crafted/enclosed_bases.hpp>
+#include "crafted/enclosed_bases.hpp"
+
+#include "contact/separation.hpp"
+#include "verified/force_solution.hpp"
+#include "verified/inverse_bound.hpp"
+
 #include <isostat/rigidity/isostatic.hpp>
-#include <isostat/verified/force_solution.hpp>
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
+#include "contact/separation.hpp"
 #include "contact/words.hpp"
 
-#include <isostat/contact/separation.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "crafted/gap_order.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <boost/multiprecision/gmp.hpp>
 

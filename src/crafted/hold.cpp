@@ -1,8 +1,7 @@
 #include "crafted/hold.hpp"
 
+#include "contact/separation.hpp"
 #include "crafted/carrying.hpp"
-
-#include <isostat/contact/separation.hpp>
 
 #include <functional>
 

@@ -1,6 +1,6 @@
 #include "crafted/second_order.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <functional>
 

@@ -1,4 +1,4 @@
-#include <isostat/ensemble/processes.hpp>
+#include "ensemble/processes.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>

@@ -1,9 +1,9 @@
+#include "ensemble/ensemble.hpp"
 #include "io/json.hpp"
+#include "scene/seed.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/ensemble/ensemble.hpp>
 #include <isostat/io/files.hpp>
-#include <isostat/scene/seed.hpp>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
-#include <isostat/exact/independent_columns.hpp>
+#include "exact/independent_columns.hpp"
+
 #include <isostat/exact/rank.hpp>
 
 #include <algorithm>

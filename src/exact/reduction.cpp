@@ -1,6 +1,6 @@
-#include "exact/terms.hpp"
+#include "exact/reduction.hpp"
 
-#include <isostat/exact/reduction.hpp>
+#include "exact/terms.hpp"
 
 #include <algorithm>
 #include <cassert>

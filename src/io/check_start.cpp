@@ -1,8 +1,9 @@
+#include "exact/independent_columns.hpp"
+#include "linear/factorisation.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/exact/independent_columns.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <fmt/format.h>

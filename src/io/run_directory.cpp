@@ -1,10 +1,10 @@
+#include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/work.hpp>
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>

@@ -1,9 +1,9 @@
+#include "core/work.hpp"
 #include "io/contact_json.hpp"
 #include "io/json.hpp"
 #include "io/perturbation_json.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/work.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 

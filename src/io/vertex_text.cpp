@@ -1,9 +1,10 @@
+#include "io/vertex_text.hpp"
+
 #include "io/contact_json.hpp"
 #include "io/json.hpp"
 #include "io/rows.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/vertex_text.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
+#include "linear/approximate_inverse.hpp"
+
+#include "core/work.hpp"
 #include "linear/solve_schedule.hpp"
 #include "linear/two.hpp"
-
-#include <isostat/core/work.hpp>
-#include <isostat/linear/approximate_inverse.hpp>
 
 #include <klu.h>
 

@@ -1,6 +1,6 @@
-#include "core/dot.hpp"
+#include "linear/factorisation.hpp"
 
-#include <isostat/linear/factorisation.hpp>
+#include "core/dot.hpp"
 
 #include <algorithm>
 #include <array>

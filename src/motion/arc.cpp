@@ -1,6 +1,6 @@
-#include "motion/follower.hpp"
+#include "motion/arc.hpp"
 
-#include <isostat/motion/arc.hpp>
+#include "motion/follower.hpp"
 
 namespace isostat {
 

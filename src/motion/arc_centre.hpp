@@ -1,9 +1,8 @@
 #pragma once
 // Where a piece of an arc is developed: private to the room.
 
+#include "motion/certify_arc.hpp"
 #include "motion/factorised_structure.hpp"
-
-#include <isostat/motion/arc_certificate.hpp>
 
 #include <memory>
 #include <vector>

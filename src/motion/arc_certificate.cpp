@@ -1,10 +1,10 @@
 #include "core/dot.hpp"
+#include "motion/certify_arc.hpp"
 #include "motion/gap_watch.hpp"
 #include "motion/moving_part.hpp"
 #include "motion/power_watch.hpp"
 
 #include <isostat/core/floating_point.hpp>
-#include <isostat/motion/arc_certificate.hpp>
 
 #include <fmt/format.h>
 

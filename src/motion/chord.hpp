@@ -1,11 +1,11 @@
 #pragma once
 // The chord method on the kept gaps of an arc: private to the room.
 
+#include "linear/factorisation.hpp"
 #include "motion/acceleration.hpp"
 #include "motion/factorised_structure.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/linear/factorisation.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <cstddef>

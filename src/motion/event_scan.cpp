@@ -1,9 +1,8 @@
 #include "motion/event_scan.hpp"
 
+#include "contact/contact_set.hpp"
 #include "core/dot.hpp"
 #include "motion/geometry.hpp"
-
-#include <isostat/contact/contact_set.hpp>
 
 #include <algorithm>
 #include <cmath>

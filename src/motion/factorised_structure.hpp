@@ -1,7 +1,8 @@
 #pragma once
 // A structure with its factors: private to the room.
 
-#include <isostat/linear/factorisation.hpp>
+#include "linear/factorisation.hpp"
+
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <utility>

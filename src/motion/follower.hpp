@@ -1,12 +1,11 @@
 #pragma once
 // Follows one arc to its end: private to the room.
 
+#include "motion/arc.hpp"
 #include "motion/chord.hpp"
 #include "motion/curve_course.hpp"
 #include "motion/event_scan.hpp"
 #include "motion/power_along.hpp"
-
-#include <isostat/motion/arc.hpp>
 
 #include <limits>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // Gaps and their derivatives along a motion, inline for the inner loops: private to the room.
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <cmath>
 #include <optional>

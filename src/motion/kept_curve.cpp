@@ -1,8 +1,7 @@
 #include "motion/kept_curve.hpp"
 
+#include "contact/separation.hpp"
 #include "motion/rounding.hpp"
-
-#include <isostat/contact/separation.hpp>
 
 #include <algorithm>
 #include <cmath>

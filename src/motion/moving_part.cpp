@@ -1,6 +1,6 @@
 #include "motion/moving_part.hpp"
 
-#include <isostat/contact/contact_set.hpp>
+#include "contact/contact_set.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,10 @@
 /// The grains that move during an arc and their equations: private to the room (statement A7, proofs/arcs.md).
 
 #include "motion/arc_centre.hpp"
+#include "motion/certify_arc.hpp"
 #include "motion/curve_piece.hpp"
 
 #include <isostat/contact/candidates.hpp>
-#include <isostat/motion/arc_certificate.hpp>
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 #include "motion/power_along.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <algorithm>
 #include <cmath>

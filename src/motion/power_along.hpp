@@ -1,10 +1,9 @@
 #pragma once
 // The power of the load along an arc: private to the room.
 
+#include "motion/arc.hpp"
 #include "motion/chord.hpp"
 #include "motion/curve_course.hpp"
-
-#include <isostat/motion/arc.hpp>
 
 #include <optional>
 #include <vector>

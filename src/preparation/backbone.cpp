@@ -1,8 +1,8 @@
-#include "contact/words.hpp"
+#include "preparation/backbone.hpp"
 
-#include <isostat/contact/separation.hpp>
-#include <isostat/core/work.hpp>
-#include <isostat/preparation/backbone.hpp>
+#include "contact/separation.hpp"
+#include "contact/words.hpp"
+#include "core/work.hpp"
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>

@@ -1,6 +1,5 @@
+#include "core/work.hpp"
 #include "preparation/programme_rows.hpp"
-
-#include <isostat/core/work.hpp>
 
 #include <ClpSimplex.hpp>
 

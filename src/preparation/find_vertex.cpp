@@ -1,3 +1,4 @@
+#include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "preparation/pivots.hpp"
 #include "preparation/polish.hpp"
@@ -6,7 +7,6 @@
 #include "preparation/scale.hpp"
 #include "preparation/stage.hpp"
 
-#include <isostat/contact/separation.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/preparation/preparation.hpp>

@@ -1,6 +1,6 @@
 #include "preparation/neighbours.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 #include "preparation/pivots.hpp"
 
 #include "contact/words.hpp"
+#include "statics/statics.hpp"
+#include "verified/configuration.hpp"
 
 #include <isostat/contact/candidates.hpp>
-#include <isostat/statics/statics.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 #include "preparation/polish.hpp"
 
 #include "contact/words.hpp"
+#include "statics/decisions.hpp"
+#include "verified/configuration.hpp"
 
 #include <isostat/contact/candidates.hpp>
-#include <isostat/statics/decisions.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 #include "preparation/programme.hpp"
 
+#include "core/work.hpp"
 #include "preparation/neighbours.hpp"
 #include "preparation/programme_rows.hpp"
-
-#include <isostat/core/work.hpp>
 
 #include <ClpEventHandler.hpp>
 #include <ClpSimplex.hpp>

@@ -2,10 +2,10 @@
 /// \file
 /// Rows of a contact programme: linearised gaps of a list of contacts.
 
+#include "contact/separation.hpp"
 #include "preparation/programme.hpp"
 
 #include <isostat/contact/contact.hpp>
-#include <isostat/contact/separation.hpp>
 
 #include <cstddef>
 #include <numeric>

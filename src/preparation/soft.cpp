@@ -1,9 +1,9 @@
 #include "preparation/soft.hpp"
 
+#include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
 
 #include <isostat/core/threads.hpp>
-#include <isostat/core/work.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <isostat/report/inference.hpp>
+#include "report/inference.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/chi_squared.hpp>

@@ -1,3 +1,6 @@
+#include "report/run_report.hpp"
+
+#include "core/work.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 #include "report/charts.hpp"
@@ -6,12 +9,10 @@
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/core/work.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/report/picture.hpp>
-#include <isostat/report/run_report.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "report/tables.hpp"
 
-#include <isostat/report/statistics.hpp>
+#include "report/statistics.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,6 @@
-#include <isostat/contact/separation.hpp>
-#include <isostat/rigidity/contact_pattern.hpp>
+#include "rigidity/contact_pattern.hpp"
+
+#include "contact/separation.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
+#include "exact/independent_columns.hpp"
+
 #include <isostat/core/floating_point.hpp>
-#include <isostat/exact/independent_columns.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/rigidity/isostatic.hpp>

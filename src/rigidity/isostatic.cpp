@@ -1,9 +1,9 @@
+#include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "core/work.hpp"
 
-#include <isostat/contact/separation.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
-#include <isostat/core/work.hpp>
 #include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 

@@ -1,10 +1,11 @@
+#include "scene/seed.hpp"
+
 #include "io/toml.hpp"
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/seed.hpp>
 
 #include <fmt/format.h>
 

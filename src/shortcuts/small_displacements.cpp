@@ -1,9 +1,10 @@
-#include "contact/words.hpp"
+#include "shortcuts/small_displacements.hpp"
 
-#include <isostat/contact/contact_set.hpp>
+#include "contact/contact_set.hpp"
+#include "contact/words.hpp"
+#include "statics/decisions.hpp"
+
 #include <isostat/core/floating_point.hpp>
-#include <isostat/shortcuts/small_displacements.hpp>
-#include <isostat/statics/decisions.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,9 @@
-#include <isostat/contact/separation.hpp>
+#include "shortcuts/soft_grains.hpp"
+
+#include "contact/separation.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
-#include <isostat/shortcuts/soft_grains.hpp>
 
 #include <fmt/format.h>
 

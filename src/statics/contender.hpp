@@ -2,11 +2,10 @@
 // Contacts that may open, and the quantities by which they are ordered: private to the room.
 
 #include "contact/words.hpp"
+#include "statics/decisions.hpp"
 #include "statics/proved_minimum.hpp"
 #include "statics/rule_key.hpp"
 #include "statics/straight_strut.hpp"
-
-#include <isostat/statics/decisions.hpp>
 
 #include <functional>
 #include <string>

@@ -1,4 +1,4 @@
-#include <isostat/statics/perturbed.hpp>
+#include "statics/perturbed.hpp"
 
 #include <algorithm>
 #include <cmath>

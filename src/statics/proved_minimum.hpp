@@ -1,8 +1,9 @@
 #pragma once
 // The smallest of several quantities, proved: private to the room.
 
+#include "statics/perturbed.hpp"
+
 #include <isostat/core/result.hpp>
-#include <isostat/statics/perturbed.hpp>
 
 #include <limits>
 #include <optional>

@@ -1,8 +1,9 @@
 #pragma once
 // What the opening rules compare, in any arithmetic.
 
+#include "statics/decisions.hpp"
+
 #include <isostat/core/enclosure.hpp>
-#include <isostat/statics/decisions.hpp>
 
 #include <cstddef>
 #include <cstdint>

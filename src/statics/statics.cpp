@@ -1,4 +1,4 @@
-#include <isostat/statics/statics.hpp>
+#include "statics/statics.hpp"
 
 #include <qd/dd_real.h>
 

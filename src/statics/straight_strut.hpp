@@ -2,7 +2,7 @@
 // Contacts that carry the same force at a power turn because the disks between them stand in a straight line
 // (statement S4, proofs/stability.md).
 
-#include <isostat/statics/decisions.hpp>
+#include "statics/decisions.hpp"
 
 #include <memory>
 #include <vector>

@@ -2,10 +2,9 @@
 /// \file
 /// One arc from a proved vertex: private to the room.
 
+#include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
 #include "trajectory/vertex.hpp"
-
-#include <isostat/motion/arc.hpp>
 
 namespace isostat {
 

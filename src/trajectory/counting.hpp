@@ -2,7 +2,7 @@
 /// \file
 /// Work that is counted later, or not at all: private to the room.
 
-#include <isostat/core/work.hpp>
+#include "core/work.hpp"
 
 #include <array>
 

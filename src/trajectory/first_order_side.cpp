@@ -1,8 +1,8 @@
 #include "trajectory/first_order_side.hpp"
 
 #include "contact/words.hpp"
+#include "preparation/backbone.hpp"
 
-#include <isostat/preparation/backbone.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <algorithm>

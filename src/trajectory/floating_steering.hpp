@@ -2,11 +2,11 @@
 /// \file
 /// Arc after arc without proof: private to the room.
 
+#include "motion/arc.hpp"
 #include "trajectory/floating_vertex.hpp"
 #include "trajectory/refactorisation.hpp"
 #include "trajectory/steering.hpp"
 
-#include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <deque>

@@ -1,8 +1,7 @@
 #include "trajectory/floating_vertex.hpp"
 
+#include "rigidity/contact_pattern.hpp"
 #include "statics/rule_key.hpp"
-
-#include <isostat/rigidity/contact_pattern.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,13 +2,13 @@
 /// \file
 /// A vertex on the way of floating steering: private to the room.
 
+#include "linear/factorisation.hpp"
+#include "motion/arc.hpp"
+#include "statics/decisions.hpp"
 #include "trajectory/predicted_vertex.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/threads.hpp>
-#include <isostat/linear/factorisation.hpp>
-#include <isostat/motion/arc.hpp>
-#include <isostat/statics/decisions.hpp>
 
 #include <memory>
 #include <optional>

@@ -1,9 +1,9 @@
+#include "contact/separation.hpp"
+#include "motion/arc.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
-#include <isostat/contact/separation.hpp>
 #include <isostat/core/floating_point.hpp>
-#include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

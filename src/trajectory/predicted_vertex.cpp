@@ -1,7 +1,7 @@
 #include "trajectory/predicted_vertex.hpp"
 
-#include <isostat/linear/factorisation.hpp>
-#include <isostat/rigidity/contact_pattern.hpp>
+#include "linear/factorisation.hpp"
+#include "rigidity/contact_pattern.hpp"
 
 namespace isostat {
 

@@ -1,8 +1,9 @@
 #pragma once
 // What is known of a vertex before the arc that leads there is followed: private to the room.
 
-#include <isostat/linear/approximate_inverse.hpp>
-#include <isostat/motion/arc.hpp>
+#include "linear/approximate_inverse.hpp"
+#include "motion/arc.hpp"
+
 #include <isostat/packing/load.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 

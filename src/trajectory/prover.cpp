@@ -1,10 +1,10 @@
 #include "trajectory/prover.hpp"
 
 #include "contact/words.hpp"
+#include "motion/arc.hpp"
+#include "motion/certify_arc.hpp"
 #include "trajectory/descent.hpp"
 #include "trajectory/floating_steering.hpp"
-
-#include <isostat/motion/arc.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -2,9 +2,9 @@
 /// \file
 /// Makes the records of equilibria and arcs: private to the room.
 
+#include "motion/arc.hpp"
 #include "trajectory/vertex.hpp"
 
-#include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/records.hpp>
 
 #include <array>

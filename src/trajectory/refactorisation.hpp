@@ -1,8 +1,9 @@
 #pragma once
 // When the factors that steer are made anew, and how: private to the room.
 
+#include "linear/approximate_inverse.hpp"
+
 #include <isostat/core/threads.hpp>
-#include <isostat/linear/approximate_inverse.hpp>
 
 #include <algorithm>
 #include <memory>

@@ -2,13 +2,13 @@
 /// \file
 /// Who proposes the arcs of a rearrangement, and what is proposed: private to the room.
 
+#include "linear/approximate_inverse.hpp"
+#include "statics/decisions.hpp"
 #include "trajectory/counting.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/linear/approximate_inverse.hpp>
 #include <isostat/rigidity/isostatic.hpp>
-#include <isostat/statics/decisions.hpp>
 #include <isostat/trajectory/records.hpp>
 
 #include <memory>

@@ -1,10 +1,9 @@
 #include "trajectory/vertex.hpp"
 
 #include "contact/words.hpp"
+#include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
-
-#include <isostat/motion/arc.hpp>
-#include <isostat/verified/inverse_bound_multiprecision.hpp>
+#include "verified/inverse_bound_multiprecision.hpp"
 
 #include <algorithm>
 #include <cmath>

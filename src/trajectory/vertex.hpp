@@ -2,14 +2,14 @@
 /// \file
 /// A vertex with everything that is known of it: private to the room.
 
+#include "statics/decisions.hpp"
+#include "statics/perturbed.hpp"
 #include "trajectory/kept_candidates.hpp"
+#include "verified/configuration.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/statics/decisions.hpp>
-#include <isostat/statics/perturbed.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <memory>
 #include <optional>

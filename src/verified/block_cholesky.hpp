@@ -2,7 +2,7 @@
 // Sparse Cholesky factorisation of H H^T - s I in blocks of 2 x 2, one block per pair of successive rows (the two
 // coordinates of a disk, or of the walls): private to the room.
 
-#include <isostat/verified/inverse_bound.hpp>
+#include "verified/inverse_bound.hpp"
 
 #include <array>
 #include <vector>

@@ -1,6 +1,5 @@
+#include "verified/inverse_bound.hpp"
 #include "verified/regularity_prover.hpp"
-
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <algorithm>
 #include <cmath>

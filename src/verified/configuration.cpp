@@ -1,9 +1,9 @@
+#include "verified/configuration.hpp"
+
 #include "contact/gap_sign.hpp"
 #include "verified/enclosed_vertex.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
-
-#include <isostat/verified/configuration.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,8 @@
 // Forces and motions with bounds in one number type (statement V6, proofs/true_vertex.md): private to the room and to
 // the certificate.
 
+#include "linear/factorisation.hpp"
 #include "verified/enclosed_vertex.hpp"
-
-#include <isostat/linear/factorisation.hpp>
 
 namespace isostat {
 

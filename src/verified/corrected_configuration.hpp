@@ -2,10 +2,10 @@
 // Gaps and contact matrix at stored coordinates plus a correction, in one number type: private to the room and to the
 // certificate. Every constant is counted in V5 and V6 (proofs/true_vertex.md).
 
+#include "contact/separation.hpp"
 #include "verified/arithmetic.hpp"
 #include "verified/vertex_bounds.hpp"
 
-#include <isostat/contact/separation.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <array>

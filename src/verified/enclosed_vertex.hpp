@@ -2,8 +2,7 @@
 // The true vertex in one number type (statement V5, proofs/true_vertex.md): private to the room and to the certificate.
 
 #include "verified/corrected_configuration.hpp"
-
-#include <isostat/verified/inverse_bound.hpp>
+#include "verified/inverse_bound.hpp"
 
 #include <limits>
 #include <utility>

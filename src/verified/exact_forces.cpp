@@ -1,6 +1,6 @@
 #include "verified/exact_forces.hpp"
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <algorithm>
 #include <cassert>

@@ -2,9 +2,9 @@
 // Forces as exact numbers: private to the room.
 
 #include "exact/rational_solver.hpp"
+#include "verified/force_solution.hpp"
 
 #include <isostat/rigidity/isostatic.hpp>
-#include <isostat/verified/force_solution.hpp>
 
 #include <gmpxx.h>
 

@@ -1,8 +1,7 @@
 #include "contact/gap_sign.hpp"
+#include "core/work.hpp"
 #include "verified/exact_forces.hpp"
 #include "verified/force_rung.hpp"
-
-#include <isostat/core/work.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
+#include "verified/first_order.hpp"
+
+#include "contact/separation.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
-
-#include <isostat/contact/separation.hpp>
-#include <isostat/verified/first_order.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,6 @@
-#include "verified/force_rung.hpp"
+#include "verified/force_ladder.hpp"
 
-#include <isostat/verified/force_ladder.hpp>
+#include "verified/force_rung.hpp"
 
 #include <algorithm>
 #include <cmath>

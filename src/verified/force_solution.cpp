@@ -1,6 +1,6 @@
-#include "verified/norm.hpp"
+#include "verified/force_solution.hpp"
 
-#include <isostat/verified/force_solution.hpp>
+#include "verified/norm.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,3 +1,6 @@
+#include "verified/inverse_bound.hpp"
+
+#include "core/work.hpp"
 #include "verified/block_cholesky.hpp"
 #include "verified/extended_cholesky.hpp"
 #include "verified/regularity_prover.hpp"
@@ -6,8 +9,6 @@
 
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/threads.hpp>
-#include <isostat/core/work.hpp>
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <algorithm>
 #include <cmath>

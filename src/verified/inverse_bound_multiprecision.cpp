@@ -1,7 +1,7 @@
+#include "verified/inverse_bound_multiprecision.hpp"
+
 #include "exact/sparse_lu.hpp"
 #include "verified/corrected_configuration.hpp"
-
-#include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <algorithm>
 #include <cmath>

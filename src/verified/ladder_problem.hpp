@@ -2,8 +2,7 @@
 // What a ladder of forces was asked, and what its rungs share: private to the room.
 
 #include "verified/contact_system.hpp"
-
-#include <isostat/verified/force_ladder.hpp>
+#include "verified/force_ladder.hpp"
 
 #include <gmpxx.h>
 

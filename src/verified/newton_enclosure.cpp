@@ -1,8 +1,7 @@
+#include "contact/separation.hpp"
+#include "verified/configuration.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
-
-#include <isostat/contact/separation.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
+#include "core/work.hpp"
 #include "verified/interval_rung.hpp"
 #include "verified/norm.hpp"
-
-#include <isostat/core/work.hpp>
 
 #include <algorithm>
 #include <cmath>

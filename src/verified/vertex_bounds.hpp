@@ -1,7 +1,7 @@
 #pragma once
 // What the bounds of the true vertex share (statement V4): private to the room.
 
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <algorithm>
 #include <cmath>

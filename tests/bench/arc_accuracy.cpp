@@ -12,9 +12,9 @@
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
+#include "motion/arc.hpp"
 #include "oracle/reference_vertex.hpp"
 
-#include <isostat/motion/arc.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <fmt/format.h>

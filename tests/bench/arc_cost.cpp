@@ -11,11 +11,11 @@
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
+#include "statics/statics.hpp"
+#include "verified/configuration.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/exact/rank.hpp>
-#include <isostat/statics/statics.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <fmt/format.h>
 

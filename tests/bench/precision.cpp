@@ -8,10 +8,10 @@
 #include "bench/shared/report.hpp"
 #include "oracle/reference.hpp"
 #include "oracle/structures.hpp"
+#include "verified/force_ladder.hpp"
+#include "verified/inverse_bound_multiprecision.hpp"
 
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/verified/force_ladder.hpp>
-#include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <fmt/format.h>
 #include <mpfr.h>

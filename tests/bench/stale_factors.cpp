@@ -7,10 +7,10 @@
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
+#include "statics/statics.hpp"
+#include "verified/configuration.hpp"
 
-#include <isostat/statics/statics.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <fmt/format.h>
 

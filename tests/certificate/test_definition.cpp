@@ -1,14 +1,14 @@
 // One definition of the problem (proofs/definition.md): inspection, certificate, checker and the engine of runs speak
 // of the same load, pattern, pairs and point.
+#include "linear/factorisation.hpp"
+#include "statics/decisions.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
+#include "verified/configuration.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/linear/factorisation.hpp>
-#include <isostat/statics/decisions.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <boost/test/data/test_case.hpp>
 #include <boost/test/unit_test.hpp>

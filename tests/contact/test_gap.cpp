@@ -1,8 +1,8 @@
+#include "contact/contact_set.hpp"
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
 
 #include <isostat/contact/contact.hpp>
-#include <isostat/contact/contact_set.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <gmpxx.h>

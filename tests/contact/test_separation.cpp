@@ -1,4 +1,4 @@
-#include <isostat/contact/separation.hpp>
+#include "contact/separation.hpp"
 
 #include <boost/test/unit_test.hpp>
 

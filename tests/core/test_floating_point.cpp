@@ -1,5 +1,6 @@
 // The arithmetic that the bounds count with: any other is noticed, by the thread that computes.
 
+#include "io/vertex_text.hpp"
 #include "support/crafted.hpp"
 #include "support/threads.hpp"
 
@@ -14,9 +15,9 @@
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/io/vertex_text.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
+#include <isostat/rigidity/isostatic.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -1,8 +1,7 @@
 // Work in pieces on several threads.
 
+#include "core/work.hpp"
 #include "support/threads.hpp"
-
-#include <isostat/core/work.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <sys/resource.h>

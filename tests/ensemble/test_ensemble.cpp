@@ -1,9 +1,9 @@
 // The command as a user runs it.
 #include "cli/background.hpp"
 #include "cli/program.hpp"
+#include "ensemble/ensemble.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/ensemble/ensemble.hpp>
 
 #include <nlohmann/json.hpp>
 

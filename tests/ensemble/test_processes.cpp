@@ -1,7 +1,6 @@
 // One process that dies must not touch the others.
+#include "ensemble/processes.hpp"
 #include "support/scratch.hpp"
-
-#include <isostat/ensemble/processes.hpp>
 
 #include <boost/test/unit_test.hpp>
 

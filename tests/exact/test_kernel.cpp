@@ -1,9 +1,10 @@
 // Reduction mod p, rank, kernel and inequalities over multi-quadratic fields, against dense elimination in the field
 // itself.
 
+#include "exact/reduction.hpp"
+
 #include <isostat/exact/feasibility.hpp>
 #include <isostat/exact/kernel.hpp>
-#include <isostat/exact/reduction.hpp>
 
 #include <boost/test/unit_test.hpp>
 

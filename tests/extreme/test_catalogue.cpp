@@ -93,7 +93,7 @@ const std::map<std::pair<std::string, std::string>, std::string>& committed() {
         std::ifstream file(ISOSTAT_TEST_DATA "/../extreme/extremes.csv");
         std::string line;
         std::getline(file, line); // the names of the columns
-        const std::regex row(R"(^"([^"]*)","([^"]*)",\d+,([a-z]+),)");
+        const std::regex row(R"re(^"([^"]*)","([^"]*)",\d+,([a-z]+),)re");
         while (std::getline(file, line)) {
             std::smatch part;
             BOOST_REQUIRE_MESSAGE(std::regex_search(line, part, row), line);

@@ -1,9 +1,9 @@
 // Runs, not only states: what steers them decided at the edge too. And dynamics of any stiffness.
 #include "extreme/catalogue.hpp"
+#include "shortcuts/soft_grains.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/certificate/inspect.hpp>
-#include <isostat/shortcuts/soft_grains.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>

@@ -2,7 +2,9 @@
 
 #include "fuzz/harness.hpp"
 #include "io/certificate_json.hpp"
+#include "io/vertex_text.hpp"
 #include "scene/radii_file.hpp"
+#include "scene/seed.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
@@ -11,9 +13,7 @@
 #include <isostat/crafted/packing_file.hpp>
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/io/vertex_text.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/seed.hpp>
 
 #include <cstring>
 

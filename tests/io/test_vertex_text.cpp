@@ -1,8 +1,8 @@
 #include "io/bad_input.hpp"
+#include "io/vertex_text.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/io/vertex_text.hpp>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
+#include "linear/factorisation.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/linear/factorisation.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,9 +1,9 @@
 // The gate is a fact of the types; the factors solve what they should.
+#include "linear/factorisation.hpp"
+#include "statics/statics.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/linear/factorisation.hpp>
-#include <isostat/statics/statics.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,7 +1,6 @@
 // Arcs with known ends: a free disk rolls over a fixed one past obstacles.
+#include "motion/arc.hpp"
 #include "support/crafted.hpp"
-
-#include <isostat/motion/arc.hpp>
 
 #include <boost/test/unit_test.hpp>
 

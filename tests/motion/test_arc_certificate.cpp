@@ -1,8 +1,7 @@
 // Certificates of arcs with known answers: a free disk rolls over a fixed one past obstacles.
+#include "motion/certify_arc.hpp"
 #include "motion/moving_part.hpp"
 #include "support/crafted.hpp"
-
-#include <isostat/motion/arc_certificate.hpp>
 
 #include <boost/test/unit_test.hpp>
 

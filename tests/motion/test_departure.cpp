@@ -1,6 +1,7 @@
 // What is known at the start of an arc, and what an arc hands on to the next.
+#include "motion/arc.hpp"
+
 #include <isostat/io/state_file.hpp>
-#include <isostat/motion/arc.hpp>
 
 #include <boost/test/unit_test.hpp>
 

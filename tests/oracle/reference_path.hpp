@@ -2,9 +2,9 @@
 // A trajectory of the program, every event of it polished to 320 bits and certified (reference_vertex.hpp): what errors
 // of events and stresses are measured against.
 
+#include "motion/arc.hpp"
 #include "oracle/reference_vertex.hpp"
 
-#include <isostat/motion/arc.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <string>

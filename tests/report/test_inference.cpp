@@ -1,7 +1,6 @@
 // Estimates against published or closed-form values, and intervals against the share of cases that they must cover.
 #include "oracle/random.hpp"
-
-#include <isostat/report/inference.hpp>
+#include "report/inference.hpp"
 
 #include <boost/test/unit_test.hpp>
 

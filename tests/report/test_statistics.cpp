@@ -1,4 +1,4 @@
-#include <isostat/report/statistics.hpp>
+#include "report/statistics.hpp"
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,7 +1,6 @@
 // Where the contact matrix can have entries, whatever the stored numbers are.
+#include "rigidity/contact_pattern.hpp"
 #include "support/crafted.hpp"
-
-#include <isostat/rigidity/contact_pattern.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,6 +1,6 @@
 // The ordering of an exchanged structure, whoever asks for it first.
 
-#include "support/crafted.hpp"
+#include "support/same_sequence.hpp"
 
 #include <isostat/rigidity/isostatic.hpp>
 
@@ -11,13 +11,12 @@
 #include <vector>
 
 using namespace isostat;
-using namespace crafted;
 
 BOOST_AUTO_TEST_SUITE(rigidity)
 
 BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_asks_first,
                      *boost::unit_test::label("threads")) {
-    const State<2> state = pile(30, 3);
+    const State<2> state = crafted::prepared(30, 3);
     const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
     BOOST_TEST_REQUIRE(proved.ok());
     for (int round = 0; round < 20; ++round) {

@@ -1,8 +1,8 @@
 #include "io/bad_input.hpp"
+#include "scene/seed.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/seed.hpp>
 
 #include <algorithm>
 #include <string>

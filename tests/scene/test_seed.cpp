@@ -1,8 +1,8 @@
+#include "scene/seed.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/seed.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,8 +1,8 @@
 // Linear gaps against closed forms and against the exact path.
+#include "shortcuts/small_displacements.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/shortcuts/small_displacements.hpp>
 
 #include <boost/test/unit_test.hpp>
 

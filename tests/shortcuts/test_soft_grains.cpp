@@ -1,10 +1,10 @@
 // The soft grains against closed forms, against energy, and against the rigid packing that they approximate.
+#include "shortcuts/soft_grains.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/shortcuts/soft_grains.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>

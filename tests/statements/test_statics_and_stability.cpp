@@ -1,9 +1,9 @@
 // T1 to T4, T8, T9 and T11: random attempts, and what happens when a hypothesis is dropped.
+#include "exact/reduction.hpp"
 #include "families.hpp"
+#include "linear/factorisation.hpp"
 
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/exact/reduction.hpp>
-#include <isostat/linear/factorisation.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>
 

@@ -1,8 +1,8 @@
 // Decisions of the statics: classes, ties, rules, and the ladder of precision.
+#include "statics/decisions.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/statics/decisions.hpp>
 
 #include <boost/test/unit_test.hpp>
 

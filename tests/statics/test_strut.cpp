@@ -1,12 +1,12 @@
 // Straight struts at a power turn (statement S4): their two ends carry one force, and the infinitesimal loads order
 // them.
+#include "statics/decisions.hpp"
 #include "statics/straight_strut.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
 #include "support/strut.hpp"
 
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/statics/decisions.hpp>
 
 #include <boost/test/unit_test.hpp>
 

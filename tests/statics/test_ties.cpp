@@ -1,8 +1,7 @@
 // Families that approach a tie: the right answer on either side, the rung that gives it, and a proved tie at 0.
+#include "statics/decisions.hpp"
 #include "support/crafted.hpp"
 #include "support/loaded.hpp"
-
-#include <isostat/statics/decisions.hpp>
 
 #include <boost/test/unit_test.hpp>
 

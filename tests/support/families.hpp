@@ -7,11 +7,11 @@
 // same question is put to exact coordinates (rational numbers), which carry every delta.
 
 #include "oracle/structures.hpp"
+#include "statics/decisions.hpp"
 #include "support/crafted.hpp"
+#include "verified/inverse_bound_multiprecision.hpp"
 
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/statics/decisions.hpp>
-#include <isostat/verified/inverse_bound_multiprecision.hpp>
 
 #include <algorithm>
 #include <functional>

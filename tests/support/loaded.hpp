@@ -1,8 +1,9 @@
 #pragma once
 // A structure with its statics, about the stored configuration or about the true vertex near it.
 
+#include "statics/decisions.hpp"
+
 #include <isostat/contact/state.hpp>
-#include <isostat/statics/decisions.hpp>
 
 #include <boost/test/unit_test.hpp>
 

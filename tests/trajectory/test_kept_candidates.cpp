@@ -1,8 +1,7 @@
 // Flags of candidates kept from vertex to vertex, against sets made anew.
+#include "contact/contact_set.hpp"
 #include "oracle/random.hpp"
 #include "trajectory/kept_candidates.hpp"
-
-#include <isostat/contact/contact_set.hpp>
 
 #include <boost/test/unit_test.hpp>
 

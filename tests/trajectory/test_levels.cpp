@@ -1,8 +1,8 @@
 // The level `arcs`: every arc of a run with its own proof, and what a path follower that misses contacts would meet.
+#include "core/work.hpp"
 #include "support/crafted.hpp"
 #include "support/threads.hpp"
 
-#include <isostat/core/work.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -1,9 +1,8 @@
 // Ties: stopped, or settled at first order in R_i + eps rho_i. The same packings with radii that are really changed by
 // a small eps, run under `stop`, must open and close the same contacts in the same order.
+#include "linear/factorisation.hpp"
+#include "preparation/backbone.hpp"
 #include "support/mirror.hpp"
-
-#include <isostat/linear/factorisation.hpp>
-#include <isostat/preparation/backbone.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>

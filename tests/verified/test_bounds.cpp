@@ -1,14 +1,14 @@
 // Proved bounds against a reference in 100 digits: the bound is never below the error, and it is not useless.
 #include "oracle/random.hpp"
+#include "statics/statics.hpp"
 #include "support/crafted.hpp"
+#include "verified/configuration.hpp"
+#include "verified/force_ladder.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/statics/statics.hpp>
-#include <isostat/verified/configuration.hpp>
-#include <isostat/verified/force_ladder.hpp>
 
 #include <boost/multiprecision/cpp_dec_float.hpp>
 #include <boost/test/unit_test.hpp>

@@ -1,14 +1,14 @@
 // Bounds carried over an exchange of contacts (V8) and made anew for it (V1), against inverse iteration with fresh
 // factors.
+#include "motion/arc.hpp"
 #include "oracle/random.hpp"
+#include "statics/statics.hpp"
 #include "support/crafted.hpp"
 #include "verified/block_cholesky.hpp"
+#include "verified/inverse_bound.hpp"
 #include "verified/row_scales.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/motion/arc.hpp>
-#include <isostat/statics/statics.hpp>
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>

@@ -3,14 +3,14 @@
 #include "oracle/random.hpp"
 #include "support/crafted.hpp"
 #include "support/scale.hpp"
+#include "verified/configuration.hpp"
+#include "verified/first_order.hpp"
+#include "verified/force_solution.hpp"
 #include "verified/norm.hpp"
 #include "verified/singular_value.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <isostat/io/state_file.hpp>
-#include <isostat/verified/configuration.hpp>
-#include <isostat/verified/first_order.hpp>
-#include <isostat/verified/force_solution.hpp>
 
 #include <boost/multiprecision/cpp_dec_float.hpp>
 #include <boost/test/unit_test.hpp>

@@ -1,28 +1,13 @@
 #pragma once
 /// \file
-/// Proof that an arc was followed without missing a contact: the level `arcs` (proofs/arcs.md).
+/// What was proved of an arc at the level `arcs` (proofs/arcs.md).
 
-#include <isostat/motion/arc.hpp>
-#include <isostat/verified/configuration.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <string>
+#include <vector>
 
 namespace isostat {
-
-/// One end of an arc with what is known of it; all of the same vertex.
-template <int Dim> struct ArcVertex {
-    const Packing<Dim>& packing;
-    const IsostaticStructure<Dim>& structure;
-    const Factorisation& factorisation;
-    const InverseBound& inverse;
-    const VertexEnclosure& enclosure;
-};
-
-/// Caps of the proof; they change its cost and whether it succeeds, never its validity.
-struct ArcCertificateOptions {
-    int max_pieces = 20000;      ///< pieces of the curve
-    double smallest_step = 1e-9; ///< shortest piece tried, in units of the smallest radius
-};
 
 /// Where a checker should look: nothing in it is to be trusted. The grains that move, and configurations on the way
 /// from the start vertex to the end vertex, so close that neighbours are joined by one piece of the curve.
@@ -64,24 +49,5 @@ struct ArcCertificate {
     std::string power_reason; ///< when the power is undecided
     ArcWitness witness;       ///< when proved
 };
-
-/// Certifies the arc that opens `opened` at `start` (`direction` as for `follow_arc`) and ends at `end`, whose contacts
-/// are those of `start` with `opened` replaced in its place. It does not depend on how the arc was found.
-/// `candidates` is used while it is complete and made again when the motion leaves its reach.
-///
-/// Method: pieces of the curve as polynomials (derivatives in the free parameter, one triangular solve each), a tube
-/// around each by Newton-Kantorovich with sigma_min(centre) - |change of the derivative|, neighbouring pieces joined by
-/// uniqueness, gaps bounded from below over stretches that are halved until their sign or the sign of their rate is
-/// proved (A1 to A7). Pieces at the two ends use the bounds that the vertices have already; a longer arc needs fresh
-/// centres: one rank proof, one factorisation, one bound of the inverse each. Arcs of rattlers are certified in their
-/// own few degrees of freedom.
-template <int Dim>
-ArcCertificate certify_arc(const ArcVertex<Dim>& start, ContactId opened, int direction, const ArcVertex<Dim>& end,
-                           const PowerLoad<Dim>& power, const CandidateList<Dim>& candidates,
-                           const ArcCertificateOptions& options = {});
-
-extern template ArcCertificate certify_arc<2>(const ArcVertex<2>&, ContactId, int, const ArcVertex<2>&,
-                                              const PowerLoad<2>&, const CandidateList<2>&,
-                                              const ArcCertificateOptions&);
 
 } // namespace isostat

@@ -2,7 +2,7 @@
 /// \file
 /// Samples dealt over the ranks of `mpirun`. Only in builds with ISOSTAT_WITH_MPI.
 
-#include <isostat/ensemble/dealer.hpp>
+#include "ensemble/dealer.hpp"
 
 namespace isostat::cli {
 

@@ -1,6 +1,6 @@
 #include "bench/shared/report.hpp"
 
-#include <isostat/core/memory.hpp>
+#include "core/memory.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -2,8 +2,7 @@
 // predictor step, integration without correction, number of loads.
 #include "bench/work_precision/report.hpp"
 #include "oracle/reference_path.hpp"
-
-#include <isostat/verified/force_ladder.hpp>
+#include "verified/force_ladder.hpp"
 
 #include <fmt/format.h>
 #include <qd/dd_real.h>

@@ -1,8 +1,8 @@
 // The approximation of small displacements against the exact path: one arc, and whole trajectories.
 #include "bench/work_precision/report.hpp"
+#include "motion/arc.hpp"
+#include "shortcuts/small_displacements.hpp"
 
-#include <isostat/motion/arc.hpp>
-#include <isostat/shortcuts/small_displacements.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

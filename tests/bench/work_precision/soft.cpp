@@ -1,8 +1,8 @@
 // Soft grains against the rigid states that they approximate: contacts, forces, strain, the next rearrangement.
 #include "bench/work_precision/report.hpp"
+#include "shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
-#include <isostat/shortcuts/soft_grains.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

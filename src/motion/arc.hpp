@@ -2,9 +2,10 @@
 /// \file
 /// One arc: open a contact, keep the others, follow the mechanism to the first event.
 
+#include "linear/factorisation.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/linear/factorisation.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <memory>

@@ -2,10 +2,11 @@
 /// \file
 /// Contact forces at every precision behind one interface, and proved comparisons of them.
 
+#include "verified/configuration.hpp"
+#include "verified/force_solution.hpp"
+#include "verified/order.hpp"
+
 #include <isostat/core/ids.hpp>
-#include <isostat/verified/configuration.hpp>
-#include <isostat/verified/force_solution.hpp>
-#include <isostat/verified/order.hpp>
 
 #include <memory>
 #include <span>

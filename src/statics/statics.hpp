@@ -2,11 +2,12 @@
 /// \file
 /// Contact forces of a vertex as functions of the load, with signs that are proved or undecided.
 
+#include "rigidity/contact_pattern.hpp"
+#include "verified/force_ladder.hpp"
+
 #include <isostat/core/enclosure.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
-#include <isostat/rigidity/contact_pattern.hpp>
-#include <isostat/verified/force_ladder.hpp>
 
 #include <memory>
 #include <optional>

@@ -2,9 +2,10 @@
 /// \file
 /// The true vertex near a stored configuration, and the signs of the gaps there.
 
+#include "verified/inverse_bound.hpp"
+#include "verified/order.hpp"
+
 #include <isostat/core/enclosure.hpp>
-#include <isostat/verified/inverse_bound.hpp>
-#include <isostat/verified/order.hpp>
 
 #include <vector>
 

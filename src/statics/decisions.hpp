@@ -2,28 +2,18 @@
 /// \file
 /// The two static decisions of a trajectory: where the supported interval ends, and which contact opens.
 
+#include "statics/perturbed.hpp"
+#include "statics/statics.hpp"
+
 #include <isostat/core/result.hpp>
-#include <isostat/statics/perturbed.hpp>
-#include <isostat/statics/statics.hpp>
+#include <isostat/statics/opening_rule.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace isostat {
-
-/// Which contact with a negative force is opened during a rearrangement. The paper's rule is `most_negative`.
-/// - most_negative: smallest f;  - steepest: smallest f / |v|, v the mechanism that opens the contact at unit rate;
-/// - random: uniformly among f < 0;  - least_negative: largest f < 0;  - least_index: the first f < 0 in the order of
-/// contacts (disks by their numbers, then walls, then held coordinates). It compares no forces, so that equal ones are
-/// no tie. With linear programmes it is the rule of Bland (Math. Oper. Res. 2, 103, 1977).
-/// In all of them a held coordinate competes with -|multiplier|, and infinitesimal forces decide only when no finite
-/// force is negative.
-enum class OpeningRule : std::uint8_t { most_negative, steepest, random, least_negative, least_index };
-/// The words of scenes, in that order.
-inline constexpr std::array opening_rule_words{"most_negative", "steepest", "random", "least_negative", "least_index"};
 
 /// The contact to open, with the evidence.
 struct Opening {

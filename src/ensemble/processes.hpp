@@ -2,7 +2,7 @@
 /// \file
 /// Samples as processes of their own: what one of them does to itself (crash, no memory, exit) it does to no other.
 
-#include <isostat/ensemble/dealer.hpp>
+#include "ensemble/dealer.hpp"
 
 #include <atomic>
 #include <filesystem>

@@ -2,7 +2,8 @@
 /// \file
 /// Solves with a contact matrix that was proved regular.
 
-#include <isostat/linear/approximate_inverse.hpp>
+#include "linear/approximate_inverse.hpp"
+
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <functional>

@@ -2,8 +2,9 @@
 /// \file
 /// A proved bound of the inverse of a contact matrix.
 
+#include "linear/factorisation.hpp"
+
 #include <isostat/core/verdict.hpp>
-#include <isostat/linear/factorisation.hpp>
 
 #include <functional>
 #include <memory>

@@ -2,10 +2,11 @@
 /// \file
 /// First-order change of a vertex when the radii become R_i + eps rho_i (proofs/perturbation.md, P1, P3, P4).
 
+#include "rigidity/contact_pattern.hpp"
+#include "verified/configuration.hpp"
+
 #include <isostat/core/enclosure.hpp>
 #include <isostat/packing/load.hpp>
-#include <isostat/rigidity/contact_pattern.hpp>
-#include <isostat/verified/configuration.hpp>
 
 #include <optional>
 #include <vector>

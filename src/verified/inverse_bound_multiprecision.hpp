@@ -2,7 +2,7 @@
 /// \file
 /// A proved bound of the inverse where double precision has none: small structures, any condition.
 
-#include <isostat/verified/inverse_bound.hpp>
+#include "verified/inverse_bound.hpp"
 
 namespace isostat {
 

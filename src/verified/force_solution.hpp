@@ -2,9 +2,10 @@
 /// \file
 /// Contact forces with a proved error bound, in double or double-double.
 
+#include "verified/inverse_bound.hpp"
+
 #include <isostat/core/enclosure.hpp>
 #include <isostat/core/verdict.hpp>
-#include <isostat/verified/inverse_bound.hpp>
 
 #include <span>
 #include <vector>

@@ -3,10 +3,11 @@
 /// The approximation of small displacements: gaps linear along an arc, or along a whole trajectory. A shortcut to be
 /// measured against the exact path; nothing in the program relies on it.
 
+#include "linear/factorisation.hpp"
+
 #include <isostat/contact/candidates.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/linear/factorisation.hpp>
 
 #include <vector>
 

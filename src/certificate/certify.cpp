@@ -337,20 +337,32 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
     return false;
 }
 
+/// The end is known to less than a millionth of it.
+bool is_vague(const LoadEndClaim& end) {
+    constexpr double millionth = 1e-6;
+    const Interval& at = end.stress;
+    return !end.unbounded && !(at.upper - at.lower <= millionth * std::max(std::abs(at.lower), std::abs(at.upper)));
+}
+
+/// Climbs until both ends are proved, and well known where the rungs reach that.
 template <int Dim> void Prover<Dim>::prove_load_interval() {
-    while (true) {
+    std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;
+    std::string open;
+    do {
         const LoadEndAnswer low = vertex_->load_end(-1);
         const LoadEndAnswer high = vertex_->load_end(+1);
         if (low.claim && high.claim) {
-            result_.claims.load_interval = LoadIntervalClaim{*low.claim, *high.claim, vertex_->rung()};
+            claim = LoadIntervalClaim{*low.claim, *high.claim, vertex_->rung()};
+        }
+        if (claim && !is_vague(claim->low) && !is_vague(claim->high)) {
             return;
         }
-        if (!climb()) {
-            absent("load interval", fmt::format("{}{}{} ({})", low.open_question,
-                                                !low.open_question.empty() && !high.open_question.empty() ? "; " : "",
-                                                high.open_question, to_string(vertex_->rung())));
-            return;
-        }
+        open = fmt::format("{}{}{} ({})", low.open_question,
+                           !low.open_question.empty() && !high.open_question.empty() ? "; " : "", high.open_question,
+                           to_string(vertex_->rung()));
+    } while (climb());
+    if (!claim) {
+        absent("load interval", open);
     }
 }
 

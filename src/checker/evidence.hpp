@@ -14,9 +14,10 @@
 namespace isostat::checker {
 
 struct Evidence {
-    /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only.
+    /// `near`: factors of the matrix at a configuration close by, or nothing; with `automatic` only. `digits`: those
+    /// of the problem; forces get as many more.
     Evidence(const State<2>& checked, CheckerArithmetic arithmetic, bool held_allowed = false,
-             std::shared_ptr<const Solver> near = {});
+             std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
 
     const State<2>& state;
     Problem problem;

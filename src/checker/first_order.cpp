@@ -73,8 +73,8 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
         }
         const Eigen::MatrixXd x = e_.solver->solve(right);
         for (int d = 0; d < problem.dofs(); ++d) {
-            motion.v[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(d)])] +=
-                scaled_integer(x(d, 0), size - scale);
+            add_scaled(motion.v[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(d)])], x(d, 0),
+                       size - scale);
         }
         residual = motion.residual();
         const long now = bits(largest_of(residual));

@@ -78,23 +78,26 @@ class Balance {
                                       vertex.middle[at(row.coordinate[at(a + 2)])]);
             }
         }
-        residual_ = residual();
+        find_residual();
+        for (const Integer& entry : difference_) {
+            rounding_ = std::max(rounding_, bits(entry) + 3);
+        }
     }
     [[nodiscard]] const std::vector<Integer>& sought() const { return sought_; }
 
-    /// Until the residual does not become smaller.
+    /// Until the residual does not become smaller, or is what the roundings of g leave.
     void refine(const Solver& solver) {
         long size = bits(largest_of(residual_));
-        for (int step = 0; step < 20 && size > 0; ++step) {
+        for (int step = 0; step < most_refinements && size > rounding_; ++step) {
             Eigen::MatrixXd b(problem_.dofs(), 1);
             for (int j = 0; j < problem_.dofs(); ++j) {
                 b(j, 0) = approximate(residual_[at(j)], -size);
             }
             const Eigen::MatrixXd x = solver.solve_transposed(b);
             for (std::size_t l = 0; l < sought_.size(); ++l) {
-                sought_[l] += scaled_integer(x(static_cast<Eigen::Index>(l), 0), size - solver.scale(problem_));
+                add_scaled(sought_[l], x(static_cast<Eigen::Index>(l), 0), size - solver.scale(problem_));
             }
-            residual_ = residual();
+            find_residual();
             const long now = bits(largest_of(residual_));
             if (now >= size) {
                 return;
@@ -120,16 +123,18 @@ class Balance {
     }
 
   private:
+    static constexpr int most_refinements = 60;
+
     /// -load - A^T g at the middle of the vertex and the lower end of -load.
-    [[nodiscard]] std::vector<Integer> residual() const {
-        std::vector<Integer> result = target_;
+    void find_residual() {
+        residual_ = target_;
         Integer product;
         auto difference = difference_.begin();
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_.rows[l];
             const auto subtract = [&](int k, bool negative) {
                 if (const int dof = problem_.dof_of[at(row.coordinate[at(k)])]; dof >= 0) {
-                    Integer& r = result[at(dof)];
+                    Integer& r = residual_[at(dof)];
                     negative ? r += product : r -= product;
                 }
             };
@@ -146,7 +151,6 @@ class Balance {
                 subtract(k, row.sign[at(k)] < 0);
             }
         }
-        return result;
     }
 
     const Problem& problem_;
@@ -154,6 +158,7 @@ class Balance {
     std::vector<Integer> unknown_;    ///< width of the load
     std::vector<Integer> difference_; ///< entries of the contacts of two disks, x and y
     Integer blur_;
+    long rounding_ = 0; ///< bits of a residual when g is off by some units
 };
 
 /// The number of bits before the binary point of the largest magnitude in a load; nothing: it is 0.
@@ -177,9 +182,9 @@ std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, 
     if (!size) {
         return forces;
     }
-    // Entries of A are below 2^(scale + fine): forces per length above the largest load / that. 120 bits below are
-    // kept.
-    const long shift = 120 + solver.scale(problem) + problem.fine - *size;
+    // Entries of A are below 2^(scale + fine): forces per length above the largest load / that. 40 bits more than the
+    // vertex has, 120 or more, are kept below.
+    const long shift = problem.digits + 40 + solver.scale(problem) + problem.fine - *size;
     Balance balance(problem, vertex, load, shift);
     if (solver.usable()) {
         balance.refine(solver);

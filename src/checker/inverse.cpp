@@ -237,7 +237,7 @@ InverseBound bound_gmp(const Problem& problem, const Solver& solver, const Colum
             }
             const Eigen::MatrixXd x = solver.solve_transposed(b);
             for (int l = 0; l < n; ++l) {
-                r[static_cast<std::size_t>(l)] += scaled_integer(x(l, 0), to_row);
+                add_scaled(r[static_cast<std::size_t>(l)], x(l, 0), to_row);
             }
             residual = rows.residual(k, r);
             long now = 0;

@@ -34,9 +34,6 @@ Integer in_units(double value, long unit) {
     return result;
 }
 
-/// Bits beyond the stored ones in which the true vertex is sought.
-constexpr long extra_bits = 80;
-
 /// Where a coordinate is at every true vertex, counted from the origin or from the upper wall.
 struct Known {
     enum From { nothing, origin, upper_wall } from = nothing;
@@ -114,7 +111,8 @@ Structure::Structure(const Packing<2>& packing, const std::vector<Contact>& cont
     std::frexp(mean, &wall_exponent);
 }
 
-Problem::Problem(const State<2>& state, bool held_allowed) : Structure(state.packing, state.contacts) {
+Problem::Problem(const State<2>& state, bool held_allowed, int asked)
+    : Structure(state.packing, state.contacts), digits(asked) {
     const Packing<2>& packing = state.packing;
     disks = packing.disk_count();
     for (const Contact& contact : state.contacts) {
@@ -142,7 +140,7 @@ Problem::Problem(const State<2>& state, bool held_allowed) : Structure(state.pac
     for (const double r : packing.radius) {
         unit = std::min(unit, granularity(r, unit));
     }
-    fine = unit - extra_bits;
+    fine = unit - digits;
     spare = coordinate_unit - fine;
     weight_bits = wall_exponent - fine;
     for (const double x : packing.q) {
@@ -216,10 +214,10 @@ std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q) con
         };
         Integer& value = residuals.emplace_back();
         if (row.quadratic) {
-            value = -sum_square[l];
+            mpz_neg(value.get_mpz_t(), sum_square[l].get_mpz_t());
             for (const int k : {0, 1}) {
                 difference = at(k) - at(k + 2);
-                value += difference * difference;
+                mpz_addmul(value.get_mpz_t(), difference.get_mpz_t(), difference.get_mpz_t());
             }
             continue;
         }

@@ -24,6 +24,9 @@ struct Row {
 /// K1 (b): a row times a vector changes by at most this, times the distance, times the largest component.
 inline constexpr int row_curvature = 8;
 
+/// `Problem::digits` when more are not asked for.
+inline constexpr int usual_digits = 80;
+
 /// Which coordinates move, and what each contact depends on.
 struct Structure {
     Structure(const Packing<2>& packing, const std::vector<Contact>& contacts);
@@ -39,7 +42,7 @@ class Problem : public Structure {
   public:
     /// `held_allowed`: a held coordinate is a row like that of a wall, its residual the weight times the way from its
     /// stored value.
-    explicit Problem(const State<2>& state, bool held_allowed = false);
+    explicit Problem(const State<2>& state, bool held_allowed = false, int asked = usual_digits);
 
     /// Empty, or why this state is outside what the checker handles.
     std::string unsupported;
@@ -54,6 +57,7 @@ class Problem : public Structure {
     std::vector<std::vector<int>> acting_on;
     long fine = 0;
     long spare = 0;
+    int digits;           ///< bits beyond the stored ones in which the true vertex is sought
     long weight_bits = 0; ///< the weight of walls is 2^weight_bits units
 
     [[nodiscard]] int dofs() const { return static_cast<int>(coordinate_of.size()); }

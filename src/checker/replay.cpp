@@ -76,9 +76,10 @@ Range Place::length(int axis) const {
 }
 
 Objections make_place(State<2> state, Place& place, const ExactLoad& load, int fresh,
-                      std::shared_ptr<const Solver> near) {
+                      std::shared_ptr<const Solver> near, int digits) {
     place.state = std::make_unique<State<2>>(std::move(state));
-    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near));
+    place.evidence =
+        std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near), digits);
     place.load = load;
     place.fresh = fresh;
     Evidence& e = *place.evidence;
@@ -123,6 +124,17 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
     return {};
 }
 
+Objections sharpen(Place& place, int digits) {
+    Place sharper;
+    Objections open =
+        make_place(State<2>(*place.state), sharper, place.load, place.fresh, place.evidence->solver, digits);
+    if (sharper.evidence->vertex.found) {
+        sharper.evidence->solver = place.evidence->solver; // the next motion starts with the same factors
+        place = std::move(sharper);
+    }
+    return open;
+}
+
 Objections decide(const Place& place, Decision& decision) {
     if (Objections open = negative_ones(place, true, decision.candidates)) {
         return open;
@@ -158,8 +170,10 @@ Objections compare(const char* name, const Bounded& said, const Range& found, do
         return Objection{true, fmt::format("{} is {} +- {}, found {}", name, value, bound, shown(found))};
     }
     if (!(bound <= loosest)) {
-        return Objection{false, fmt::format("{} is {} +- {}: a bound that says too little (at most {:.3g} is accepted)",
-                                            name, value, bound, loosest)};
+        return Objection{false,
+                         fmt::format("{} is {} +- {}: a bound that says too little (at most {:.3g} is accepted)", name,
+                                     value, bound, loosest),
+                         true};
     }
     const Rational lower = Rational(value) - Rational(bound);
     const Rational upper = Rational(value) + Rational(bound);
@@ -176,11 +190,12 @@ Objections compare(const char* name, const Bounded& said, const Range& found, do
         return compare(name, said, found, loosest);
     }
     if (!event.estimated) {
-        return Objection{false, fmt::format("{} is {}, without a bound", name, said.value)};
+        return Objection{false, fmt::format("{} is {}, without a bound", name, said.value), true};
     }
     Objections off = compare(name, {said.value, record_tolerance * size}, found, record_tolerance * size);
     if (off) {
         off->wrong = false;
+        off->for_good = true;
     }
     return off;
 }
@@ -558,7 +573,8 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
         return wrong;
     }
     if (rule != "most_negative" && rule != "least_negative" && rule != "least_index") {
-        return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule)};
+        return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule),
+                         true};
     }
     return {};
 }

@@ -16,12 +16,15 @@ namespace isostat::checker {
 struct Objection {
     bool wrong = false; ///< the record contradicts what was found; false: it could not be decided
     std::string text;
+    bool for_good = false; ///< more digits of the vertex would not change it
 };
 using Objections = std::optional<Objection>;
 
 /// Records hold numbers that were computed in double: those without a bound are compared to this relative size, and no
 /// bound of a length, a strain or the potential may be larger.
 inline constexpr double record_tolerance = 1e-9;
+/// The same for the strain at the end of an arc.
+inline constexpr double arc_strain_tolerance = 1e-6;
 /// The same for bounds of forces and of ends of intervals, which are what the structure is conditioned to.
 inline constexpr double force_tolerance = 1e-3;
 /// A power turn is located in double: the power there, and how fast the coordinate held is, are compared to this.
@@ -80,9 +83,11 @@ struct Place {
 };
 
 /// The vertex near a configuration; an objection when none is proved there, or a force is neither told from 0 nor a
-/// structural zero. `near`: factors of the matrix close by, or nothing.
+/// structural zero. `near`: factors of the matrix close by, or nothing. `digits`: of the problem.
 Objections make_place(State<2> state, Place& place, const ExactLoad& load = {}, int fresh = -1,
-                      std::shared_ptr<const Solver> near = {});
+                      std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
+/// The same vertex with more digits; the old one stays where none is proved. What `make_place` says of it.
+Objections sharpen(Place& place, int digits);
 
 /// Which contact the rule opens at a vertex.
 struct Decision {

@@ -156,7 +156,8 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     const Load<2>& load = to.state->load;
     const Range strain = strain_of(to, load.loaded_axis);
-    if (Objections wrong = compare("eps2", {event.strain, event.strain_bound}, strain, record_tolerance, event, 1)) {
+    if (Objections wrong =
+            compare("eps2", {event.strain, event.strain_bound}, strain, arc_strain_tolerance, event, 1)) {
         return wrong;
     }
     for (const Gap& gap : to.gaps()) {

@@ -1,20 +1,68 @@
 #include "checker/solver.hpp"
 
+#include <Eigen/SparseCore>
+#include <klu.h>
+
+#include <algorithm>
+#include <vector>
+
 namespace isostat::checker {
 
-Integer scaled_integer(double value, long shift) {
+void add_scaled(Integer& target, double value, long shift) {
     if (!std::isfinite(value)) {
-        return 0;
+        return;
     }
+    static thread_local Integer part; // millions of these: memory is taken once
     int exponent = 0;
-    const Integer mantissa(std::ldexp(std::frexp(value, &exponent), 53));
+    part = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 53));
     const long left = exponent - 53 + shift;
     if (left >= 0) {
-        return shifted_left(mantissa, left);
+        mpz_mul_2exp(part.get_mpz_t(), part.get_mpz_t(), static_cast<mp_bitcnt_t>(left));
+    } else {
+        mpz_tdiv_q_2exp(part.get_mpz_t(), part.get_mpz_t(), static_cast<mp_bitcnt_t>(-left));
     }
-    Integer result;
-    mpz_tdiv_q_2exp(result.get_mpz_t(), mantissa.get_mpz_t(), static_cast<mp_bitcnt_t>(-left));
-    return result;
+    target += part;
+}
+
+/// Of KLU, which keeps nothing of the matrix.
+struct Solver::Factors {
+    klu_common common{};
+    klu_symbolic* symbolic = nullptr;
+    klu_numeric* numeric = nullptr;
+    int size = 0;
+
+    explicit Factors(Eigen::SparseMatrix<double>& matrix) : size(static_cast<int>(matrix.rows())) {
+        klu_defaults(&common);
+        symbolic = klu_analyze(size, matrix.outerIndexPtr(), matrix.innerIndexPtr(), &common);
+        if (symbolic != nullptr) {
+            numeric = klu_factor(matrix.outerIndexPtr(), matrix.innerIndexPtr(), matrix.valuePtr(), symbolic, &common);
+        }
+    }
+    ~Factors() {
+        klu_free_numeric(&numeric, &common);
+        klu_free_symbolic(&symbolic, &common);
+    }
+    Factors(const Factors&) = delete;
+    Factors& operator=(const Factors&) = delete;
+
+    /// KLU solves in a workspace of the factors: each thread brings its own.
+    template <class Solve> [[nodiscard]] Eigen::MatrixXd solved(Eigen::MatrixXd b, Solve solve) const {
+        static thread_local std::vector<double> work;
+        work.resize(std::max(work.size(), 4 * static_cast<std::size_t>(size))); // four right-hand sides at once
+        klu_numeric own = *numeric;
+        own.Xwork = work.data();
+        klu_common status = common;
+        solve(symbolic, &own, size, static_cast<int>(b.cols()), b.data(), &status);
+        return b;
+    }
+};
+
+Eigen::MatrixXd Solver::solve(Eigen::MatrixXd b) const {
+    return factors_->solved(std::move(b), [](auto... arguments) { klu_solve(arguments...); });
+}
+
+Eigen::MatrixXd Solver::solve_transposed(Eigen::MatrixXd b) const {
+    return factors_->solved(std::move(b), [](auto... arguments) { klu_tsolve(arguments...); });
 }
 
 namespace {
@@ -55,8 +103,10 @@ Solver::Solver(const Structure& structure, const std::vector<double>& q) {
     Eigen::SparseMatrix<double> matrix(n, n);
     matrix.setFromTriplets(entries.begin(), entries.end());
     matrix *= std::ldexp(1.0, -exponent_);
-    lu_.compute(matrix);
-    usable_ = lu_.info() == Eigen::Success;
+    auto factors = std::make_shared<const Factors>(matrix);
+    if (factors->numeric != nullptr) {
+        factors_ = std::move(factors);
+    }
 }
 
 } // namespace isostat::checker

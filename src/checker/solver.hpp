@@ -5,8 +5,8 @@
 #include "checker/problem.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
+
+#include <memory>
 
 namespace isostat::checker {
 
@@ -17,24 +17,23 @@ class Solver {
     /// At the stored coordinates.
     explicit Solver(const Problem& problem);
     /// False: the factorisation gave up (which says nothing about the matrix).
-    [[nodiscard]] bool usable() const { return usable_; }
+    [[nodiscard]] bool usable() const { return factors_ != nullptr; }
     /// About the size of the largest entry, as a length.
     [[nodiscard]] int exponent() const { return exponent_; }
     /// The same in units of the problem's `fine`.
     [[nodiscard]] long scale(const Problem& problem) const { return exponent_ - problem.fine; }
-    /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom.
-    [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const { return lu_.solve(b); }
+    /// (A / 2^exponent)^-1 b: b per contact, result per degree of freedom. Any number of threads may ask. \pre usable
+    [[nodiscard]] Eigen::MatrixXd solve(Eigen::MatrixXd b) const;
     /// (A / 2^exponent)^-T b: b per degree of freedom, result per contact.
-    [[nodiscard]] Eigen::MatrixXd solve_transposed(const Eigen::MatrixXd& b) const { return lu_.transpose().solve(b); }
+    [[nodiscard]] Eigen::MatrixXd solve_transposed(Eigen::MatrixXd b) const;
 
   private:
-    using Lu = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>>;
+    struct Factors; ///< of KLU
     int exponent_ = 0;
-    bool usable_ = false;
-    mutable Lu lu_; ///< its transposed view is not const
+    std::shared_ptr<const Factors> factors_; ///< null: it gave up
 };
 
-/// value * 2^shift, rounded towards zero; 0 for what is not finite.
-Integer scaled_integer(double value, long shift);
+/// target += value * 2^shift, rounded towards zero; nothing for what is not finite.
+void add_scaled(Integer& target, double value, long shift);
 
 } // namespace isostat::checker

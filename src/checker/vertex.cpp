@@ -8,11 +8,15 @@ namespace {
 std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
     std::vector<Integer> q = problem.stored;
     long size = -1;
+    long rounding = 0; // bits of the residual where a coordinate is off by some units
+    for (const Integer& length : problem.sum) {
+        rounding = std::max(rounding, bits(length) + 3);
+    }
     for (int step = 0; step < 40; ++step) {
         Eigen::MatrixXd b(problem.contacts(), 1);
         const std::vector<Integer> residual = problem.twice_residuals(q);
         const long now = bits(largest_of(residual));
-        if (now == 0 || (size >= 0 && now >= size)) {
+        if (now <= rounding || (size >= 0 && now >= size)) {
             break;
         }
         size = now;
@@ -22,8 +26,8 @@ std::vector<Integer> improved(const Problem& problem, const Solver& solver) {
         // F = residual / 2, A = 2^scale times the matrix that was factorised.
         const Eigen::MatrixXd x = solver.solve(b);
         for (int k = 0; k < problem.dofs(); ++k) {
-            q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])] -=
-                scaled_integer(x(k, 0), now - 1 - solver.scale(problem));
+            add_scaled(q[static_cast<std::size_t>(problem.coordinate_of[static_cast<std::size_t>(k)])], -x(k, 0),
+                       now - 1 - solver.scale(problem));
         }
     }
     return q;

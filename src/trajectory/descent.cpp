@@ -1,5 +1,7 @@
 #include "trajectory/descent.hpp"
 
+#include "verified/precise_vertex.hpp"
+
 #include <qd/dd_real.h>
 
 #include <algorithm>
@@ -106,6 +108,52 @@ Enclosure decrease_of_phi(const Vertex<Dim>& start, const Place<Dim>& from, cons
     return {value.x[0], bound >= 0 ? bound : std::numeric_limits<double>::infinity()};
 }
 
+/// What -F.q, or Phi, loses on the way, as an interval of at least `bits`.
+template <int Dim>
+PreciseInterval decrease_between(const PreciseVertex<Dim>& from, const PreciseVertex<Dim>& to, const Vertex<Dim>& start,
+                                 const Load<Dim>& load, bool infinitesimal, int bits) {
+    PreciseInterval sum(bits);
+    const auto exactly = [bits](double x) { return difference(x, 0, bits); };
+    const std::vector<double>& on_disks = infinitesimal ? load.infinitesimal : load.disk_force;
+    for (std::size_t k = 0; k < on_disks.size(); ++k) {
+        if (on_disks[k] != 0 && start.structure.dofs().dof_of(k) >= 0) {
+            sum = sum + exactly(on_disks[k]) * (to[k] - from[k]);
+        }
+    }
+    if (infinitesimal) {
+        return sum;
+    }
+    for (const WallForce& wall : load.wall_forces(start.packing)) {
+        const auto k = static_cast<std::size_t>(wall.coordinate);
+        const PreciseInterval a = from[k];
+        const PreciseInterval b = to[k];
+        if (load.kind == LoadKind::nominal) {
+            sum = sum + exactly(wall.stress) * exactly(wall.length) * (a - b);
+        } else {
+            sum = sum + exactly(wall.stress) * (logarithm(a) - logarithm(b));
+        }
+    }
+    return sum;
+}
+
+/// In MPFR, until the sign is known; `rough` where that says no more.
+template <int Dim>
+Enclosure precise_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal,
+                           const Enclosure& rough) {
+    PreciseVertex<Dim> a(from.packing, from.structure, from.factorisation, from.inverse);
+    PreciseVertex<Dim> b(to.packing, to.structure, to.factorisation, to.inverse);
+    Enclosure best = rough;
+    constexpr LadderOptions ladder;
+    for (int bits = ladder.first_bits; bits <= ladder.max_bits && !best.decided(); bits *= 2) {
+        if (!a.enclose(bits) || !b.enclose(bits)) {
+            break;
+        }
+        const Enclosure found = decrease_between(a, b, from, load, infinitesimal, bits).rounded();
+        best = found.radius < best.radius ? found : best;
+    }
+    return best;
+}
+
 } // namespace
 
 template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to) {
@@ -151,8 +199,9 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
     if (a.verdict != Verdict::proved || b.verdict != Verdict::proved) {
         return rough;
     }
-    return between(Place<Dim>{from.packing.q, a.correction, a.radius},
-                   Place<Dim>{to.packing.q, b.correction, b.radius});
+    const Enclosure near =
+        between(Place<Dim>{from.packing.q, a.correction, a.radius}, Place<Dim>{to.packing.q, b.correction, b.radius});
+    return near.decided() ? near : precise_decrease(from, to, load, infinitesimal, near);
 }
 
 template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);

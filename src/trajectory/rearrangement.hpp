@@ -44,6 +44,8 @@ template <int Dim> class Rearrangement {
 
     /// `begun`: a guess of this rearrangement, or null. Once.
     Result<Reached<Dim>> run(std::unique_ptr<NextRearrangement<Dim>> begun);
+    /// Recorded so far.
+    [[nodiscard]] int arcs() const { return arcs_; }
 
   private:
     [[nodiscard]] const RunOptions& options() const { return recorder_.options; }

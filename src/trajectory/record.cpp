@@ -151,6 +151,29 @@ template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, 
     return forces;
 }
 
+/// An end of the supported interval that is known to a relative `vague` only is asked for again with more digits, until
+/// it is known to `sharp` or the ladder ends: where slopes are small, more are needed than the signs of the forces
+/// need.
+constexpr double vague = 1e-6;
+constexpr double sharp = 1e-10;
+
+template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, double sigma, int direction) {
+    PerturbedStatics<Dim>* const side = vertex.first_order();
+    const std::size_t settled = side != nullptr ? side->log.size() : 0;
+    auto limit = find_limit(vertex.statics, sigma, direction, side);
+    const auto worse_than = [&](double accuracy) {
+        const LoadLimit& end = limit.value();
+        return !end.unbounded && !(end.stress_error <= accuracy * std::max(std::abs(end.stress), std::abs(sigma)));
+    };
+    for (double asked = vague; limit.ok() && worse_than(asked) && vertex.statics.climb(); asked = sharp) {
+        if (side != nullptr) {
+            side->log.resize(settled); // the same question once more
+        }
+        limit = find_limit(vertex.statics, sigma, direction, side);
+    }
+    return limit;
+}
+
 /// Both ends of the supported interval.
 template <int Dim>
 std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim>& vertex, double sigma) {
@@ -164,7 +187,7 @@ std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim
             opens = none;
             continue;
         }
-        const auto limit = find_limit(vertex.statics, sigma, direction, vertex.first_order());
+        const auto limit = well_known_limit(vertex, sigma, direction);
         if (!limit.ok()) {
             return failed(limit.failure().kind, "{} end of the supported interval: {}",
                           direction > 0 ? "upper" : "lower", limit.failure());

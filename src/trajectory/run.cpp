@@ -45,6 +45,7 @@ template <int Dim> class Run {
     Result<bool> next_equilibrium();
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
+    std::optional<double> beyond(double limit);
     std::optional<Failure> rearrange(const Opening& opening, const std::string& kind, LimitLoad<Dim> at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
     [[nodiscard]] std::optional<Failure> check(const EquilibriumRecord<Dim>& record);
@@ -303,17 +304,47 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
     return true;
 }
 
+/// The first double beyond the limit at which a rearrangement began in vain; none: it is not known that well. The
+/// nearest double may lie before the limit: the force that opens is then still positive, by roundings, and on a way as
+/// short as those the potential grows.
+template <int Dim> std::optional<double> Run<Dim>::beyond(double limit) {
+    const double step = std::nextafter(std::abs(limit), infinity) - std::abs(limit);
+    auto found = isostat::find_limit(vertex_->statics, sigma(), segment_.direction, vertex_->first_order());
+    while (found.ok() && !(found.value().stress_error <= step) && vertex_->statics.climb()) {
+        found = isostat::find_limit(vertex_->statics, sigma(), segment_.direction, vertex_->first_order());
+    }
+    if (!found.ok() || !(found.value().stress_error <= step)) {
+        return std::nullopt;
+    }
+    return std::nextafter(found.value().stress + segment_.direction * found.value().stress_error,
+                          segment_.direction * infinity);
+}
+
 template <int Dim>
 std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, const std::string& kind, LimitLoad<Dim> at) {
-    prover_.start_at(vertex_->packing);
-    const Load<Dim> load = at.load;
     const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
-    Rearrangement<Dim> rearrangement({vertex_, opening, kind, std::move(at)}, prover_, recorder_,
-                                     last ? nullptr : &segment_);
-    auto reached = rearrangement.run(std::move(next_));
+    const Segment* const following = last ? nullptr : &segment_;
+    const RunCounters before = counters_;
+    const auto attempt = [&](bool& begun) {
+        prover_.start_at(vertex_->packing);
+        Rearrangement<Dim> rearrangement({vertex_, opening, kind, at}, prover_, recorder_, following);
+        auto reached = rearrangement.run(std::move(next_));
+        begun = rearrangement.arcs() > 0;
+        return reached;
+    };
+    bool begun = false;
+    auto reached = attempt(begun);
+    if (!reached.ok() && reached.failure().kind == FailureKind::undecided && kind == "limit" && !begun && !perturbs()) {
+        if (const auto stress = beyond(at.stress())) {
+            counters_ = before;
+            at.set_stress(*stress);
+            reached = attempt(begun);
+        }
+    }
     if (!reached.ok()) {
         return reached.failure();
     }
+    const Load<Dim> load = at.load;
     Reached<Dim>& there = reached.value();
     next_ = std::move(there.next);
     vertex_ = std::move(there.proof.vertex);

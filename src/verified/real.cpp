@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace isostat {
 
@@ -13,6 +14,21 @@ double PreciseInterval::margin() const {
     mpfr_div(centre.get(), centre.get(), radius.get(), MPFR_RNDD);
     mpfr_abs(centre.get(), centre.get(), MPFR_RNDD);
     return centre.below();
+}
+
+Enclosure PreciseInterval::rounded() const {
+    Real centre(64);
+    mpfr_add(centre.get(), low.get(), high.get(), MPFR_RNDN);
+    mpfr_div_2ui(centre.get(), centre.get(), 1, MPFR_RNDN);
+    const Real value(centre.nearest(), 53);
+    Real below(64);
+    Real over(64);
+    mpfr_sub(below.get(), value.get(), low.get(), MPFR_RNDU);
+    mpfr_sub(over.get(), high.get(), value.get(), MPFR_RNDU);
+    // mpfr_max ignores a NaN: both ends must be numbers.
+    const bool known = mpfr_number_p(low.get()) != 0 && mpfr_number_p(high.get()) != 0;
+    mpfr_max(over.get(), over.get(), below.get(), MPFR_RNDU);
+    return {value.nearest(), known ? over.above() : std::numeric_limits<double>::infinity()};
 }
 
 PreciseInterval difference(double at, double from, mpfr_prec_t bits) {
@@ -83,6 +99,17 @@ PreciseInterval magnitude(const PreciseInterval& a) {
     PreciseInterval result = -a;
     mpfr_max(result.high.get(), result.high.get(), a.high.get(), MPFR_RNDU);
     mpfr_set_zero(result.low.get(), 1);
+    return result;
+}
+
+PreciseInterval logarithm(const PreciseInterval& a) {
+    PreciseInterval result(a.bits());
+    mpfr_log(result.low.get(), a.low.get(), MPFR_RNDD);
+    mpfr_log(result.high.get(), a.high.get(), MPFR_RNDU);
+    if (!a.positive()) {
+        mpfr_set_nan(result.low.get());
+        mpfr_set_nan(result.high.get());
+    }
     return result;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // MPFR numbers with their lifetime, and intervals of them: private to the room.
 
+#include <isostat/core/enclosure.hpp>
+
 #include <mpfr.h>
 
 #include <algorithm>
@@ -94,6 +96,8 @@ class PreciseInterval {
     [[nodiscard]] bool zero() const { return mpfr_zero_p(low.get()) != 0 && mpfr_zero_p(high.get()) != 0; }
     /// |centre| / radius, infinite for a point.
     [[nodiscard]] double margin() const;
+    /// The same in doubles: the middle rounded, with what that may lose.
+    [[nodiscard]] Enclosure rounded() const;
 };
 
 /// at - from.
@@ -105,5 +109,7 @@ PreciseInterval operator*(const PreciseInterval& a, const PreciseInterval& b);
 /// \pre b positive
 PreciseInterval operator/(const PreciseInterval& a, const PreciseInterval& b);
 PreciseInterval magnitude(const PreciseInterval& a);
+/// NaN where a may be 0 or less.
+PreciseInterval logarithm(const PreciseInterval& a);
 
 } // namespace isostat

@@ -115,7 +115,7 @@ BOOST_AUTO_TEST_CASE(nothing_is_claimed_where_nothing_moves_or_no_potential_exis
 
 BOOST_AUTO_TEST_CASE(walls_that_move_against_each_other_are_judged_by_the_sum_of_the_logarithms) {
     // sigma_1 ln L1 + sigma_2 ln L2 with L1 -> L1 (1 + t), L2 -> L2 (1 - t): the first order cancels.
-    for (const double t : {0x1p-4, 0x1p-12, 0x1p-22}) {
+    for (const double t : {0x1p-4, 0x1p-12, 0x1p-22, 0x1p-50}) { // t^2 = 2^-100: below double-double
         const auto box = [&](double lx, double ly) {
             State<2> state = one_disk(1, 1);
             state.packing.radius = {0.25, 0.25};
@@ -136,6 +136,14 @@ BOOST_AUTO_TEST_CASE(walls_that_move_against_each_other_are_judged_by_the_sum_of
         const Enclosure phi = potential_decrease(*from, *to, load, false);
         BOOST_TEST(phi.positive(), t << ": " << phi.value << " +- " << phi.radius);
         BOOST_TEST(abs(Wide(phi.value) + log(1 - Wide(t) * Wide(t))) <= Wide(phi.radius));
+        // Dead loads that differ in the last bit: W changes by that times t, in either direction.
+        load.kind = LoadKind::nominal;
+        for (const bool falls : {true, false}) {
+            load.reference_length = {falls ? 1 + 0x1p-52 : 1, falls ? 1 : 1 + 0x1p-52};
+            const Enclosure dead = potential_decrease(*from, *to, load, false);
+            BOOST_TEST((falls ? dead.positive() : dead.negative()), t << ": " << dead.value << " +- " << dead.radius);
+            BOOST_TEST(abs(abs(Wide(dead.value)) - Wide(t) * Wide(0x1p-52)) <= Wide(dead.radius));
+        }
     }
 }
 

@@ -1,0 +1,35 @@
+#pragma once
+// The true vertex in MPFR, coordinate by coordinate: private to the rooms verified and trajectory.
+
+#include "verified/enclosed_vertex.hpp"
+
+#include <optional>
+
+namespace isostat {
+
+/// Statement V5 with any number of bits. The arguments must outlive it.
+template <int Dim> class PreciseVertex {
+  public:
+    PreciseVertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                  const Factorisation& factorisation, const InverseBound& inverse)
+        : packing_(packing), structure_(structure), factorisation_(factorisation),
+          at_q_(Neighbourhood::of(packing, structure.contacts(), inverse)) {}
+
+    /// Encloses it, beginning where fewer bits ended; false: no vertex was proved. Cost: N gaps and a solve per 30
+    /// bits or so.
+    bool enclose(int bits);
+    /// Coordinate k of the true vertex, in the bits of the last `enclose`; what cannot move is where it is stored.
+    /// \pre `enclose` succeeded.
+    [[nodiscard]] PreciseInterval operator[](std::size_t k) const;
+
+  private:
+    const Packing<Dim>& packing_;
+    const IsostaticStructure<Dim>& structure_;
+    const Factorisation& factorisation_;
+    Neighbourhood at_q_;
+    std::optional<EnclosedVertex<Dim, Real>> vertex_;
+};
+
+extern template class PreciseVertex<2>;
+
+} // namespace isostat

@@ -5,6 +5,7 @@
 #include "checker/gaps.hpp"
 #include "checker/inverse.hpp"
 #include "checker/maker.hpp"
+#include "checker/replay.hpp"
 #include "checker/small_states.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
@@ -52,6 +53,21 @@ void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(more_digits_narrow_the_vertex_and_its_forces) {
+    checker::Place place;
+    BOOST_REQUIRE(!checker::make_place(crafted::three_disks(1, 1.1, 1.3, 1, 1), place));
+    const checker::Rational radius = place.evidence->vertex.radius;
+    const std::vector<checker::Range> forces = place.evidence->forces;
+    BOOST_TEST(radius > 0);
+    BOOST_REQUIRE(!checker::sharpen(place, checker::usual_digits + 240));
+    BOOST_TEST((place.evidence->vertex.radius < radius * checker::power_of_two(-200)));
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        const checker::Range& now = place.evidence->forces[l];
+        BOOST_TEST((now.upper - now.lower <= (forces[l].upper - forces[l].lower) * checker::power_of_two(-200)));
+        BOOST_TEST((now.lower <= forces[l].upper && now.upper >= forces[l].lower)); // of the same number
+    }
+}
 
 BOOST_AUTO_TEST_CASE(bounds_of_the_inverse_agree_with_a_dense_inverse) {
     for (const CheckerArithmetic arithmetic :

@@ -337,18 +337,18 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
     return false;
 }
 
-/// The end is known to less than a millionth of it, and of the present stress.
-bool is_vague(const LoadEndClaim& end, double present) {
+/// The end is not known to a millionth of it, or of the largest stress of the load.
+bool is_vague(const LoadEndClaim& end, double largest) {
     constexpr double millionth = 1e-6;
     const Interval& at = end.stress;
     return !end.unbounded &&
-           !(at.upper - at.lower <= millionth * std::max({std::abs(at.lower), std::abs(at.upper), std::abs(present)}));
+           !(at.upper - at.lower <= millionth * std::max({std::abs(at.lower), std::abs(at.upper), largest}));
 }
 
 /// Climbs until both ends are proved, and well known where the rungs reach that.
 template <int Dim> void Prover<Dim>::prove_load_interval() {
     std::optional<LoadIntervalClaim>& claim = result_.claims.load_interval;
-    const double present = state_.load.stress[static_cast<std::size_t>(state_.load.loaded_axis)];
+    const double largest = std::max(std::abs(state_.load.stress[0]), std::abs(state_.load.stress[1]));
     std::string open;
     do {
         const LoadEndAnswer low = vertex_->load_end(-1);
@@ -356,7 +356,7 @@ template <int Dim> void Prover<Dim>::prove_load_interval() {
         if (low.claim && high.claim) {
             claim = LoadIntervalClaim{*low.claim, *high.claim, vertex_->rung()};
         }
-        if (claim && !is_vague(claim->low, present) && !is_vague(claim->high, present)) {
+        if (claim && !is_vague(claim->low, largest) && !is_vague(claim->high, largest)) {
             return;
         }
         open = fmt::format("{}{}{} ({})", low.open_question,

@@ -26,7 +26,13 @@ void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<D
     record.work = work_of(load, from.packing, to.packing).value;
     if (load.kind == LoadKind::nominal) {
         const Enclosure work = decrease ? *decrease : work_between(from, to, load);
-        record.work_bound = (std::abs(record.work - work.value) + work.radius) * (1 + 0x1p-50);
+        // Where the sign took many digits: no finer than double-double, which whoever checks the record can confirm.
+        double size = 0;
+        for (const WallForce& wall : load.wall_forces(from.packing)) {
+            size += std::abs(wall.stress * wall.length * from.packing.q[static_cast<std::size_t>(wall.coordinate)]);
+        }
+        record.work_bound =
+            (std::abs(record.work - work.value) + std::max(work.radius, 0x1p-98 * size)) * (1 + 0x1p-50);
     }
 }
 

@@ -151,19 +151,24 @@ template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, 
     return forces;
 }
 
-/// An end of the supported interval that is known to a relative `vague` only is asked for again with more digits, until
-/// it is known to `sharp` or the ladder ends: where slopes are small, more are needed than the signs of the forces
-/// need.
+/// An end of the supported interval that is known to `vague` only, relative to it or to the largest stress, is asked
+/// for again with more digits, until it is known to `sharp` or the ladder ends: where slopes are small, more are needed
+/// than the signs of the forces need.
 constexpr double vague = 1e-6;
 constexpr double sharp = 1e-10;
 
-template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, double sigma, int direction) {
+template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, const Load<Dim>& load, int direction) {
+    const double sigma = loaded_stress(load);
+    double largest = 0;
+    for (const double stress : load.stress) {
+        largest = std::max(largest, std::abs(stress));
+    }
     PerturbedStatics<Dim>* const side = vertex.first_order();
     const std::size_t settled = side != nullptr ? side->log.size() : 0;
     auto limit = find_limit(vertex.statics, sigma, direction, side);
     const auto worse_than = [&](double accuracy) {
         const LoadLimit& end = limit.value();
-        return !end.unbounded && !(end.stress_error <= accuracy * std::max(std::abs(end.stress), std::abs(sigma)));
+        return !end.unbounded && !(end.stress_error <= accuracy * std::max(std::abs(end.stress), largest));
     };
     for (double asked = vague; limit.ok() && worse_than(asked) && vertex.statics.climb(); asked = sharp) {
         if (side != nullptr) {
@@ -176,18 +181,18 @@ template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, doubl
 
 /// Both ends of the supported interval.
 template <int Dim>
-std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim>& vertex, double sigma) {
+std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim>& vertex, const Load<Dim>& load) {
     constexpr Contact none{ContactKind::disk_disk, -1, -1};
     EquilibriumRecord<Dim>& record = description.record;
     for (const int direction : {-1, +1}) {
         double& stress = direction > 0 ? record.stress_high : record.stress_low;
         Contact& opens = direction > 0 ? record.opens_high : record.opens_low;
         if (record.held > 0) { // at this load only: the multiplier of the held coordinate vanishes just here
-            stress = sigma;
+            stress = loaded_stress(load);
             opens = none;
             continue;
         }
-        const auto limit = well_known_limit(vertex, sigma, direction);
+        const auto limit = well_known_limit(vertex, load, direction);
         if (!limit.ok()) {
             return failed(limit.failure().kind, "{} end of the supported interval: {}",
                           direction > 0 ? "upper" : "lower", limit.failure());
@@ -234,11 +239,16 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     record.backbone = vertex.statics.backbone_count();
     record.gap_residual = vertex.enclosure.max_gap;
     record.sigma_min_bound = vertex.inverse.sigma_min;
-    if (auto failure = describe_limits(description, vertex, sigma)) {
+    if (auto failure = describe_limits(description, vertex, load)) {
         return *failure;
     }
     // After the limits: they may have climbed, and the bounds are then those of the better solution.
-    record.force_bound = vertex.statics.bound(sigma);
+    // No finer than double-double all the same: whoever checks the record can confirm that.
+    double largest = 0;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        largest = std::max(largest, std::abs(vertex.statics.force(ContactId(l), sigma).value));
+    }
+    record.force_bound = std::max(vertex.statics.bound(sigma), 0x1p-98 * largest);
     record.balance = vertex.statics.residual(sigma);
     record.virtual_power = virtual_power_error(vertex, sigma);
     record.min_force = std::numeric_limits<double>::infinity();

@@ -90,53 +90,6 @@ int status_of(Verdict verdict) {
     return undecided;
 }
 
-std::string advice(const Scene& scene, const Failure& failure, std::vector<double> radius) {
-    std::sort(radius.begin(), radius.end());
-    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
-    const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
-    if (!open) {
-        return "";
-    }
-    if (!scene.start.empty()) {
-        return equal ? fmt::format("; equal radii: try isostat import {} --jitter 1e-9 --contacts nearest",
-                                   scene.start.string())
-                     : "";
-    }
-    constexpr double ample = 1e-6;
-    const double jitter = scene.preparation.jitter;
-    return equal && jitter == 0           ? "; equal radii: try [packing] jitter = 1e-9"
-           : jitter > 0 && jitter < ample ? fmt::format("; nearly equal radii: try a larger jitter than {}", jitter)
-                                          : "";
-}
-
-State<2> load_start(const Scene& scene) {
-    const std::string source = scene.start.string();
-    State<2> state = read_state<2>(scene.start).state;
-    if (scene.load_kind) {
-        state.load.kind = *scene.load_kind;
-    }
-    if (scene.infinitesimal_seed) {
-        state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, *scene.infinitesimal_seed);
-    }
-    state.equilibrium = 0;
-    state.perturbation.reset(); // a run has its own
-    for (std::size_t a = 0; a < 2; ++a) {
-        if (!(state.load.stress[a] > 0)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: load.stress[{}] is {}: expected a positive stress",
-                                                          source, a, state.load.stress[a]));
-        }
-    }
-    check_start(state, source, scene.run.ties == TiePolicy::perturb);
-    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-    check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
-    if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
-        Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
-        provenance["moved_to_grid"] = moved;
-        state.provenance = provenance.dump();
-    }
-    return state;
-}
-
 Result<State<2>> prepare_start(const Scene& scene, const std::string& command, bool quiet,
                                const std::filesystem::path& failed_path) {
     StatusLine line(quiet);
@@ -178,15 +131,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         }
         return Failure{prepared.failure().kind, message};
     }
-    Json provenance;
-    provenance["program"] = program_name();
-    provenance["command"] = command;
-    provenance["scene_file"] = scene.file;
-    provenance["settings"] = Json::parse(settings_json(scene));
-    provenance["infinitesimal_seed"] = report.infinitesimal_seed;
-    provenance["linear_programmes"] = report.programmes;
-    provenance["pivots"] = report.pivots;
-    prepared.value().provenance = json::dumped(provenance);
+    prepared.value().provenance = provenance_of(scene, program_name(), command, report);
     return prepared;
 }
 

@@ -6,6 +6,7 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
+#include <isostat/scene/scene_run.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -35,15 +36,6 @@ int status_of(FailureKind kind);
 
 /// 0 proved, 1 refuted, 2 undecided.
 int status_of(Verdict verdict);
-
-/// What may help after a failure: equal radii tie, and a jitter of a prepared scene makes them different. Empty:
-/// nothing.
-std::string advice(const Scene& scene, const Failure& failure, std::vector<double> radius);
-
-/// The start of a scene that reads one: file, overrides of [load], checks in the words of a user, and then the grid
-/// (`snap_to_grid`; the provenance says in `moved_to_grid` by how much it moved a coordinate, when it did). Throws
-/// `Error(bad_input)`.
-State<2> load_start(const Scene& scene);
 
 /// Prepares the packing of a scene with progress on the terminal. After a failure, what was reached is in `failed`
 /// (atomically).

@@ -46,7 +46,7 @@ void print_settings(const Scene& scene) {
 int plan(const PlanArguments& arguments) {
     const Scene scene = read_scene(arguments.scene);
     if (!scene.start.empty()) {
-        load_start(scene); // a start that a run would refuse is refused here
+        start_from_file(scene); // a start that a run would refuse is refused here
     }
     if (arguments.common.json) {
         print_plan(scene);

@@ -57,27 +57,4 @@ class RunTable final : public RunObserver<2> {
     bool header_shown_ = false;
 };
 
-/// Calls two observers one after the other: the files first.
-class Both final : public RunObserver<2> {
-  public:
-    Both(RunObserver<2>& first, RunObserver<2>& second) : first_(first), second_(second) {}
-    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
-        first_.on_segment(number, goal, made, from);
-        second_.on_segment(number, goal, made, from);
-    }
-    void on_arc(const ArcRecord<2>& arc) override {
-        first_.on_arc(arc);
-        second_.on_arc(arc);
-    }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>& forces) override {
-        first_.on_equilibrium(record, state, forces);
-        second_.on_equilibrium(record, state, forces);
-    }
-
-  private:
-    RunObserver<2>& first_;
-    RunObserver<2>& second_;
-};
-
 } // namespace isostat::cli

@@ -1,4 +1,3 @@
-#include "certificate/state_certifier.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
@@ -19,14 +18,6 @@ namespace isostat::cli {
 
 namespace {
 
-RunStatus run_status(FailureKind kind) {
-    switch (status_of(kind)) {
-    case undecided: return RunStatus::undecided;
-    case interrupted: return RunStatus::interrupted;
-    default: return RunStatus::failed;
-    }
-}
-
 int exit_status(RunStatus status) {
     switch (status) {
     case RunStatus::completed: return done;
@@ -35,67 +26,6 @@ int exit_status(RunStatus status) {
     case RunStatus::interrupted: return interrupted;
     }
     return failed;
-}
-
-/// How the programme ended.
-struct Ending {
-    RunStatus status = RunStatus::completed;
-    std::string reason;
-};
-
-Ending ended(const Failure& failure, const std::string& where) {
-    return {run_status(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message())};
-}
-
-RunHeader header_of(const Scene& scene, const std::string& command) {
-    RunHeader header;
-    header.program = program_name();
-    header.command = command;
-    header.scene_name = scene.file;
-    header.scene_text = scene.text;
-    header.settings = settings_json(scene);
-    for (const ProgrammeStep& step : scene.programme) {
-        header.programme.push_back(step.name);
-    }
-    header.keep = needed_equilibria(scene);
-    header.states_every = scene.states_every;
-    header.witnesses = scene.run.certify == CertifyLevel::arcs;
-    header.checkpoint_seconds = scene.checkpoint_seconds;
-    return header;
-}
-
-/// Carries out the programme from a start or from a checkpoint.
-Ending play_programme(const Scene& scene, State<2> state, RunDirectory& directory, RunCounters& counters, bool quiet) {
-    Programme<2> programme;
-    programme.steps = scene.programme;
-    programme.source = scene.file;
-    programme.stored = [&](int equilibrium) { return directory.stored(equilibrium); };
-    if (const auto& point = directory.checkpoint()) {
-        state = point->state;
-        counters = point->counters;
-        programme.first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
-        programme.made = point->segment_done ? 0 : point->made;
-    }
-    if (counters.states.refuted > 0) {
-        return {RunStatus::failed, "an equilibrium of this run was refuted by its certificate: it does not go on"};
-    }
-    RunOptions options = scene.run;
-    options.stop = &stop_flag();
-    RunTable table(scene.programme, quiet);
-    Both both(directory, table);
-    std::optional<StateCertifier> certifier;
-    if (options.certify >= CertifyLevel::states) {
-        certifier.emplace(directory.path(), program_name(), counters, both);
-    }
-    RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
-    const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
-    table.end();
-    if (outcome.failure) {
-        Ending ending = ended(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));
-        ending.reason += advice(scene, *outcome.failure, state.packing.radius);
-        return ending;
-    }
-    return outcome.impossible.empty() ? Ending{} : Ending{RunStatus::failed, outcome.impossible};
 }
 
 /// The start of the run: stored one, file or preparation.
@@ -115,7 +45,7 @@ Result<State<2>> start_of(const Scene& scene, const std::optional<State<2>>& fro
     return prepared;
 }
 
-/// By how much `load_start` moved the start.
+/// By how much `start_from_file` moved the start.
 double moved_to_grid(const State<2>& start) {
     const Json provenance = start.provenance.empty() ? Json::object() : Json::parse(start.provenance);
     return provenance.is_object() ? provenance.value("moved_to_grid", 0.0) : 0.0;
@@ -186,12 +116,13 @@ int run(const RunArguments& arguments) {
                                         : RunDirectory::Mode::fresh;
     std::optional<State<2>> from_file;
     if (!scene.start.empty() && !arguments.resume) {
-        from_file = load_start(scene); // bad input leaves no folder behind
+        from_file = start_from_file(scene); // bad input leaves no folder behind
     }
     RunCounters counters;
-    RunDirectory directory(arguments.output, header_of(scene, arguments.common.command), mode, counters);
+    RunDirectory directory(arguments.output, header_of(scene, program_name(), arguments.common.command), mode,
+                           counters);
     if (!scene.start.empty() && !from_file && !directory.start()) {
-        from_file = load_start(scene);
+        from_file = start_from_file(scene);
     }
     if (!quiet && arguments.resume) {
         const auto& point = directory.checkpoint();
@@ -209,11 +140,13 @@ int run(const RunArguments& arguments) {
             "certify = \"plain\": the equilibria are proved; the way between them is NOT certified, it is steered "
             "by double precision without stated bounds\n");
     }
-    Ending ending;
+    SceneEnding ending;
     if (start.ok()) {
-        ending = play_programme(scene, start.value(), directory, counters, quiet);
+        RunTable table(scene.programme, quiet);
+        ending = play_scene(scene, start.value(), directory, program_name(), counters, stop_flag(), table);
+        table.end();
     } else {
-        ending = ended(start.failure(), "");
+        ending = ending_of(start.failure(), "");
     }
     directory.finish(ending.status, ending.reason);
     if (arguments.common.json) {

@@ -5,6 +5,8 @@
 
 namespace isostat::python {
 
+void bind_run(py::module_& module); // run.cpp
+
 namespace {
 
 constexpr int no_contact = -9;
@@ -109,4 +111,5 @@ PYBIND11_MODULE(_core, module) {
     bind_proofs(module);
     bind_exact(module);
     bind_preparation(module);
+    bind_run(module);
 }

@@ -84,15 +84,13 @@ class Records(Folder):
             "3-7": (3, 7),
             "3-left": (3, -1),
             "3-top": (3, -4),
-            "held x of disk 3": (6, -9),
-            "held y of disk 3": (7, -9),
-            "held right wall": (20, -9),
-            "held top wall": (21, -9),
+            "held x of grain 3": (6, -9),
+            "held y of grain 10": (21, -9),
         }
         for name, contact in known.items():
-            self.assertEqual(contact_of_name(name, 10), contact)
+            self.assertEqual(contact_of_name(name), contact)
         with self.assertRaises(isostat.BadInput):
-            contact_of_name("3-nowhere", 10)
+            contact_of_name("3-nowhere")
 
 
 if __name__ == "__main__":

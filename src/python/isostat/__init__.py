@@ -12,9 +12,11 @@ import os
 
 from . import _core
 from ._core import (
+    Arc,
     Certificate,
     ClaimCheck,
     Counting,
+    Equilibrium,
     ExactInspection,
     ExactPacking,
     Inspection,
@@ -38,6 +40,7 @@ from ._core import (
 )
 from ._exact import exact_packing
 from ._records import Records, States, load
+from ._run import Run
 from ._state import contact_matrix, contact_pair, disk_velocities, from_arrays, mechanism
 from ._words import (
     BadInput,

@@ -37,15 +37,13 @@ def _column(name: str) -> tuple[str, type]:
     return name, int if name in _integers or name.endswith(("_i", "_j")) else float
 
 
-def contact_of_name(name: str, disks: int) -> tuple[int, int]:
-    """(i, j) of ``"3-7"``, ``"3-left"``, ``"held x of disk 3"``; walls -1 to -4, held coordinates -9."""
+def contact_of_name(name: str) -> tuple[int, int]:
+    """(i, j) of ``"3-7"``, ``"3-left"``, ``"held x of grain 3"``; walls -1 to -4, held coordinates -9."""
     if match := re.fullmatch(r"(\d+)-(\d+|left|bottom|right|top)", name):
         j = match[2]
         return int(match[1]), _walls[j] if j in _walls else int(j)
-    if match := re.fullmatch(r"held ([xy]) of disk (\d+)", name):
+    if match := re.fullmatch(r"held ([xy]) of grain (\d+)", name):  # walls: after the last disk
         return 2 * int(match[2]) + "xy".index(match[1]), -9
-    if match := re.fullmatch(r"held (right|top) wall", name):
-        return 2 * disks + ("right", "top").index(match[1]), -9
     raise BadInput(
         f"events.jsonl: contact '{name}': expected two disks, a disk and a wall, or a held coordinate"
     )
@@ -157,13 +155,12 @@ class Records:
             + [("decided_by", "U13")]
             + [(name, float) for name in _numbers]
         )
-        disks = len(self.radii) if self.event_records else 0
         events = np.empty(len(self.event_records), dtype=kinds)
         for row, record in zip(events, self.event_records):
             for name in ("step", "equilibrium", "arc", "kind", "power_turn", "steps", "decided_by"):
                 row[name] = record[name]
             for name in ("opened", "closed"):
-                row[name] = contact_of_name(record[name], disks)
+                row[name] = contact_of_name(record[name])
             for name in _numbers:
                 value = record.get(name)
                 row[name] = np.nan if value is None else value

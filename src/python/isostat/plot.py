@@ -1,0 +1,222 @@
+"""Pictures with matplotlib: packings with forces and mechanisms, staircases, increments."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, LineCollection
+
+from ._core import Packing, State
+from ._records import Records
+from ._state import disk_velocities
+
+
+def _axes(ax: Optional[Axes]) -> Axes:
+    if ax is None:
+        import matplotlib.pyplot as plt
+
+        ax = plt.figure(constrained_layout=True).add_subplot()
+    return ax
+
+
+def _ends(state: State, contacts: np.ndarray) -> np.ndarray:
+    """(N, 2, 2): from centre to centre, or to the wall."""
+    first = state.positions[contacts[:, 0]]
+    second = first.copy()
+    pairs = contacts[:, 1] >= 0
+    second[pairs] = state.positions[contacts[pairs, 1]]
+    for code, axis, place in (
+        (-1, 0, 0.0),
+        (-2, 1, 0.0),
+        (-3, 0, state.length[0]),
+        (-4, 1, state.length[1]),
+    ):
+        second[contacts[:, 1] == code, axis] = place
+    return np.stack((first, second), axis=1)
+
+
+def _draw_forces(state: State, forces: np.ndarray, ax: Axes) -> np.ndarray:
+    """Lines of width in proportion to the force; returns which disks carry one."""
+    contacts = state.contacts
+    real = contacts[:, 1] != -9
+    contacts, forces = contacts[real], np.asarray(forces)[: len(real)][real]
+    carried = forces != 0
+    mean = np.abs(forces[carried]).mean() if carried.any() else 1.0
+    ends = _ends(state, contacts)
+    ax.add_collection(LineCollection(ends[~carried], colors="0.6", linewidths=0.4))
+    for sign, colour in ((1, "#a50f15"), (-1, "#08519c")):
+        chosen = carried & (np.sign(forces) == sign)
+        widths = 1.5 * np.abs(forces[chosen]) / mean
+        ax.add_collection(
+            LineCollection(
+                ends[chosen], colors=colour, linewidths=widths, capstyle="round", zorder=2
+            )
+        )
+    holding = np.zeros(len(state), dtype=bool)
+    holding[contacts[carried, 0]] = True
+    holding[contacts[carried & (contacts[:, 1] >= 0), 1]] = True
+    return holding
+
+
+def packing(
+    state: State | Packing,
+    forces: Optional[np.ndarray] = None,
+    mechanism: Optional[np.ndarray] = None,
+    ax: Optional[Axes] = None,
+) -> Axes:
+    """The disks and walls, the forces as lines, a mechanism as arrows.
+
+    Parameters
+    ----------
+    state : State or Packing
+    forces : (N,) float, optional
+        One per contact (``inspect(state).forces``); default: those of the state's file. Line width is in
+        proportion to the force, red: compression, blue: traction. Disks without force are pale.
+    mechanism : (N_f,) float, optional
+        Velocities of the degrees of freedom (`isostat.mechanism`); the longest arrow has the mean radius.
+    ax : matplotlib axes, optional
+
+    Returns
+    -------
+    matplotlib axes
+    """
+    ax = _axes(ax)
+    if forces is None and isinstance(state, State) and len(state.forces):
+        forces = state.forces
+    holding = np.ones(len(state), dtype=bool) if forces is None else _draw_forces(state, forces, ax)
+    diameters = 2 * state.radii
+    for chosen, colour in ((holding, "#d9d9d9"), (~holding, "#deebf7")):
+        size = diameters[chosen]
+        ax.add_collection(
+            EllipseCollection(
+                size,
+                size,
+                np.zeros(len(size)),
+                units="xy",
+                offsets=state.positions[chosen],
+                transOffset=ax.transData,
+                facecolors=colour,
+                edgecolors="0.35",
+                linewidths=0.4,
+                zorder=1,
+            )
+        )
+    if mechanism is not None:
+        velocity, _ = disk_velocities(state, mechanism)
+        longest = np.hypot(*velocity.T).max() or 1.0
+        arrows = velocity * (state.radii.mean() / longest)
+        ax.quiver(
+            *state.positions.T,
+            *arrows.T,
+            angles="xy",
+            scale_units="xy",
+            scale=1,
+            width=0.004,
+            zorder=3,
+        )
+    _draw_walls(state, ax)
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    return ax
+
+
+def _draw_walls(state: State | Packing, ax: Axes) -> None:
+    low = (state.positions - state.radii[:, None]).min(axis=0)
+    high = (state.positions + state.radii[:, None]).max(axis=0)
+    places = {}
+    for side, place in (("lower", (0.0, 0.0)), ("upper", state.length)):
+        for axis, kind in enumerate(state.walls[side]):
+            if kind != "absent":
+                places[side, axis] = place[axis], kind
+                (low if side == "lower" else high)[axis] = place[axis]
+    for (_, axis), (place, kind) in places.items():
+        ends = np.array([low, high])
+        ends[:, axis] = place
+        ax.plot(*ends.T, color="0.1" if kind == "fixed" else "0.5", linewidth=1.5, zorder=4)
+    margin = 0.02 * (high - low).max()
+    ax.set_xlim(low[0] - margin, high[0] + margin)
+    ax.set_ylim(low[1] - margin, high[1] + margin)
+
+
+def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
+    """Stress ratio against axial strain: one structure carries a growing load, then a rearrangement.
+
+    Parameters
+    ----------
+    run : Records
+        From `isostat.load`. Each segment of the programme has a line style of its own.
+    ax : matplotlib axes, optional
+
+    Returns
+    -------
+    matplotlib axes
+    """
+    ax = _axes(ax)
+    rows = {int(row["number"]): row for row in run.equilibria}
+    styles = ("-", "--", "-.", ":")
+    for segment in np.unique(run.equilibria["segment"]):
+        strain, ratio = [], []
+        for row in run.equilibria[run.equilibria["segment"] == segment]:
+            before = rows.get(int(row["previous"]))
+            if before is not None:
+                # Up (down) at the strain of the equilibrium before, then along at constant stress.
+                strain += [before["eps2"], before["eps2"], row["eps2"]]
+                ratio += [before["ratio"], row["ratio"], row["ratio"]]
+        ax.plot(
+            strain, ratio, styles[segment % len(styles)], label=f"segment {segment}", linewidth=1.2
+        )
+    ax.set_xlabel("axial strain $\\varepsilon_2$")
+    ax.set_ylabel("stress ratio $\\sigma_2/\\sigma_1$")
+    if len(ax.get_lines()) > 1:
+        ax.legend(frameon=False)
+    return ax
+
+
+def increments(run: Records, quantity: str = "strain", ax: Optional[Axes] = None) -> Axes:
+    """Distribution of the increments between equilibria: the share that is at least x, no bins.
+
+    Parameters
+    ----------
+    run : Records
+    quantity : "strain" or "stress"
+        |eps_2' - eps_2| of each rearrangement; or |sigma_2' - sigma_2| / sigma_1 between the rearrangements of a
+        segment (the first one of a segment has none).
+    ax : matplotlib axes, optional
+
+    Returns
+    -------
+    matplotlib axes
+    """
+    ax = _axes(ax)
+    values = np.sort(increment_values(run, quantity))
+    ax.step(values, 1 - np.arange(len(values)) / max(len(values), 1), where="pre", linewidth=1.2)
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    symbols = {
+        "strain": "$|\\Delta\\varepsilon_2|$",
+        "stress": "$|\\Delta\\sigma_2|/\\sigma_1$",
+    }
+    ax.set_xlabel(f"{quantity} increment {symbols[quantity]}")
+    ax.set_ylabel("share at least as large")
+    return ax
+
+
+def increment_values(run: Records, quantity: str = "strain") -> np.ndarray:
+    """The positive increments that `increments` draws.
+
+    A stress that was reached inside a supported interval (``arcs`` = 0) is no rearrangement.
+    """
+    rows = {int(row["number"]): row for row in run.equilibria}
+    column = {"strain": "eps2", "stress": "ratio"}[quantity]
+    values = []
+    for row in run.equilibria:
+        before = rows.get(int(row["previous"]))
+        if before is None or row["arcs"] == 0:
+            continue
+        same = before["segment"] == row["segment"] and before["previous"] >= 0
+        if quantity == "strain" or (same and before["arcs"] > 0):
+            values.append(abs(row[column] - before[column]))
+    values = np.array(values)
+    return values[values > 0]

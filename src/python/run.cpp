@@ -1,0 +1,226 @@
+// A scene carried out from Python, with functions that are called for each arc and each equilibrium.
+#include "convert.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/run_directory.hpp>
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/scene/scene.hpp>
+#include <isostat/scene/scene_run.hpp>
+
+#include <atomic>
+#include <optional>
+
+namespace isostat::python {
+
+namespace {
+
+constexpr const char* program = "isostat " ISOSTAT_VERSION;
+constexpr const char* command = "isostat.Run";
+
+/// One equilibrium as Python gets it.
+struct Equilibrium {
+    EquilibriumRecord<2> record;
+    std::shared_ptr<PyState> state;
+};
+
+/// Calls the functions of Python; what they raise, and Ctrl-C, stops the run and is kept.
+class Watcher final : public RunObserver<2> {
+  public:
+    Watcher(const py::object& on_arc, const py::object& on_equilibrium, std::atomic<bool>& stop)
+        : on_arc_(on_arc), on_equilibrium_(on_equilibrium), stop_(stop) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        call([&] {
+            if (!on_arc_.is_none()) {
+                on_arc_(arc);
+            }
+        });
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& forces) override {
+        call([&] {
+            if (!on_equilibrium_.is_none()) {
+                on_equilibrium_(Equilibrium{record, std::make_shared<PyState>(PyState{state, forces})});
+            }
+        });
+    }
+    /// Asks for signals.
+    void poll() {
+        call([] {});
+    }
+    /// \pre the interpreter is locked
+    void raise_again() {
+        if (raised_) {
+            throw py::error_already_set(*raised_);
+        }
+    }
+
+  private:
+    template <class Work> void call(Work work) {
+        const py::gil_scoped_acquire acquire;
+        if (raised_) {
+            return;
+        }
+        try {
+            if (PyErr_CheckSignals() != 0) {
+                throw py::error_already_set();
+            }
+            work();
+        } catch (const py::error_already_set& error) {
+            raised_.emplace(error);
+            stop_ = true;
+        }
+    }
+    const py::object& on_arc_;
+    const py::object& on_equilibrium_;
+    std::atomic<bool>& stop_;
+    std::optional<py::error_already_set> raised_;
+};
+
+/// A run in its folder. Each `play` opens the folder, goes on from its checkpoint, and closes it.
+class Run {
+  public:
+    Run(const std::string& text, const std::string& name, const std::filesystem::path& folder,
+        std::filesystem::path output, const PyState* start)
+        : scene_(parse_scene(text, name, folder)), output_(std::move(output)) {
+        if (scene_.programme.empty()) {
+            throw Error(ErrorKind::bad_input, name + ": has no [[programme]]: expected at least one segment to run");
+        }
+        if (start != nullptr) {
+            start_ = start_of_scene(start->state, scene_, name);
+        }
+    }
+
+    void play(const std::string& mode, const py::object& on_arc, const py::object& on_equilibrium) {
+        stop_ = false;
+        Watcher watcher(on_arc, on_equilibrium, stop_);
+        const SceneEnding ending = unlocked([&] { return carry_out(mode, watcher); });
+        status_ = to_string(ending.status);
+        reason_ = ending.reason;
+        watcher.raise_again();
+        if (ending.failure && ending.failure->kind != FailureKind::interrupted) {
+            raise({ending.failure->kind, ending.reason});
+        }
+        if (ending.status == RunStatus::failed) {
+            throw Error(ErrorKind::bad_input, ending.reason);
+        }
+    }
+
+    void stop() { stop_ = true; }
+    [[nodiscard]] const std::string& status() const { return status_; }
+    [[nodiscard]] const std::string& reason() const { return reason_; }
+    [[nodiscard]] const std::filesystem::path& path() const { return output_; }
+
+  private:
+    SceneEnding carry_out(const std::string& mode, Watcher& watcher) {
+        using Mode = RunDirectory::Mode;
+        if (!start_ && !scene_.start.empty() && mode != "resume") {
+            start_ = start_from_file(scene_); // bad input leaves no folder behind
+        }
+        RunCounters counters;
+        RunDirectory directory(output_, header_of(scene_, program, command),
+                               mode == "resume"  ? Mode::resume
+                               : mode == "force" ? Mode::force
+                                                 : Mode::fresh,
+                               counters);
+        SceneEnding ending;
+        if (const Result<State<2>> start = start_in(directory, watcher); start.ok()) {
+            ending = play_scene(scene_, start.value(), directory, program, counters, stop_, watcher);
+        } else {
+            ending = ending_of(start.failure(), "");
+        }
+        directory.finish(ending.status, ending.reason);
+        return ending;
+    }
+
+    Result<State<2>> start_in(RunDirectory& directory, Watcher& watcher) {
+        if (const auto stored = directory.start()) {
+            return *stored;
+        }
+        if (!start_) {
+            PreparationOptions options = scene_.preparation;
+            options.stop = &stop_;
+            options.progress = [&watcher](const PreparationProgress&) { watcher.poll(); };
+            PreparationReport<2> report;
+            Result<State<2>> prepared = prepare<2>(options, report);
+            if (!prepared.ok()) {
+                return prepared;
+            }
+            prepared.value().provenance = provenance_of(scene_, program, command, report);
+            start_ = prepared.value();
+        }
+        directory.store_start(*start_);
+        return *start_;
+    }
+
+    Scene scene_;
+    std::filesystem::path output_;
+    std::optional<State<2>> start_;
+    std::atomic<bool> stop_{false};
+    std::string status_, reason_;
+};
+
+void bind_arc(py::module_& module) {
+    using Arc = ArcRecord<2>;
+    const auto contact = [](auto member) { return [member](const Arc& self) { return contact_pair(self.*member); }; };
+    py::class_<Arc>(module, "Arc", "One arc: a contact opened, the mechanism followed, a contact met.")
+        .def_readonly("step", &Arc::step, "Number of the arc in the run, from 1.")
+        .def_readonly("equilibrium", &Arc::equilibrium, "Number of the equilibrium that it leads to.")
+        .def_readonly("arc", &Arc::arc, "Number within the rearrangement, from 1.")
+        .def_readonly("kind", &Arc::kind, "\"limit\", \"tension\", \"rattler\" or \"release\".")
+        .def_property_readonly("opened", contact(&Arc::opened), "Contact opened, (i, j).")
+        .def_property_readonly("closed", contact(&Arc::closed), "Contact met, or the coordinate held, (i, -9).")
+        .def_readonly("power_turn", &Arc::power_turn, "It ended where the power of the load vanished.")
+        .def_readonly("sigma2", &Arc::stress, "Loaded stress.")
+        .def_readonly("eps2", &Arc::strain, "Strain at the end, positive in compression.")
+        .def_readonly("force", &Arc::force, "In the opened contact; 0 at a limit.")
+        .def_readonly("power", &Arc::power, "Force in the new contact.")
+        .def_readonly("work", &Arc::work, "Decrease of the potential W along the arc.")
+        .def_readonly("displacement", &Arc::displacement, "Largest displacement of a coordinate; length.")
+        .def_readonly("margin", &Arc::margin, "Smallest |quantity| / bound of its decisions; nan at level plain.")
+        .def_property_readonly(
+            "decided_by", [](const Arc& self) { return self.decided_by; }, "The arithmetic that it took.");
+}
+
+void bind_equilibrium(py::module_& module) {
+    using Record = EquilibriumRecord<2>;
+    const auto field = [](auto member) { return [member](const Equilibrium& self) { return self.record.*member; }; };
+    py::class_<Equilibrium>(module, "Equilibrium", "One equilibrium, checked, with its state and forces.")
+        .def_readonly("state", &Equilibrium::state, "State, with its forces.")
+        .def_property_readonly("number", field(&Record::number), "0: the start.")
+        .def_property_readonly("segment", field(&Record::segment), "Segment of the programme.")
+        .def_property_readonly("sigma1", field(&Record::sigma1), "The other stress.")
+        .def_property_readonly("sigma2", field(&Record::stress), "Loaded stress at which it was reached.")
+        .def_property_readonly("sigma2_low", field(&Record::stress_low), "Lower end of the supported interval.")
+        .def_property_readonly("sigma2_high", field(&Record::stress_high), "Upper end of the supported interval.")
+        .def_property_readonly("opens_low", field(&Record::opens_low), "Contact that opens there, or None.")
+        .def_property_readonly("opens_high", field(&Record::opens_high), "Contact that opens there, or None.")
+        .def_property_readonly("strain", field(&Record::strain), "[eps_1, eps_2], positive in compression.")
+        .def_property_readonly("length", field(&Record::length), "[Lx, Ly].")
+        .def_property_readonly("potential", field(&Record::potential), "W = -sum F q.")
+        .def_property_readonly("arcs", field(&Record::arcs), "Arcs of the rearrangement that led here.")
+        .def_property_readonly("rank", field(&Record::rank), "Proved rank of the contact matrix.")
+        .def_property_readonly("h", field(&Record::hyperstaticity), "N - rank.")
+        .def_property_readonly("k", field(&Record::mechanisms), "N_f - rank.")
+        .def_property_readonly("rattlers", field(&Record::rattlers), "Disks without force.")
+        .def_property_readonly("min_force", field(&Record::min_force), "Smallest force of the backbone.")
+        .def_property_readonly("min_gap", field(&Record::min_gap), "Smallest gap of all other pairs; length.")
+        .def_property_readonly("margin", field(&Record::margin), "Smallest |quantity| / bound since the one before.")
+        .def_property_readonly("verdict", field(&Record::verdict), "Verdict on: every check of it holds.");
+}
+
+} // namespace
+
+void bind_run(py::module_& module) {
+    bind_arc(module);
+    bind_equilibrium(module);
+    py::class_<Run>(module, "_Run")
+        .def(py::init<const std::string&, const std::string&, const std::filesystem::path&, std::filesystem::path,
+                      const PyState*>(),
+             py::arg("text"), py::arg("name"), py::arg("folder"), py::arg("output"), py::arg("start"))
+        .def("play", &Run::play, py::arg("mode"), py::arg("on_arc"), py::arg("on_equilibrium"))
+        .def("stop", &Run::stop)
+        .def_property_readonly("status", &Run::status)
+        .def_property_readonly("reason", &Run::reason);
+}
+
+} // namespace isostat::python

@@ -1,0 +1,167 @@
+#include "certificate/state_certifier.hpp"
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/scene/scene_run.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isostat {
+
+namespace {
+
+using json::Json;
+
+RunStatus status_of(FailureKind kind) {
+    switch (kind) {
+    case FailureKind::tie:
+    case FailureKind::undecided: return RunStatus::undecided;
+    case FailureKind::interrupted: return RunStatus::interrupted;
+    default: return RunStatus::failed;
+    }
+}
+
+/// Calls two observers one after the other: the files first.
+class Both final : public RunObserver<2> {
+  public:
+    Both(RunObserver<2>& first, RunObserver<2>& second) : first_(first), second_(second) {}
+    void on_segment(int number, const Segment& goal, int made, const State<2>& from) override {
+        first_.on_segment(number, goal, made, from);
+        second_.on_segment(number, goal, made, from);
+    }
+    void on_arc(const ArcRecord<2>& arc) override {
+        first_.on_arc(arc);
+        second_.on_arc(arc);
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& forces) override {
+        first_.on_equilibrium(record, state, forces);
+        second_.on_equilibrium(record, state, forces);
+    }
+
+  private:
+    RunObserver<2>& first_;
+    RunObserver<2>& second_;
+};
+
+} // namespace
+
+State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& source) {
+    if (scene.load_kind) {
+        state.load.kind = *scene.load_kind;
+    }
+    if (scene.infinitesimal_seed) {
+        state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, *scene.infinitesimal_seed);
+    }
+    state.equilibrium = 0;
+    state.perturbation.reset(); // a run has its own
+    for (std::size_t a = 0; a < 2; ++a) {
+        if (!(state.load.stress[a] > 0)) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: load.stress[{}] is {}: expected a positive stress",
+                                                          source, a, state.load.stress[a]));
+        }
+    }
+    check_start(state, source, scene.run.ties == TiePolicy::perturb);
+    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+    check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
+    if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
+        Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
+        provenance["moved_to_grid"] = moved;
+        state.provenance = provenance.dump();
+    }
+    return state;
+}
+
+State<2> start_from_file(const Scene& scene) {
+    return start_of_scene(read_state<2>(scene.start).state, scene, scene.start.string());
+}
+
+std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,
+                          const PreparationReport<2>& report) {
+    Json provenance;
+    provenance["program"] = program;
+    provenance["command"] = command;
+    provenance["scene_file"] = scene.file;
+    provenance["settings"] = Json::parse(settings_json(scene));
+    provenance["infinitesimal_seed"] = report.infinitesimal_seed;
+    provenance["linear_programmes"] = report.programmes;
+    provenance["pivots"] = report.pivots;
+    return json::dumped(provenance);
+}
+
+RunHeader header_of(const Scene& scene, const std::string& program, const std::string& command) {
+    RunHeader header;
+    header.program = program;
+    header.command = command;
+    header.scene_name = scene.file;
+    header.scene_text = scene.text;
+    header.settings = settings_json(scene);
+    for (const ProgrammeStep& step : scene.programme) {
+        header.programme.push_back(step.name);
+    }
+    header.keep = needed_equilibria(scene);
+    header.states_every = scene.states_every;
+    header.witnesses = scene.run.certify == CertifyLevel::arcs;
+    header.checkpoint_seconds = scene.checkpoint_seconds;
+    return header;
+}
+
+std::string advice(const Scene& scene, const Failure& failure, std::vector<double> radius) {
+    std::sort(radius.begin(), radius.end());
+    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
+    if (!open) {
+        return "";
+    }
+    if (!scene.start.empty()) {
+        return equal ? fmt::format("; equal radii: try isostat import {} --jitter 1e-9 --contacts nearest",
+                                   scene.start.string())
+                     : "";
+    }
+    constexpr double ample = 1e-6;
+    const double jitter = scene.preparation.jitter;
+    return equal && jitter == 0           ? "; equal radii: try [packing] jitter = 1e-9"
+           : jitter > 0 && jitter < ample ? fmt::format("; nearly equal radii: try a larger jitter than {}", jitter)
+                                          : "";
+}
+
+SceneEnding ending_of(const Failure& failure, const std::string& where) {
+    return {status_of(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message), failure};
+}
+
+SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directory, const std::string& program,
+                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver<2>& watcher) {
+    Programme<2> programme;
+    programme.steps = scene.programme;
+    programme.source = scene.file;
+    programme.stored = [&](int equilibrium) { return directory.stored(equilibrium); };
+    if (const auto& point = directory.checkpoint()) {
+        state = point->state;
+        counters = point->counters;
+        programme.first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
+        programme.made = point->segment_done ? 0 : point->made;
+    }
+    if (counters.states.refuted > 0) {
+        return {RunStatus::failed, "an equilibrium of this run was refuted by its certificate: it does not go on", {}};
+    }
+    RunOptions options = scene.run;
+    options.stop = &stop;
+    Both both(directory, watcher);
+    std::optional<StateCertifier> certifier;
+    if (options.certify >= CertifyLevel::states) {
+        certifier.emplace(directory.path(), program, counters, both);
+    }
+    RunObserver<2>& observer = certifier ? static_cast<RunObserver<2>&>(*certifier) : both;
+    const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
+    if (outcome.failure) {
+        SceneEnding ending = ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));
+        ending.reason += advice(scene, *outcome.failure, state.packing.radius);
+        return ending;
+    }
+    return outcome.impossible.empty() ? SceneEnding{} : SceneEnding{RunStatus::failed, outcome.impossible, {}};
+}
+
+} // namespace isostat

@@ -74,7 +74,7 @@ py::object verdict_object(Verdict verdict) {
 
 void raise(const Failure& failure) {
     const py::object type = ours("isostat._words", "failure_of")(to_string(failure.kind));
-    PyErr_SetObject(type.ptr(), py::str(failure.message).ptr());
+    PyErr_SetObject(type.ptr(), py::str(failure.message()).ptr());
     throw py::error_already_set();
 }
 

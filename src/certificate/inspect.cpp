@@ -163,6 +163,17 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     return inspection;
 }
 
+template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma) {
+    state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = sigma;
+    Certification truth = certify(state);
+    if (!truth.claims.vertex) {
+        return Failure{truth.claims.counting ? FailureKind::undecided : FailureKind::not_isostatic,
+                       truth.claims.undecided.front()};
+    }
+    return std::move(truth.finite);
+}
+
+template Result<std::vector<Interval>> forces_at<2>(State<2>, double);
 template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
 
 } // namespace isostat

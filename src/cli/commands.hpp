@@ -48,6 +48,7 @@ int ensemble(const EnsembleArguments& arguments);
 struct InspectArguments {
     Common common;
     std::string file;
+    std::optional<double> at; ///< loaded stress instead of that of the state
 };
 int inspect(const InspectArguments& arguments);
 /// `inspect` of a crafted packing with exact numbers (TOML, examples/packings): prints the exact answers and compares
@@ -120,6 +121,28 @@ struct ImportArguments {
 /// A packing made elsewhere -> the vertex next to it, as a state. 0: certified; 1: there is none with the contacts of
 /// the file; 2: undecided.
 int import(const ImportArguments& arguments);
+
+struct SnapArguments {
+    Common common;
+    std::string file, output;
+    ForeignArguments foreign;
+    std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
+    std::string stress, load;
+    std::uint64_t seed = 1;
+    bool exchange = false;
+};
+/// A frame of soft grains -> the vertex of its list of contacts. 0: proved and written; 1: the list has none, named; 2:
+/// undecided.
+int snap(const SnapArguments& arguments);
+
+struct CompareArguments {
+    Common common;
+    std::string series, output, reference;
+    int bundle = 16;
+};
+/// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: one departs; 2:
+/// undecided.
+int compare_series(const CompareArguments& arguments);
 
 struct ExportArguments {
     Common common;

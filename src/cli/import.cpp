@@ -1,49 +1,241 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/import_moves.hpp"
-#include "cli/import_source.hpp"
 #include "cli/read_packing.hpp"
+#include "cli/soft_list.hpp"
 #include "io/json.hpp"
 
+#include <isostat/certificate/certify.hpp>
+#include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/crafted/plateau.hpp>
 #include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace isostat::cli {
 
 namespace {
 
-/// What the arguments leave open, by what the file is. Refuses what would do nothing, or cannot be done.
-void complete(ImportArguments& a, const std::string& format) {
-    const bool own = format == "state" || format == "vertex";
-    if (own && a.jitter == 0) {
-        refuse(a.file, fmt::format("is a {} of this program: expected a packing of another one, or --jitter; isostat "
-                                   "convert copies it",
-                                   format));
+/// The contacts that the vertex must have.
+struct Wanted {
+    bool any = false; ///< whatever the vertex has
+    std::vector<Contact> contacts;
+    std::string words; ///< where they come from
+};
+
+/// What was found, or why nothing was.
+struct Imported {
+    State<2> state;
+    std::vector<double> from; ///< coordinates of the file
+    std::string contacts;     ///< words
+    Certification truth;
+};
+
+[[noreturn]] void refuse(const std::string& file, const std::string& what) {
+    throw Error(ErrorKind::bad_input, file + ": " + what);
+}
+
+/// Stresses and kind of load of a state, which were not stated anew.
+void keep_load(ImportArguments& a) {
+    const State<2> state = read_state<2>(a.file).state;
+    if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
+        refuse(a.file, "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
     }
-    if (own) {
-        keep_load(a);
+    if (a.stress.empty()) {
+        a.stress = fmt::format("{},{}", state.load.stress[0], state.load.stress[1]);
     }
-    const bool crafted = format == "packing";
-    if (crafted && a.jitter != 0) {
-        refuse(a.file,
-               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
-                           "it is {}",
-                           a.jitter));
+    if (a.load.empty()) {
+        a.load = state.load.kind == LoadKind::nominal ? "nominal" : "true";
     }
-    if (!crafted && !own && a.foreign.walls.empty()) {
-        a.foreign.walls = "box";
+}
+
+/// The contacts of the widest range of thresholds with an isostatic backbone, or at the threshold given.
+Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing) {
+    const double largest = a.threshold.value_or(nearly_touching * packing.min_radius());
+    if (a.threshold) {
+        const crafted::PlateauStep step = crafted::plateau(packing, {largest}).steps.front();
+        if (step.backbone.isostatic != Verdict::proved) {
+            return Failure{
+                step.backbone.isostatic == Verdict::refuted ? FailureKind::not_isostatic : FailureKind::undecided,
+                fmt::format("at the threshold {} the backbone has N_f = {}, N = {}, h = {}, k = {}: expected "
+                            "an isostatic one",
+                            largest, step.backbone.dof_count, step.backbone.contact_count, step.backbone.hyperstaticity,
+                            step.backbone.mechanisms)};
+        }
+        return Wanted{false, crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
     }
-    if (!crafted && !own && a.foreign.walls != "box") {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
+    const double deepest = std::min(crafted::plateau(packing, {largest}).deepest_overlap, largest);
+    const crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1);
+    if (plateau.ranges.empty()) {
+        return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
+                       fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
+                                   "counts, --contacts nearest takes the vertex downhill whatever its contacts",
+                                   largest)};
     }
+    const auto range =
+        *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
+                          [](const auto& x, const auto& y) { return x.last - x.first < y.last - y.first; });
+    return Wanted{
+        false, crafted::backbone_at(packing, range.first),
+        fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
+}
+
+/// The vertex downhill, whatever its contacts.
+std::optional<Failure> take_nearest(const ImportArguments& a, const compare::SoftState& soft, Imported& out) {
+    PreparationOptions options;
+    options.seed = a.seed;
+    options.stress = soft.load.stress[0];
+    options.ratio = soft.load.stress[1] / soft.load.stress[0];
+    options.load = soft.load.kind;
+    PreparationReport<2> report;
+    auto vertex = find_vertex<2>(soft.packing, options, report);
+    if (!vertex.ok() && !report.candidate) {
+        return vertex.failure();
+    }
+    out.state = vertex.ok() ? std::move(vertex.value()) : *report.candidate;
+    out.truth = isostat::certify(out.state);
+    out.contacts =
+        fmt::format("{} carry a force, as the nearest vertex has them", compare::carrying(out.state, out.truth).size());
+    return std::nullopt;
+}
+
+/// The vertex of the list, under the stresses times the lengths that the box has there.
+std::optional<Failure> take_listed(const ImportArguments& a, compare::SoftState soft, const std::string& words,
+                                   Imported& out) {
+    compare::Snap snap = compare::snap(soft);
+    for (std::size_t axis = 0; axis < 2 && !snap.disks.empty(); ++axis) {
+        soft.load.reference_length[axis] = snap.backbone.packing.length(static_cast<int>(axis));
+    }
+    snap = compare::snap(soft);
+    if (snap.outcome != compare::SnapOutcome::vertex) {
+        const bool undecided = snap.outcome == compare::SnapOutcome::undecided;
+        return Failure{undecided ? FailureKind::undecided : FailureKind::not_isostatic,
+                       fmt::format("{}: the contacts of the file ({}) have no equilibrium near: {}; --contacts nearest "
+                                   "takes the vertex downhill whatever its contacts",
+                                   to_string(snap.outcome), words, snap.reason)};
+    }
+    auto state = compare::with_resting_rattlers(snap, a.seed);
+    if (!state.ok()) {
+        return state.failure();
+    }
+    out.state = std::move(state.value());
+    out.truth = isostat::certify(out.state);
+    out.contacts = fmt::format("{} carry a force, those of the file: {}", snap.backbone.contacts.size(), words);
+    return std::nullopt;
+}
+
+/// The vertex of a packing of another program.
+Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
+    const std::array<double, 2> stress = parse_stress(a.stress);
+    check_nearness(a.file, file.packing);
+    Wanted wanted{true, {}, ""};
+    if (a.threshold || a.contacts == "plateau") {
+        auto below = wanted_below(a, file.packing);
+        if (!below.ok()) {
+            return below.failure();
+        }
+        wanted = below.value();
+    } else if (a.contacts != "nearest") {
+        SoftList list = list_by_forces(a.file, file, a.foreign.frame, a.contacts, a.contact_columns);
+        wanted = {false, std::move(list.contacts), std::move(list.words)};
+    }
+    Imported out;
+    out.from = file.packing.q;
+    file.packing.radius = with_jitter(file.packing.radius, a.jitter, a.seed);
+    Load<2> load;
+    load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    load.stress = stress;
+    load.reference_length = {file.packing.length(0), file.packing.length(1)};
+    auto failure = wanted.any ? take_nearest(a, {file.packing, {}, load}, out)
+                              : take_listed(a, {file.packing, wanted.contacts, load}, wanted.words, out);
+    if (failure) {
+        return *failure;
+    }
+    return out;
+}
+
+/// A crafted packing as it is: exact contacts, doubles next to its numbers, its load.
+Result<Imported> from_crafted(const ImportArguments& a, const std::string& text) {
+    const crafted::PackingFile file = crafted::parse_packing(text, a.file);
+    const auto inspection = crafted::inspect(file.packing);
+    if (!inspection.ok()) {
+        return inspection.failure();
+    }
+    const crafted::Inspection& exact = inspection.value();
+    if (exact.hyperstaticity != 0 || exact.mechanisms != 0) {
+        return Failure{exact.rank_exact == Verdict::proved ? FailureKind::not_isostatic : FailureKind::undecided,
+                       fmt::format("h = {}, k = {}: expected an isostatic packing, whose contacts determine it",
+                                   exact.hyperstaticity, exact.mechanisms)};
+    }
+    Imported out;
+    State<2>& state = out.state;
+    state.packing = crafted::approximate(file.packing);
+    state.contacts = exact.contacts;
+    state.load.stress = parse_stress(a.stress);
+    state.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    for (std::size_t b = 0; b < 2; ++b) {
+        state.load.reference_length[b] = state.packing.length(static_cast<int>(b));
+    }
+    if (file.packing.load) {
+        for (std::size_t b = 0; b < 2; ++b) {
+            const double length = state.load.reference_length[1 - b];
+            state.load.stress[b] = length > 0 ? file.packing.load->wall[b].to_double() / length : 0;
+        }
+        for (const exact::Number& force : file.packing.load->disk) {
+            state.load.disk_force.push_back(force.to_double());
+        }
+    }
+    out.from = state.packing.q;
+    out.truth = isostat::certify(state);
+    out.contacts = "those of the crafted packing, exactly";
+    return out;
+}
+
+/// How far the true vertex may be from a place in the file: per disk, and at most for walls, backbone and rattlers.
+struct Moves {
+    std::vector<double> disk;
+    std::vector<unsigned char> rattler;
+    double walls = 0, backbone = 0, rattlers = 0;
+};
+
+Moves moves_of(const Imported& found) {
+    const Packing<2>& packing = found.state.packing;
+    const double radius = found.truth.claims.vertex ? found.truth.claims.vertex->radius : HUGE_VAL;
+    constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
+    const auto way = [&](std::size_t k) { return (std::abs(packing.q[k] - found.from[k]) + radius) * up; };
+    Moves moves;
+    const std::size_t n = packing.radius.size();
+    moves.rattler.assign(n, 1);
+    for (const Contact& c : compare::carrying(found.state, found.truth)) {
+        moves.rattler[static_cast<std::size_t>(c.i)] = 0;
+        if (c.kind == ContactKind::disk_disk) {
+            moves.rattler[static_cast<std::size_t>(c.j)] = 0;
+        }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        moves.disk.push_back(std::hypot(way(2 * i), way(2 * i + 1)) * up);
+        double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
+        largest = std::max(largest, moves.disk[i]);
+    }
+    moves.walls = std::max(way(2 * n), way(2 * n + 1));
+    return moves;
+}
+
+std::string moves_csv(const Imported& found, const Moves& moves) {
+    std::string text = "disk,x,y,moved,rattler\n";
+    for (std::size_t i = 0; i < moves.disk.size(); ++i) {
+        text += fmt::format("{},{},{},{},{}\n", i, found.state.packing.q[2 * i], found.state.packing.q[2 * i + 1],
+                            rounded_up(moves.disk[i], 6), moves.rattler[i]);
+    }
+    return text;
 }
 
 Json provenance_of(const ImportArguments& a, const std::string& format, const Imported& found, const Moves& moves) {
@@ -85,9 +277,31 @@ int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
-    complete(a, format);
+    const bool own = format == "state" || format == "vertex";
+    if (own && a.jitter == 0) {
+        refuse(a.file, fmt::format("is a {} of this program: expected a packing of another one, or --jitter; isostat "
+                                   "convert copies it",
+                                   format));
+    }
+    if (own) {
+        keep_load(a);
+    }
+    const bool crafted = format == "packing";
+    if (crafted && a.jitter != 0) {
+        refuse(a.file,
+               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
+                           "it is {}",
+                           a.jitter));
+    }
+    if (!crafted && !own && a.foreign.walls.empty()) {
+        a.foreign.walls = "box";
+    }
+    if (!crafted && !own && a.foreign.walls != "box") {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
+    }
     ReadPacking file = read_any_packing(a.file, a.foreign);
-    auto found = format == "packing" ? from_crafted(a, text) : from_foreign(a, file);
+    auto found = crafted ? from_crafted(a, text) : from_foreign(a, file);
     const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
     if (!found.ok() || refuted) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();

@@ -3,6 +3,7 @@
 #include "cli/true_vertex_text.hpp"
 
 #include <isostat/certificate/inspect.hpp>
+#include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -145,13 +146,57 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
     object["remark"] = inspection.remark;
 }
 
+/// Forces that a state file holds against the proved ones: how far apart at most, and where.
+struct FileForces {
+    double difference = 0;
+    Contact where;
+};
+
+std::optional<FileForces> compared_forces(const StateFile<2>& file, const Certification& truth) {
+    if (file.forces.empty() || file.forces.size() != truth.finite.size()) {
+        return std::nullopt;
+    }
+    FileForces out;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        const double off = std::max(file.forces[l] - truth.finite[l].lower, truth.finite[l].upper - file.forces[l]);
+        if (off > out.difference) {
+            out = {off, file.state.contacts[l]};
+        }
+    }
+    return out;
+}
+
+/// The forces one by one, when a load was asked for.
+void print_forces_at(const InspectArguments& arguments, const State<2>& state, const Certification& truth) {
+    for (std::size_t l = 0; arguments.at && l < truth.finite.size(); ++l) {
+        fmt::print("force {:<18} {}\n", to_string<2>(state.contacts[l]),
+                   with_bound(truth.finite[l].lower, truth.finite[l].upper));
+    }
+}
+
+Json forces_json(const State<2>& state, const Certification& truth) {
+    Json out = Json::array();
+    for (std::size_t l = 0; l < truth.finite.size(); ++l) {
+        out.push_back({to_string<2>(state.contacts[l]), number(truth.finite[l].lower), number(truth.finite[l].upper)});
+    }
+    return out;
+}
+
 } // namespace
 
 int inspect(const InspectArguments& arguments) {
     if (arguments.file.ends_with(".toml")) {
+        if (arguments.at) {
+            throw Error(ErrorKind::usage, arguments.file + " is a crafted packing: expected no --at");
+        }
         return inspect_packing(arguments);
     }
-    const State<2> state = read_state<2>(arguments.file).state;
+    StateFile<2> file = read_state<2>(arguments.file);
+    State<2>& state = file.state;
+    if (arguments.at) {
+        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = *arguments.at;
+        file.forces.clear(); // of another load
+    }
     const Result<Inspection<2>> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
@@ -164,6 +209,11 @@ int inspect(const InspectArguments& arguments) {
             object["remark"] = result.failure().message();
         }
         object["true_configuration"] = true_vertex_json(truth);
+        object["forces"] = forces_json(state, truth);
+        if (const auto forces = compared_forces(file, truth)) {
+            object["forces_in_file"] = {{"difference", number(forces->difference)},
+                                        {"contact", to_string<2>(forces->where)}};
+        }
         print_json(object);
     } else {
         print_counting(state, truth.counting);
@@ -174,6 +224,11 @@ int inspect(const InspectArguments& arguments) {
                        result.failure().message());
         }
         print_true_vertex(truth);
+        if (const auto forces = compared_forces(file, truth)) {
+            fmt::print("forces in the file       differ from these by at most {}, in {}\n",
+                       rounded_up(forces->difference, 2), to_string<2>(forces->where));
+        }
+        print_forces_at(arguments, state, truth);
     }
     return result.ok() ? status_of(result.value().record.verdict) : status_of(result.failure().kind);
 }

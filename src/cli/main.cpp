@@ -74,6 +74,8 @@ struct Program {
     GenericityArguments genericity_arguments;
     ImportArguments import_arguments;
     ExportArguments export_arguments;
+    SnapArguments snap_arguments;
+    CompareArguments compare_arguments;
     std::function<int()> todo;
 
     explicit Program(const std::string& line) {
@@ -93,6 +95,8 @@ struct Program {
         add_convert(line);
         add_import(line);
         add_export(line);
+        add_snap(line);
+        add_compare(line);
         add_verify(line);
         add_plateau(line);
         add_genericity(line);
@@ -195,6 +199,8 @@ struct Program {
                 "Examples: isostat inspect start.json\n"
                 "          isostat inspect examples/packings/triangular_patch_3x3.toml");
         command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
+        command.add_option("--at", a.at, "under this sigma_2 instead of that of the state; prints every force")
+            ->type_name("SIGMA2");
         add_threads(command, a.common);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
@@ -365,6 +371,75 @@ struct Program {
             a.common.command = line;
             isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
             todo = [&a] { return import(a); };
+        });
+    }
+
+    void add_snap(const std::string& line) {
+        SnapArguments& a = snap_arguments;
+        CLI::App& command = add(
+            "snap", "a frame of soft grains -> the vertex of rigid grains with the same contacts, with proof",
+            "The list: pairs with a force in a LAMMPS dump of style local, or those that overlap, or the contacts of a "
+            "state. Newton's method\n"
+            "ends at the vertex where they all touch; certify proves it there, with its distance from the file. "
+            "Rattlers must have room and\n"
+            "rest on infinitesimal loads in the state.\n"
+            "Exit status 0: written and proved; 1: the list has no such vertex (hyperstatic, moving, refuted: "
+            "printed); 2: undecided.\n"
+            "Example: isostat snap disks.dump --frame 3 --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
+            "'c_1[1],c_1[2],c_2[2]' --stress 1,1.2 -o state.json");
+        command.add_option("file", a.file, "packing, or state")->required()->type_name("FILE");
+        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
+        CLI::Option* contacts =
+            command.add_option("--contacts", a.contacts, "LAMMPS dump of style local (default: pairs that overlap)")
+                ->type_name("FILE");
+        command.add_option("--contact-columns", a.contact_columns, "columns of that dump: two ids and the force")
+            ->type_name("I,J,FORCE")
+            ->needs(contacts);
+        command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)")
+            ->type_name("S1,S2");
+        command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
+            ->check(CLI::IsMember({"nominal", "true"}));
+        command.add_flag("--exchange", a.exchange,
+                         "where the list has no vertex: the one downhill, which need not be the only one near");
+        command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)");
+        add_foreign(command, a.foreign);
+        add_common(command, a.common, false);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            todo = [&a] { return snap(a); };
+        });
+    }
+
+    void add_compare(const std::string& line) {
+        CompareArguments& a = compare_arguments;
+        CLI::App& command = add(
+            "compare", "a series of frames of another program against the exact trajectory",
+            "Each frame: its list of contacts, the proved distance to the vertex of rigid grains, errors of the forces "
+            "(law, rest,\n"
+            "stiffness), and what it is: same, early, late, other, soft, moving, file, refuted, undecided. Then where "
+            "the frames leave the\n"
+            "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json and the figure.\n"
+            "Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: "
+            "none departs, one is\n"
+            "undecided.\n"
+            "Example: isostat compare series.toml -o comparison");
+        command.add_option("series", a.series, "manifest (isostat-series 1)")->required()->type_name("SERIES.toml");
+        command.add_option("-o,--output", a.output, "folder for tables and figure")->type_name("DIR");
+        command
+            .add_option(
+                "--reference", a.reference,
+                "start of the exact run: a state, or equilibrium 0 of the folder of a run (default: the vertex of "
+                "the first frame that has one)")
+            ->type_name("STATE|DIR");
+        command
+            .add_option("--bundle", a.bundle, "exact runs with other rules of opening at the departure (default 16)")
+            ->check(CLI::Range(0, 10000));
+        add_threads(command, a.common);
+        add_common(command, a.common, true);
+        command.callback([&a, line, this] {
+            a.common.command = line;
+            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
+            todo = [&a] { return compare_series(a); };
         });
     }
 

@@ -26,20 +26,6 @@ std::string quoted(const std::string& text) {
     return safe + "\"";
 }
 
-/// The same plot on both terminals.
-std::string script_of(const std::string& name, int width, int height, const std::string& body) {
-    std::string script = "# gnuplot script; run it in this folder\n";
-    const std::array<std::pair<std::string, std::string>, 2> terminals{
-        {{"svg",
-          fmt::format("set terminal svg size {},{} dynamic font \"sans,14\" background \"#ffffff\"", width, height)},
-         {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}}};
-    for (const auto& [suffix, terminal] : terminals) {
-        script += fmt::format("reset\nset encoding utf8\n{}\nset output {}\n{}unset output\n", terminal,
-                              quoted(fmt::format("{}.{}", name, suffix)), body);
-    }
-    return script;
-}
-
 void append_points(std::string& data, const std::string& title, const std::vector<std::pair<double, double>>& points) {
     data += fmt::format("# {}\n", title);
     for (const auto& [x, y] : points) {
@@ -94,10 +80,10 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves) {
             fmt::format("{} {} index {} with lines lw 1.5 lc rgb {} title {} noenhanced", k == 0 ? "plot" : ",\\\n    ",
                         quoted(name + ".dat"), k, quoted(colours[k % colours.size()]), quoted(curves[k].title));
     }
-    chart.script = script_of(name, 800, 560,
-                             "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key top left reverse Left\n"
-                             "set format x \"%g\"\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
-                                 plot + "\n");
+    chart.script = chart_script(name, 800, 560,
+                                "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key top left reverse Left\n"
+                                "set format x \"%g\"\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
+                                    plot + "\n");
     return chart;
 }
 
@@ -197,11 +183,24 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
                         "yrange [*:1.5]\nset format y "
                         "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
                         x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
-    chart.script = script_of(name, 1100, 480, body);
+    chart.script = chart_script(name, 1100, 480, body);
     charts.push_back(std::move(chart));
 }
 
 } // namespace
+
+std::string chart_script(const std::string& name, int width, int height, const std::string& body) {
+    std::string script = "# gnuplot script; run it in this folder\n";
+    const std::array<std::pair<std::string, std::string>, 2> terminals{
+        {{"svg",
+          fmt::format("set terminal svg size {},{} dynamic font \"sans,14\" background \"#ffffff\"", width, height)},
+         {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}}};
+    for (const auto& [suffix, terminal] : terminals) {
+        script += fmt::format("reset\nset encoding utf8\n{}\nset output {}\n{}unset output\n", terminal,
+                              quoted(fmt::format("{}.{}", name, suffix)), body);
+    }
+    return script;
+}
 
 std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
     std::vector<Chart> charts;

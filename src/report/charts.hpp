@@ -14,6 +14,9 @@ struct Chart {
     std::string name, data, script;
 };
 
+/// The gnuplot script that draws `body` to NAME.svg and NAME.png, of that size in pixels.
+std::string chart_script(const std::string& name, int width, int height, const std::string& body);
+
 /// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments.
 std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names);
 

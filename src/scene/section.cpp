@@ -142,6 +142,14 @@ std::optional<std::vector<double>> Section::numbers(const std::string& key) {
     return values;
 }
 
+const toml::table* Section::table(const std::string& key) {
+    const toml::node* node = find(key);
+    if (node != nullptr && node->as_table() == nullptr) {
+        fail(key, "a table");
+    }
+    return node == nullptr ? nullptr : node->as_table();
+}
+
 double Section::number(const std::string& key, double fallback, double lowest, double highest,
                        const std::string& expected) {
     const double value = number(key).value_or(fallback);

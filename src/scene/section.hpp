@@ -34,6 +34,8 @@ class Section {
     std::optional<bool> boolean(const std::string& key);
     std::optional<std::string> string(const std::string& key);
     std::optional<std::vector<double>> numbers(const std::string& key);
+    /// A table in this one; null when it is absent.
+    const toml::table* table(const std::string& key);
 
     /// With defaults; these are recorded as settings.
     double number(const std::string& key, double fallback, double lowest, double highest, const std::string& expected);

@@ -117,7 +117,7 @@ BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
     BOOST_TEST(contains(all.out, "188 carry a force, those of the file"));
     scratch::write(dump, soft.forces(100));
     expect(import_text(folder, soft.table(), options), 1,
-           {"other contacts than the file", "; with ", "--contacts nearest"});
+           {"moving: the contacts of the file", "k = ", "--contacts nearest"});
     scratch::write(dump, scratch::replaced(soft.forces(1000), "1 50 0\n", "1 501 0\n"));
     expect(import_text(folder, soft.table(), options), 65, {"pairs.dump:", "c_i[2]", "501", "id of a disk"});
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--contacts", dump, "--contact-columns", "a,b,c"}), 65,

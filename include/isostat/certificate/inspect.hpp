@@ -36,6 +36,13 @@ template <int Dim> struct Inspection {
 /// `undecided` when no bound of the inverse or no true vertex near the given place was proved. Cost: as `certify`.
 template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& state);
 
+/// Finite forces at the true vertex of the state under the loaded stress `sigma` instead of its own, one per contact in
+/// its order: enclosures from `certify`, structural zeros [0, 0]. Also beyond the supported interval, where some are
+/// negative: then no equilibrium has them. Failure: `not_isostatic` when the counting is not proved, `undecided` when
+/// no true vertex near the given place was. Cost: as `certify`.
+template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma);
+
+extern template Result<std::vector<Interval>> forces_at<2>(State<2>, double);
 extern template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
 
 } // namespace isostat

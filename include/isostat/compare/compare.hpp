@@ -1,0 +1,98 @@
+#pragma once
+/// \file
+/// A series of frames of soft grains against the exact trajectory of rigid ones.
+
+#include "statics/decisions.hpp"
+
+#include <isostat/compare/series.hpp>
+#include <isostat/compare/snap.hpp>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isostat::compare {
+
+/// What a frame is.
+/// - same: its list is that of the exact run at its load, and its vertex is proved;
+/// - early, late: the list of a later (earlier) equilibrium of the exact run, proved at this load;
+/// - other: a proved equilibrium that is not on the path of the exact run;
+/// - soft: its list is no equilibrium of rigid grains (h > 0, or its true vertex is refuted), and the vertex downhill
+/// of
+///   it is proved: that it is the only one near is not;
+/// - moving: forces do not balance, or k > 0: says nothing of the program that made it;
+/// - file: lists, forces and overlaps of the files contradict each other;
+/// - refuted: the true vertex of the list has a negative force or an overlap, proved, and no vertex was found downhill;
+/// - undecided: none of these was shown.
+enum class FrameStatus : unsigned char { same, early, late, other, soft, moving, file, refuted, undecided };
+inline constexpr int frame_statuses = 9;
+const char* to_string(FrameStatus status);
+
+/// One frame. Numbers that were not found are NaN, numbers of equilibria -1.
+struct FrameResult {
+    int frame = 0;
+    long timestep = 0;
+    double sigma2 = 0, unbalanced = 0;
+    int listed = 0, overlapping = 0, twice = 0, missing_rows = 0;
+    Counting counting; ///< of the list without rattlers, at the soft place
+    int rattlers = 0;
+    std::string snapped;           ///< "newton", "exchange" or "none"
+    double distance = 0;           ///< proved bound of the way of a disk of the list to the true vertex
+    double walls = 0;              ///< the same of the walls
+    int expected = -1, found = -1; ///< rearrangements of the exact run before the equilibrium
+    FrameStatus status = FrameStatus::undecided;
+    std::string reason;                  ///< words, with names and rows
+    std::vector<Contact> missing, extra; ///< of the list against that of the equilibrium expected
+    /// Largest error of a force over the mean force, in three parts: |f_file - K overlap|; |f_file - f(H(q_soft))|, the
+    /// exact solve at the stored coordinates; |f(H(q_soft)) - f(H(q*))|, upper bounds (both proved to their bound).
+    double law = 0, ratio = 1, rest = 0, stiffness = 0;
+    double eps1 = 0, eps2 = 0;           ///< strains of the frame
+    double true_eps1 = 0, true_eps2 = 0; ///< of its true vertex
+};
+
+/// One equilibrium of the exact run: a list of contacts, the interval of sigma_2 in which it is supported, and what
+/// stiffness does to the end of it ahead (predictions; NaN without one).
+struct PathEquilibrium {
+    int number = 0; ///< rearrangements before it
+    double sigma2 = 0, eps2 = 0, low = 0, high = 0;
+    int arcs = 0;
+    bool proved = false;
+    std::vector<Contact> contacts; ///< that carry a force, sorted
+    State<2> state;                ///< complete
+    Contact opens;                 ///< at the end ahead
+    double soft_limit = 0;         ///< of sigma_2 ahead, at the stiffness of the series
+    double stiffness_needed = 0;   ///< for which it is within 1e-3 of the exact one
+};
+
+/// Why the frames leave the exact run: the first of these that holds.
+struct Departure {
+    int from = -1, to = -1;              ///< frames: the last one before, and the first one after; -1: none
+    std::string reason;                  ///< file, moving, tie, stiffness, step, choice, dynamics, wrong, undecided
+    std::string words;                   ///< with the numbers that decide
+    std::vector<Contact> opened, closed; ///< of the frame against the equilibrium expected
+};
+
+struct CompareOptions {
+    std::optional<State<2>> start; ///< of the exact run; none: the vertex of the first frame that has one
+    OpeningRule rule = OpeningRule::most_negative;
+    int bundle = 16; ///< runs with other rules and resting places, where the departure asks for them
+    const std::atomic<bool>* stop = nullptr;
+};
+
+struct Comparison {
+    std::vector<FrameResult> frames;
+    std::vector<PathEquilibrium> path;
+    std::string path_end; ///< empty, or why the exact run ends before the last frame
+    std::optional<Departure> departure;
+    /// 0 every frame at rest is `same`; 1 one departs; 2 none departs, one is undecided.
+    int status = 0;
+};
+
+/// Frames are judged one by one (`snap`, else `exchange`); the exact run starts from the first one, follows the loads
+/// of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance of each snapped
+/// frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded), the reason of
+/// the departure, soft limits. Cost: about two certificates per frame.
+Comparison compare(const Series& series, const CompareOptions& options = {});
+
+} // namespace isostat::compare

@@ -1,0 +1,87 @@
+#pragma once
+/// \file
+/// From a state of soft grains and its list of contacts to the vertex of rigid grains with the same list, with proof.
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/contact/state.hpp>
+#include <isostat/core/result.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace isostat::compare {
+
+/// Disks of another program in the box with two fixed and two movable walls, the contacts that carry a force there
+/// (sorted, each once) and the load. Overlaps are allowed. Infinitesimal loads are not used.
+struct SoftState {
+    Packing<2> packing;
+    std::vector<Contact> contacts;
+    Load<2> load;
+};
+
+/// - vertex: the list has a true vertex near the soft place, isostatic, with positive forces under the load and without
+///   overlap, and every rattler has room beside it: all proved;
+/// - hyperstatic: h > 0, more contacts than rigid grains can close; - moving: k > 0, the list holds the grains not;
+/// - refuted: the true vertex of the list has a negative force or an overlap, proved;
+/// - undecided: a sign was not decided, no vertex was found near, or no room was found for a rattler (which is no proof
+///   that there is none).
+enum class SnapOutcome : unsigned char { vertex, hyperstatic, moving, refuted, undecided };
+const char* to_string(SnapOutcome outcome);
+
+/// What became of a soft state. Grains without a contact in the list are its rattlers.
+struct Snap {
+    SnapOutcome outcome = SnapOutcome::undecided;
+    std::string reason; ///< empty for a vertex
+    /// Of the list, without rattlers, at the soft place.
+    Counting counting;
+    std::vector<int> rattlers; ///< disks
+    std::vector<int> disks;    ///< the others: disk i of `backbone` is disk `disks[i]`
+    /// The others alone, in the contacts of the list (the order is that of the list), at the doubles next to the vertex
+    /// where Newton's method found one, else at the soft place.
+    State<2> backbone;
+    Certification truth;       ///< of `backbone`
+    std::vector<double> moved; ///< per disk: bound of the distance from the soft place to the true vertex; rattlers: 0
+    /// Bounds of the same, largest over the disks of the list, and over the walls. Infinite without a vertex.
+    double distance = std::numeric_limits<double>::infinity();
+    double walls = std::numeric_limits<double>::infinity();
+    /// All disks: those of the list as in `backbone`, rattlers where they have room (`outcome` is `vertex`; else where
+    /// they were).
+    Packing<2> packing;
+    double cage = std::numeric_limits<double>::infinity(); ///< proved lower bound of the gaps of the rattlers there
+};
+
+/// Newton's method on the gaps of the list from the soft place, then `certify` where it ends: the enclosure of the
+/// vertex is asked there and not at the soft place, and the distance is way + radius. Rattlers that overlap at the
+/// vertex are pushed apart; the gaps that they have then are proved positive. A vertex farther than a tenth of the
+/// smallest radius is not taken. What is proved speaks of the doubles of `soft` as they are. Cost: that of `certify`
+/// and of three to six rank proofs.
+Snap snap(const SoftState& soft);
+
+/// The state of a vertex with its rattlers at rest on generic infinitesimal loads (`generic_infinitesimal`, \p seed):
+/// N_f contacts, from which a run can start. Rattlers move from where `snap` left them by arcs that are decided one by
+/// one, the others stay. \pre `outcome` is `vertex`. Failures: those of `run_segment`, and `undecided` when the
+/// contacts that carry a force are then not those of the list (the message says which).
+Result<State<2>> with_resting_rattlers(const Snap& snap, std::uint64_t seed);
+
+/// The vertex downhill of the soft place whatever its contacts (`find_vertex`), under the load of the soft state, and
+/// what is proved of it. That it is *the* vertex of a list is not proved: with h > 0 there is none.
+struct Exchanged {
+    State<2> state;
+    Certification truth;
+    std::vector<Contact> contacts; ///< that carry a force, sorted
+    double distance = 0;           ///< as in `Snap`, over disks that carry a force
+};
+Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed);
+
+/// The contacts of a certified state that carry a finite force, sorted.
+std::vector<Contact> carrying(const State<2>& state, const Certification& truth);
+
+/// Names of contacts, " 1-2 3-left", " none", or the first of them and how many more.
+std::string names_of(const std::vector<Contact>& contacts);
+
+/// Those of `a` that are not in `b`; both sorted.
+std::vector<Contact> without(const std::vector<Contact>& a, const std::vector<Contact>& b);
+
+} // namespace isostat::compare

@@ -1,0 +1,118 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+#include "cli/interrupt.hpp"
+
+#include <isostat/compare/compare.hpp>
+#include <isostat/compare/report.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+namespace isostat::cli {
+
+namespace {
+
+/// Equilibrium 0 of a run, or a state file.
+State<2> start_of(const std::string& reference) {
+    const std::filesystem::path path = reference;
+    return read_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
+}
+
+std::string shown(double x) {
+    return std::isfinite(x) ? fmt::format("{:.1e}", x) : "-";
+}
+
+void print_frames(const compare::Comparison& comparison) {
+    fmt::print("{:>5} {:>9} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}\n", "frame",
+               "sigma2", "unbalanced", "N", "N_f", "h", "k", "rattlers", "distance", "law", "rest", "stiff", "exact",
+               "status");
+    for (const compare::FrameResult& f : comparison.frames) {
+        const std::string place = f.expected < 0          ? "-"
+                                  : f.found == f.expected ? fmt::format("{}", f.expected)
+                                  : f.found < 0           ? fmt::format("{}/-", f.expected)
+                                                          : fmt::format("{}/{}", f.expected, f.found);
+        fmt::print("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}\n",
+                   f.frame, f.sigma2, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count,
+                   f.counting.hyperstaticity, f.counting.mechanisms, f.rattlers, shown(f.distance), shown(f.law),
+                   shown(f.rest), shown(f.stiffness), place, to_string(f.status), f.reason.empty() ? "" : ": ",
+                   f.reason);
+    }
+}
+
+void print_ends(const compare::Comparison& comparison, double stiffness) {
+    if (stiffness > 0) {
+        fmt::print("\n{:>5} {:>10} {:>10} {:>12} {:>11}  {}   (predictions)\n", "exact", "from", "to", "soft limit",
+                   "K for 1e-3", "opens");
+        for (const compare::PathEquilibrium& e : comparison.path) {
+            fmt::print("{:>5} {:>10.6f} {:>10.6f} {:>12.6f} {:>11}  {}\n", e.number, e.low, e.high, e.soft_limit,
+                       shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string<2>(e.opens));
+        }
+    }
+    if (!comparison.path_end.empty()) {
+        fmt::print("\nthe exact run ends: {}\n", comparison.path_end);
+    }
+    std::array<int, compare::frame_statuses> counts{};
+    for (const compare::FrameResult& f : comparison.frames) {
+        ++counts[static_cast<std::size_t>(f.status)];
+    }
+    std::string text;
+    for (std::size_t s = 0; s < counts.size(); ++s) {
+        if (counts[s] > 0) {
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[s],
+                                to_string(static_cast<compare::FrameStatus>(s)));
+        }
+    }
+    fmt::print("\n{} frames: {}\n", comparison.frames.size(), text);
+    if (const auto& d = comparison.departure) {
+        fmt::print("FIRST DEPARTURE: frames {} -> {}: {}: {}\n", d->from < 0 ? "-" : std::to_string(d->from), d->to,
+                   d->reason, d->words);
+        fmt::print("  opened{}; closed{}\n", compare::names_of(d->opened), compare::names_of(d->closed));
+    }
+}
+
+} // namespace
+
+int compare_series(const CompareArguments& a) {
+    const compare::Series series = compare::read_series(a.series);
+    compare::CompareOptions options;
+    options.bundle = a.bundle;
+    if (!a.reference.empty()) {
+        options.start = start_of(a.reference);
+        if (options.start->packing.radius != series.frames.front().packing.radius) {
+            throw Error(
+                ErrorKind::bad_input,
+                fmt::format("{}: other radii than those of {}: expected the same disks, in the order of their ids",
+                            a.reference, a.series));
+        }
+    }
+    catch_interrupts();
+    options.stop = &stop_flag();
+    const compare::Comparison comparison = compare::compare(series, options);
+    if (stop_flag()) {
+        return interrupted;
+    }
+    std::string note;
+    if (!a.output.empty()) {
+        note = compare::write_comparison(a.output, series, comparison);
+    }
+    if (a.common.json) {
+        fmt::print("{}", compare::comparison_json(series, comparison));
+    } else {
+        if (!a.common.quiet) {
+            print_frames(comparison);
+        }
+        print_ends(comparison, a.common.quiet ? 0 : series.stiffness);
+    }
+    if (!note.empty()) {
+        fmt::print(stderr, "isostat: {}\n", note);
+    }
+    return comparison.status;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,158 @@
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+#include "cli/soft_list.hpp"
+#include "io/json.hpp"
+
+#include <isostat/compare/snap.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace isostat::cli {
+
+namespace {
+
+struct Read {
+    compare::SoftState soft;
+    std::string words;
+    std::vector<std::string> notes;
+};
+
+/// A state says contacts and load itself.
+Read from_state(const SnapArguments& a) {
+    if (!a.contacts.empty() || !a.stress.empty() || !a.load.empty()) {
+        throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
+                                               "--contacts, --stress, --load");
+    }
+    State<2> state = read_state<2>(a.file).state;
+    const bool fixed =
+        std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
+    if (!(state.packing.walls == Walls<2>::box()) || fixed || !state.load.disk_force.empty()) {
+        throw Error(ErrorKind::bad_input, a.file +
+                                              ": expected a box with two fixed and two movable walls, no fixed disk "
+                                              "and no force on a disk");
+    }
+    Read out;
+    out.words = fmt::format("{} contacts of the state", state.contacts.size());
+    std::sort(state.contacts.begin(), state.contacts.end());
+    out.soft = {std::move(state.packing), std::move(state.contacts), std::move(state.load)};
+    return out;
+}
+
+Read from_foreign(const SnapArguments& a) {
+    ForeignArguments foreign = a.foreign;
+    foreign.walls = foreign.walls.empty() ? "box" : foreign.walls;
+    if (foreign.walls != "box") {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", foreign.walls));
+    }
+    const ReadPacking file = read_any_packing(a.file, foreign);
+    check_nearness(a.file, file.packing);
+    SoftList list = a.contacts.empty() ? list_by_overlaps(file.packing)
+                                       : list_by_forces(a.file, file, foreign.frame, a.contacts, a.contact_columns);
+    Read out;
+    out.words = list.words;
+    out.notes = file.notes;
+    out.soft.packing = file.packing;
+    out.soft.contacts = std::move(list.contacts);
+    out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    out.soft.load.stress = parse_stress(a.stress);
+    out.soft.load.reference_length = {file.packing.length(0), file.packing.length(1)};
+    return out;
+}
+
+Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap) {
+    Json out;
+    out["program"] = program_name();
+    out["command"] = a.common.command;
+    out["snapped_from"] = a.file;
+    out["contacts"] = read.words;
+    out["N_f"] = snap.counting.dof_count;
+    out["N"] = snap.counting.contact_count;
+    out["rank"] = snap.counting.rank;
+    out["h"] = snap.counting.hyperstaticity;
+    out["k"] = snap.counting.mechanisms;
+    out["rattlers"] = snap.rattlers;
+    out["outcome"] = to_string(snap.outcome);
+    out["reason"] = snap.reason;
+    out["distance"] = number(snap.distance);
+    out["walls"] = number(snap.walls);
+    return out;
+}
+
+/// The state to write, with words on what it is; nothing: there is none.
+std::optional<State<2>> state_of(const SnapArguments& a, const Read& read, const compare::Snap& snap, Json& report) {
+    if (snap.outcome == compare::SnapOutcome::vertex) {
+        auto state = compare::with_resting_rattlers(snap, a.seed);
+        report["unique"] = true;
+        report["reason"] = state.ok() ? "" : state.failure().message();
+        return state.ok() ? std::optional(std::move(state.value())) : std::nullopt;
+    }
+    if (!a.exchange) {
+        return std::nullopt;
+    }
+    auto found = compare::exchange(read.soft, a.seed);
+    if (!found.ok() || found.value().truth.verdict != Verdict::proved) {
+        report["reason"] =
+            snap.reason + "; downhill: " + (found.ok() ? "the vertex is not proved" : found.failure().message());
+        return std::nullopt;
+    }
+    compare::Exchanged& e = found.value();
+    report["unique"] = false;
+    report["distance"] = number(e.distance);
+    report["reason"] =
+        fmt::format("{}; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
+                    snap.reason, compare::names_of(compare::without(read.soft.contacts, e.contacts)),
+                    compare::names_of(compare::without(e.contacts, read.soft.contacts)));
+    return std::move(e.state);
+}
+
+void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, const Json& report, bool written) {
+    for (const std::string& note : read.notes) {
+        fmt::print("          {}\n", note);
+    }
+    fmt::print("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words,
+               snap.counting.dof_count, snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity,
+               snap.counting.mechanisms, snap.rattlers.size());
+    fmt::print("snap      {}{}{}\n", to_string(snap.outcome), report["reason"] == "" ? "" : ": ",
+               report["reason"].get<std::string>());
+    if (!report["distance"].is_null()) {
+        fmt::print("distance  of a disk with a force from its true place at most {}\n",
+                   rounded_up(report["distance"].get<double>(), 3));
+    }
+    if (written) {
+        fmt::print("written   {}\n", a.output);
+    }
+}
+
+} // namespace
+
+int snap(const SnapArguments& a) {
+    const std::string text = read_text(a.file);
+    const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
+    const Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
+    const compare::Snap snap = compare::snap(read.soft);
+    Json report = json_of(a, read, snap);
+    std::optional<State<2>> state = state_of(a, read, snap, report);
+    if (state) {
+        state->provenance = json::dumped(report);
+        write_state<2>(a.output, *state);
+    }
+    if (a.common.json) {
+        report["state"] = state ? Json(a.output) : Json();
+        print_json(report);
+    } else {
+        print(a, read, snap, report, state.has_value());
+    }
+    return state                                                                                             ? done
+           : snap.outcome == compare::SnapOutcome::vertex || snap.outcome == compare::SnapOutcome::undecided ? undecided
+                                                                                                             : failed;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,137 @@
+#include "cli/soft_list.hpp"
+
+#include "crafted/peeling.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/crafted/plateau.hpp>
+#include <isostat/io/foreign.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace isostat::cli {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& file, const std::string& what) {
+    throw Error(ErrorKind::bad_input, file + ": " + what);
+}
+
+/// Those that can carry a force by the positions of the normals: soft rattlers touch now and then.
+std::vector<Contact> backbone_of(const Packing<2>& packing, const std::vector<Contact>& contacts) {
+    const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (from[l] <= static_cast<int>(contacts.size())) {
+            out.push_back(contacts[l]);
+        }
+    }
+    return out;
+}
+
+/// Walls that a disk overlaps.
+std::vector<Contact> walls_of(const Packing<2>& packing) {
+    std::vector<Contact> out;
+    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+        for (int i = 0; i < packing.disk_count(); ++i) {
+            for (int axis = 0; axis < 2; ++axis) {
+                if (gap<2>(packing, {kind, i, axis}) <= 0) {
+                    out.push_back({kind, i, axis});
+                }
+            }
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+std::array<double, 2> parse_stress(const std::string& text) {
+    if (text.empty()) {
+        return {1, 1};
+    }
+    const std::vector<std::string> words = parse_list(text);
+    std::array<double, 2> stress{};
+    bool good = words.size() == 2;
+    for (std::size_t k = 0; good && k < 2; ++k) {
+        const char* const end =
+            words[k].data() + words[k].size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
+        const auto [stop, error] = std::from_chars(words[k].data(), end, stress[k]);
+        good = error == std::errc() && stop == end && stress[k] > 0 && std::isfinite(stress[k]);
+    }
+    if (!good) {
+        throw Error(ErrorKind::usage, fmt::format("--stress is '{}': expected S1,S2, two positive numbers", text));
+    }
+    return stress;
+}
+
+void check_nearness(const std::string& file, const Packing<2>& packing) {
+    const double near = nearly_touching * packing.min_radius();
+    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+        for (int axis = 0; axis < 2; ++axis) {
+            double nearest = HUGE_VAL;
+            for (int i = 0; i < packing.disk_count(); ++i) {
+                nearest = std::min(nearest, gap<2>(packing, {kind, i, axis}));
+            }
+            if (nearest > near) {
+                const std::string name = to_string<2>({kind, 0, axis}).substr(2);
+                refuse(file,
+                       fmt::format("no disk is near the {} wall, the nearest gap is {:.3g}: expected the "
+                                   "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
+                                   "those)",
+                                   name, nearest));
+            }
+        }
+    }
+    const double deepest = crafted::plateau(packing, {near}).deepest_overlap;
+    if (deepest < -near) {
+        refuse(file, fmt::format("two grains overlap by {:.3g}: expected at most {:.3g}, {} of the smallest radius",
+                                 -deepest, near, nearly_touching));
+    }
+}
+
+SoftList list_by_forces(const std::string& file, const ReadPacking& packing, const std::string& frame,
+                        const std::string& contacts, const std::string& columns) {
+    const std::vector<std::string> names = parse_list(columns);
+    if (names.size() != 3) {
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("--contact-columns is '{}': expected I,J,FORCE, names of columns of {}", columns, contacts));
+    }
+    if (packing.ids.empty()) {
+        refuse(file, "has no column id: expected one, the contacts speak of ids");
+    }
+    std::optional<long> number;
+    if (frame != "last") {
+        number = std::stol(frame); // read once already
+    }
+    SoftList out;
+    out.contacts = read_local_dump(contacts, {names[0], names[1], names[2]}, packing.ids, number);
+    const std::size_t pairs = out.contacts.size();
+    const std::vector<Contact> walls = walls_of(packing.packing);
+    out.contacts.insert(out.contacts.end(), walls.begin(), walls.end());
+    out.words = fmt::format("{} pairs with a force in {}, {} overlaps with walls, without rattlers", pairs, contacts,
+                            walls.size());
+    std::sort(out.contacts.begin(), out.contacts.end());
+    out.contacts = backbone_of(packing.packing, out.contacts);
+    return out;
+}
+
+SoftList list_by_overlaps(const Packing<2>& packing) {
+    constexpr double reach = 0.5; // of the smallest radius
+    SoftList out;
+    for (const Contact& c : find_candidates(packing, reach).contacts) {
+        if (gap(packing, c) < 0) {
+            out.contacts.push_back(c);
+        }
+    }
+    out.words = fmt::format("{} overlaps, without rattlers", out.contacts.size());
+    out.contacts = backbone_of(packing, out.contacts);
+    return out;
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,114 @@
+#include "compare/departure.hpp"
+#include "compare/frame.hpp"
+#include "compare/path.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::compare {
+
+namespace {
+
+/// Which equilibrium of the path has this list: the one nearest to the expected.
+int place_on(const std::vector<PathEquilibrium>& path, const std::vector<Contact>& list, int expected) {
+    int best = -1;
+    for (const PathEquilibrium& e : path) {
+        if (e.contacts == list && (best < 0 || std::abs(e.number - expected) < std::abs(best - expected))) {
+            best = e.number;
+        }
+    }
+    return best;
+}
+
+/// Where a frame stands against the exact run.
+void place(JudgedFrame& judged, const Path& path, int expected) {
+    FrameResult& r = judged.result;
+    r.expected = expected;
+    if (r.status == FrameStatus::file || r.status == FrameStatus::moving) {
+        return;
+    }
+    r.found = place_on(path.equilibria, judged.list, expected);
+    if (expected >= 0) {
+        const PathEquilibrium& e = path.equilibria[static_cast<std::size_t>(expected)];
+        r.missing = without(e.contacts, judged.list);
+        r.extra = without(judged.list, e.contacts);
+    }
+    if (r.status != FrameStatus::same) {
+        return;
+    }
+    if (expected < 0) {
+        r.status = FrameStatus::undecided;
+        r.reason = "its vertex is proved; the exact run ends before: " + path.end;
+    } else if (!path.equilibria[static_cast<std::size_t>(expected)].proved) {
+        r.status = FrameStatus::undecided;
+        r.reason = "its vertex is proved, the equilibrium of the exact run is not";
+    } else if (r.found != expected) {
+        r.status = r.found < 0 ? FrameStatus::other : r.found > expected ? FrameStatus::early : FrameStatus::late;
+    }
+}
+
+int status_of(const std::vector<FrameResult>& frames) {
+    const auto has = [&](auto what) { return std::any_of(frames.begin(), frames.end(), what); };
+    const auto at_rest_and_elsewhere = [](const FrameResult& f) {
+        return f.status != FrameStatus::same && f.status != FrameStatus::moving && f.status != FrameStatus::undecided;
+    };
+    return has(at_rest_and_elsewhere)                                                     ? 1
+           : has([](const FrameResult& f) { return f.status == FrameStatus::undecided; }) ? 2
+                                                                                          : 0;
+}
+
+} // namespace
+
+const char* to_string(FrameStatus status) {
+    switch (status) {
+    case FrameStatus::same: return "same";
+    case FrameStatus::early: return "early";
+    case FrameStatus::late: return "late";
+    case FrameStatus::other: return "other";
+    case FrameStatus::soft: return "soft";
+    case FrameStatus::moving: return "moving";
+    case FrameStatus::file: return "file";
+    case FrameStatus::refuted: return "refuted";
+    case FrameStatus::undecided: break;
+    }
+    return "undecided";
+}
+
+Comparison compare(const Series& series, const CompareOptions& options) {
+    Comparison out;
+    RunOptions run;
+    run.rule = options.rule;
+    run.stop = options.stop;
+    std::vector<JudgedFrame> judged;
+    std::optional<State<2>> start = options.start;
+    for (const Frame& frame : series.frames) {
+        judged.push_back(judge(series, frame, !start));
+        if (!start && judged.back().state) {
+            start = judged.back().state;
+        }
+    }
+    Path path;
+    std::vector<double> loads;
+    for (const JudgedFrame& frame : judged) {
+        loads.push_back(frame.result.sigma2);
+    }
+    if (start) {
+        path = follow(*start, loads, run, series.stiffness);
+    } else {
+        path.at_load.assign(loads.size(), -1);
+        path.end = "no frame has a proved vertex to start from";
+    }
+    for (std::size_t k = 0; k < judged.size(); ++k) {
+        place(judged[k], path, path.at_load[k]);
+        out.frames.push_back(judged[k].result);
+    }
+    out.departure = find_departure(series, judged, path, options);
+    out.path = std::move(path.equilibria);
+    out.path_end = path.end;
+    out.status = status_of(out.frames);
+    return out;
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,188 @@
+#include "compare/departure.hpp"
+
+#include <isostat/compare/soft_limit.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace isostat::compare {
+
+namespace {
+
+/// The frames and equilibria on both sides of a departure.
+class Diagnosis {
+  public:
+    Diagnosis(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path,
+              const CompareOptions& options)
+        : series_(series), frames_(frames), path_(path), options_(options) {}
+
+    std::optional<Departure> run() {
+        const auto find = [&](std::size_t from) {
+            while (from < frames_.size() && (frames_[from].result.status == FrameStatus::same ||
+                                             frames_[from].result.status == FrameStatus::moving)) {
+                ++from;
+            }
+            return from;
+        };
+        const std::size_t to = find(0);
+        if (to == frames_.size()) {
+            return std::nullopt;
+        }
+        after_ = &frames_[to];
+        out_.to = after_->result.frame;
+        for (std::size_t k = 0; k < to; ++k) {
+            if (frames_[k].result.status == FrameStatus::same) {
+                before_ = &frames_[k];
+                out_.from = before_->result.frame;
+            }
+        }
+        out_.opened = after_->result.missing;
+        out_.closed = after_->result.extra;
+        if (!(file() || moving() || tie() || stiffness() || step() || choice())) {
+            last();
+        }
+        return out_;
+    }
+
+  private:
+    bool is(const char* reason, const std::string& words) {
+        out_.reason = reason;
+        out_.words = words;
+        return true;
+    }
+    bool file() { return after_->result.status == FrameStatus::file && is("file", after_->result.reason); }
+
+    bool moving() {
+        for (int k = out_.from + 1; k < out_.to; ++k) {
+            const FrameResult& r = frames_[static_cast<std::size_t>(k)].result;
+            if (r.status == FrameStatus::moving) {
+                return is("moving",
+                          fmt::format("the load went on while frame {} was in motion: {}", r.frame, r.reason));
+            }
+        }
+        return false;
+    }
+
+    bool tie() {
+        return after_->result.expected < 0 && !path_.end.empty() &&
+               is("tie", "the exact run ends before this load: " + path_.end);
+    }
+
+    /// The equilibrium that both have before; null: there is none.
+    [[nodiscard]] const PathEquilibrium* common() const {
+        return before_ == nullptr || before_->result.expected < 0
+                   ? nullptr
+                   : &path_.equilibria[static_cast<std::size_t>(before_->result.expected)];
+    }
+    [[nodiscard]] int direction() const {
+        return before_ == nullptr || after_->result.sigma2 >= before_->result.sigma2 ? 1 : -1;
+    }
+
+    /// The limit of the structure lies on one side of the frame's load for rigid grains and on the other for soft ones.
+    bool stiffness() {
+        const Counting& counting = after_->result.counting;
+        if (after_->result.status == FrameStatus::soft && counting.hyperstaticity > 0) {
+            return is("stiffness",
+                      fmt::format("{} contacts with a force for {} degrees of freedom: rigid grains close h = "
+                                  "{} fewer",
+                                  counting.contact_count, counting.dof_count, counting.hyperstaticity));
+        }
+        const PathEquilibrium* e = common();
+        if (e == nullptr || !(series_.stiffness > 0)) {
+            return false;
+        }
+        const auto soft =
+            soft_limit(backbone_of(e->state, e->contacts), {e->low, e->high, direction()}, series_.stiffness);
+        const double exact = direction() > 0 ? e->high : e->low;
+        if (!soft) {
+            return false;
+        }
+        const double load = after_->result.sigma2;
+        const bool soft_left = direction() * (load - soft->stress) > 0, exact_left = direction() * (load - exact) > 0;
+        const std::string words = fmt::format(
+            "equilibrium {} ends at {:.7g}, with stiffness {:.3g} at {:.7g} (predicted); {} needs a stiffness "
+            "of {:.2g} for 1e-3",
+            e->number, exact, series_.stiffness, soft->stress, to_string<2>(e->opens), e->stiffness_needed);
+        return soft_left != exact_left && is("stiffness", words);
+    }
+
+    bool step() {
+        const PathEquilibrium* e = common();
+        const int limits = e == nullptr ? 0 : after_->result.expected - e->number;
+        if (limits < 2) {
+            return false;
+        }
+        RunOptions run;
+        run.rule = options_.rule;
+        const auto list = list_after(at(*e), after_->result.sigma2, true, run);
+        return list.ok() && list.value() == after_->list &&
+               is("step",
+                  fmt::format("{} limits of the exact run in one step of the load; the run that jumps ends where "
+                              "the frame is",
+                              limits));
+    }
+
+    /// The common equilibrium at the load of the frame before.
+    [[nodiscard]] State<2> at(const PathEquilibrium& e) const {
+        State<2> state = e.state;
+        state.load.stress[1] = before_->result.sigma2;
+        return state;
+    }
+
+    bool choice() {
+        const PathEquilibrium* e = common();
+        if (e == nullptr || options_.bundle < 1) {
+            return false;
+        }
+        int here = 0, ended = 0;
+        std::vector<std::vector<Contact>> lists;
+        for (int m = 0; m < options_.bundle; ++m) {
+            constexpr std::array rules{OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::least_negative};
+            RunOptions run;
+            run.rule = m < 3 ? rules[static_cast<std::size_t>(m)] : OpeningRule::random;
+            run.rule_seed = static_cast<std::uint64_t>(m);
+            run.stop = options_.stop;
+            const auto list = list_after(at(*e), after_->result.sigma2, m % 2 == 1, run);
+            if (!list.ok()) {
+                continue;
+            }
+            ++ended;
+            here += list.value() == after_->list ? 1 : 0;
+            if (std::find(lists.begin(), lists.end(), list.value()) == lists.end()) {
+                lists.push_back(list.value());
+            }
+        }
+        bundle_ = fmt::format("{} exact runs from frame {} (other rules of opening, on the way and at once) end at {} "
+                              "equilibria, {} of them where the frame is",
+                              ended, out_.from, lists.size(), here);
+        return here > 0 && is("choice", bundle_);
+    }
+
+    void last() {
+        const FrameResult& r = after_->result;
+        const std::string words = r.reason + (bundle_.empty() || r.reason.empty() ? "" : "; ") + bundle_;
+        (void)(r.status == FrameStatus::refuted     ? is("wrong", words)
+               : r.status == FrameStatus::undecided ? is("undecided", words)
+                                                    : is("dynamics", words));
+    }
+
+    const Series& series_;
+    const std::vector<JudgedFrame>& frames_;
+    const Path& path_;
+    const CompareOptions& options_;
+    const JudgedFrame* before_ = nullptr;
+    const JudgedFrame* after_ = nullptr;
+    std::string bundle_;
+    Departure out_;
+};
+
+} // namespace
+
+std::optional<Departure> find_departure(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path,
+                                        const CompareOptions& options) {
+    return Diagnosis(series, frames, path, options).run();
+}
+
+} // namespace isostat::compare

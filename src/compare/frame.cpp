@@ -1,0 +1,163 @@
+#include "compare/frame.hpp"
+
+#include "statics/statics.hpp"
+#include "verified/inverse_bound.hpp"
+
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat::compare {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+FrameResult begin(const Frame& frame, const Reading& reading) {
+    FrameResult out;
+    out.frame = frame.number;
+    out.timestep = frame.timestep;
+    out.sigma2 = frame.load.stress[1];
+    out.unbalanced = reading.unbalanced;
+    out.listed = reading.listed;
+    out.overlapping = reading.overlapping;
+    out.twice = reading.twice;
+    out.missing_rows = reading.missing;
+    out.law = reading.law;
+    out.ratio = reading.ratio;
+    out.snapped = "none";
+    out.distance = out.walls = out.rest = out.stiffness = out.true_eps1 = out.true_eps2 = nan;
+    const auto strain = [&](int a) {
+        const double length = frame.load.reference_length[static_cast<std::size_t>(a)];
+        return (length - frame.packing.length(a)) / length;
+    };
+    out.eps1 = strain(0);
+    out.eps2 = strain(1);
+    return out;
+}
+
+/// Errors of the forces: the exact solve at the soft place stands between those of the file and those of the vertex.
+void split_forces(const SoftState& soft, const Reading& reading, const Snap& snap, FrameResult& out) {
+    Packing<2> packing; // the backbone at the soft place
+    packing.walls = soft.packing.walls;
+    packing.radius = snap.backbone.packing.radius;
+    for (const int disk : snap.disks) {
+        const auto i = static_cast<std::size_t>(disk);
+        packing.q.insert(packing.q.end(), {soft.packing.q[2 * i], soft.packing.q[2 * i + 1]});
+    }
+    packing.q.insert(packing.q.end(), {soft.packing.length(0), soft.packing.length(1)});
+    (void)snap_to_grid(packing);
+    const auto structure = IsostaticStructure<2>::prove(packing, snap.backbone.contacts);
+    if (!structure.ok() || !(reading.mean > 0)) {
+        return;
+    }
+    const Factorisation factorisation(structure.value());
+    InverseBoundCache cache;
+    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
+    const Statics<2> statics(packing, snap.backbone.load, structure.value(), factorisation, inverse);
+    double rest = 0, stiffness = 0;
+    for (std::size_t l = 0; l < reading.forces.size(); ++l) {
+        const Enclosure f = statics.force(ContactId(l), snap.backbone.load.stress[1]);
+        rest = std::max(rest, std::abs(reading.forces[l] - f.value) + f.radius);
+        if (l < snap.truth.finite.size()) {
+            const Interval& t = snap.truth.finite[l];
+            stiffness =
+                std::max({stiffness, std::abs(f.value - t.lower) + f.radius, std::abs(f.value - t.upper) + f.radius});
+        }
+    }
+    out.rest = rest / reading.mean;
+    out.stiffness = snap.truth.finite.empty() ? nan : stiffness / reading.mean;
+}
+
+void add_vertex(const Snap& snap, const Frame& frame, FrameResult& out) {
+    out.snapped = "newton";
+    out.distance = snap.distance;
+    out.walls = snap.walls;
+    const auto strain = [&](int a) {
+        const double length = frame.load.reference_length[static_cast<std::size_t>(a)];
+        return (length - snap.backbone.packing.length(a)) / length;
+    };
+    out.true_eps1 = strain(0);
+    out.true_eps2 = strain(1);
+}
+
+/// A list that is no equilibrium: the vertex downhill instead.
+void try_exchange(const SoftState& soft, const Snap& snapped, JudgedFrame& out) {
+    FrameResult& r = out.result;
+    r.status = snapped.outcome == SnapOutcome::refuted ? FrameStatus::refuted : FrameStatus::undecided;
+    r.reason = snapped.reason;
+    auto found = exchange(soft, 1);
+    if (!found.ok()) {
+        r.reason += "; no vertex downhill: " + found.failure().message();
+        return;
+    }
+    Exchanged& e = found.value();
+    if (e.truth.verdict != Verdict::proved) {
+        r.reason += "; the vertex downhill is not proved";
+        return;
+    }
+    r.snapped = "exchange";
+    r.distance = e.distance;
+    if (snapped.outcome == SnapOutcome::undecided) {
+        r.reason += "; a vertex downhill is proved, which may be another one";
+    } else {
+        r.status = FrameStatus::soft;
+        r.reason += fmt::format("; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
+                                names_of(without(out.list, e.contacts)), names_of(without(e.contacts, out.list)));
+    }
+    out.state = std::move(e.state);
+}
+
+} // namespace
+
+JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
+    const Reading reading = read_frame(series, frame);
+    JudgedFrame out;
+    out.result = begin(frame, reading);
+    out.list = reading.contacts;
+    FrameResult& r = out.result;
+    if (!reading.contradiction.empty()) {
+        r.status = FrameStatus::file;
+        r.reason = reading.contradiction;
+        return out;
+    }
+    if (!(reading.unbalanced <= series.rest)) {
+        r.status = FrameStatus::moving;
+        r.reason = fmt::format("a force of {:.3g} mean forces is left: expected at most {:.3g} at rest",
+                               reading.unbalanced, series.rest);
+        return out;
+    }
+    const SoftState soft{frame.packing, reading.contacts, frame.load};
+    const Snap snapped = snap(soft);
+    r.counting = snapped.counting;
+    r.rattlers = static_cast<int>(snapped.rattlers.size());
+    if (snapped.outcome == SnapOutcome::moving) {
+        r.status = FrameStatus::moving;
+        r.reason = snapped.reason;
+        return out;
+    }
+    if (r.counting.hyperstaticity == 0) {
+        split_forces(soft, reading, snapped, r);
+    }
+    if (snapped.outcome != SnapOutcome::vertex) {
+        try_exchange(soft, snapped, out);
+        return out;
+    }
+    r.status = FrameStatus::same;
+    add_vertex(snapped, frame, r);
+    if (complete) {
+        auto state = with_resting_rattlers(snapped, 1);
+        if (state.ok()) {
+            out.state = std::move(state.value());
+        } else {
+            r.reason = state.failure().message();
+        }
+    }
+    return out;
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,22 @@
+#pragma once
+/// \file
+/// One frame, without looking at the exact run.
+
+#include "compare/reading.hpp"
+
+#include <isostat/compare/compare.hpp>
+
+namespace isostat::compare {
+
+/// A frame as far as it can be judged alone: `status` is file, moving, soft, refuted, undecided, or `same` where its
+/// vertex is proved (which equilibrium it is, the exact run tells).
+struct JudgedFrame {
+    FrameResult result;
+    std::vector<Contact> list;     ///< of the file
+    std::optional<State<2>> state; ///< complete, where one was asked for or exchange found it
+};
+
+/// \p complete: make `state` also of a vertex that Newton's method found.
+JudgedFrame judge(const Series& series, const Frame& frame, bool complete);
+
+} // namespace isostat::compare

@@ -1,0 +1,140 @@
+#include "compare/manifest.hpp"
+
+#include "io/toml.hpp"
+#include "scene/section.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+
+namespace isostat::compare {
+
+namespace {
+
+constexpr const char* format_name = "isostat-series 1";
+
+std::string required(Section& section, const std::string& key, const std::string& expected) {
+    auto text = section.string(key);
+    if (!text || text->empty()) {
+        section.refuse(key, fmt::format("no {}: expected {}", key, expected));
+    }
+    return *text;
+}
+
+double positive(Section& section, const std::string& key, std::optional<double> fallback) {
+    const auto value = section.number(key);
+    if (!value && !fallback) {
+        section.refuse(key, fmt::format("no {}: expected a positive number", key));
+    }
+    if (value && !(*value > 0)) {
+        section.fail(key, "a positive number");
+    }
+    return value ? *value : *fallback;
+}
+
+void read_files(Section& section, const std::filesystem::path& folder, Manifest& out) {
+    out.disks = (folder / required(section, "disks", "the name of a LAMMPS dump")).string();
+    out.frames = (folder / required(section, "frames", "the name of a table (CSV)")).string();
+    if (const auto contacts = section.string("contacts")) {
+        out.contacts = (folder / *contacts).string();
+    }
+    if (const auto select = section.string("select")) {
+        const std::size_t blank = select->find(' ');
+        if (blank == std::string::npos || select->find(' ', blank + 1) != std::string::npos) {
+            section.fail("select", "a column and its value, for instance \"type 1\"");
+        }
+        out.select_column = select->substr(0, blank);
+        out.select_value = select->substr(blank + 1);
+    }
+    section.finish();
+}
+
+void read_columns(Section& section, const std::string& source, Manifest& out) {
+    std::vector<Setting> settings;
+    out.series.listed = !out.contacts.empty();
+    if (out.series.listed) {
+        out.contact_i = required(section, "contact_i", "the column of the first id in the file of contacts");
+        out.contact_j = required(section, "contact_j", "the column of the second id in the file of contacts");
+        out.contact_force = required(section, "contact_force", "the column of the force, positive in compression");
+    }
+    const auto radius = section.string("radius"), diameter = section.string("diameter");
+    if (radius && diameter) {
+        section.refuse("diameter", "radius and diameter: expected one of them");
+    }
+    out.size = radius.value_or(diameter.value_or("radius"));
+    out.diameters = diameter.has_value();
+    if (const toml::table* walls = section.table("wall_force")) {
+        Section columns(walls, "columns.wall_force", source, settings);
+        for (std::size_t w = 0; w < wall_names.size(); ++w) {
+            out.wall_force[w] = required(columns, wall_names[w], "the column of the force of this wall on a disk");
+        }
+        columns.finish();
+        out.series.wall_forces = true;
+    }
+    section.finish();
+}
+
+void read_law(Section& section, Manifest& out) {
+    const bool linear = section.word("kind", 1, {"linear", "none"}) == 0;
+    out.series.law = linear ? ForceLaw::linear : ForceLaw::none;
+    if (linear) {
+        out.series.stiffness = positive(section, "stiffness", std::nullopt);
+    }
+    out.series.agreement = positive(section, "allowance", out.series.agreement);
+    section.finish();
+}
+
+void read_load(Section& section, Manifest& out) {
+    out.load = section.word("kind", 0, {"nominal", "true"}) == 0 ? LoadKind::nominal : LoadKind::true_stress;
+    out.sigma1 = positive(section, "sigma1", std::nullopt);
+    const auto lengths = section.numbers("reference_length");
+    if (!lengths) {
+        section.refuse("reference_length", "no reference_length: expected [L1, L2]");
+    }
+    if (lengths->size() != 2 || !((*lengths)[0] > 0) || !((*lengths)[1] > 0)) {
+        section.fail("reference_length", "two positive numbers");
+    }
+    out.reference_length = {(*lengths)[0], (*lengths)[1]};
+    section.finish();
+}
+
+} // namespace
+
+Contact with_wall(int disk, std::size_t wall) {
+    return {wall < 2 ? ContactKind::lower_wall : ContactKind::upper_wall, disk, static_cast<int>(wall % 2)};
+}
+
+Manifest read_manifest(const std::filesystem::path& path) {
+    const std::string source = path.string();
+    const std::string text = read_text(path);
+    const toml::table document = parse_toml(without_byte_order_mark(text), source);
+    std::vector<Setting> settings;
+    Manifest out;
+    Section top(&document, "manifest", source, settings);
+    if (required(top, "format", fmt::format("\"{}\"", format_name)) != format_name) {
+        top.fail("format", fmt::format("\"{}\"", format_name));
+    }
+    out.series.title = top.string("title").value_or("");
+    out.series.program = top.string("program").value_or("");
+    const auto section = [&](const char* name) { return Section(top.table(name), name, source, settings); };
+    Section files = section("files");
+    read_files(files, path.parent_path(), out);
+    Section columns = section("columns");
+    read_columns(columns, source, out);
+    Section law = section("law");
+    read_law(law, out);
+    Section load = section("load");
+    read_load(load, out);
+    Section rest = section("rest");
+    out.series.rest = positive(rest, "allowance", out.series.rest);
+    rest.finish();
+    Section units = section("units");
+    out.length_factor = positive(units, "length", 1.0);
+    out.force_factor = positive(units, "force", 1.0);
+    units.finish();
+    top.finish();
+    return out;
+}
+
+} // namespace isostat::compare

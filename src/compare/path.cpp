@@ -1,0 +1,134 @@
+#include "compare/path.hpp"
+
+#include <isostat/compare/soft_limit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace isostat::compare {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr int further = 3; ///< equilibria after the last load: frames may be early
+
+double& loaded(State<2>& state) {
+    return state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+}
+
+/// Keeps the equilibria with their lists; those that only another load made are the same one.
+class Collector final : public RunObserver<2> {
+  public:
+    explicit Collector(std::vector<PathEquilibrium>& out) : out_(out) {}
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>& /*forces*/) override {
+        if (!out_.empty() && record.arcs == 0) {
+            return;
+        }
+        PathEquilibrium e;
+        e.number = static_cast<int>(out_.size());
+        e.sigma2 = record.stress;
+        e.eps2 = record.strain[1];
+        e.low = record.stress_low;
+        e.high = record.stress_high;
+        e.arcs = record.arcs;
+        e.proved = record.verdict == Verdict::proved;
+        e.state = state;
+        e.contacts = carrying(state, certify(state));
+        e.soft_limit = e.stiffness_needed = nan;
+        out_.push_back(std::move(e));
+        highs_.push_back(record.opens_high);
+        lows_.push_back(record.opens_low);
+    }
+    /// The contact that opens at the end ahead.
+    [[nodiscard]] const Contact& opens(std::size_t k, int direction) const {
+        return direction > 0 ? highs_[k] : lows_[k];
+    }
+
+  private:
+    std::vector<PathEquilibrium>& out_;
+    std::vector<Contact> highs_, lows_;
+};
+
+void predict(PathEquilibrium& e, int direction, double stiffness) {
+    const ExactInterval exact{e.low, e.high, direction};
+    if (!(stiffness > 0) || !std::isfinite(e.high) || !(e.low > 0)) {
+        return;
+    }
+    const State<2> backbone = backbone_of(e.state, e.contacts);
+    if (const auto limit = soft_limit(backbone, exact, stiffness)) {
+        e.soft_limit = limit->stress;
+    }
+    e.stiffness_needed = stiffness_needed(backbone, exact).value_or(nan);
+}
+
+} // namespace
+
+State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {
+    return snap({state.packing, carrying, state.load}).backbone;
+}
+
+Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness) {
+    Path path;
+    Collector collector(path.equilibria);
+    RunCounters counters;
+    std::vector<int> directions;
+    int direction = 1, number = 0;
+    const auto advance = [&](Segment segment) {
+        segment.direction = direction;
+        const SegmentOutcome outcome = run_segment(state, segment, number++, options, counters, collector);
+        directions.resize(path.equilibria.size(), direction);
+        return outcome.failure;
+    };
+    Segment start;
+    start.equilibria = 0;
+    if (const auto failure = advance(start)) {
+        path.end = failure->message();
+    }
+    for (const double load : loads) {
+        if (path.end.empty() && load != loaded(state)) {
+            direction = load > loaded(state) ? 1 : -1;
+            if (!directions.empty()) {
+                directions.back() = direction;
+            }
+            Segment segment;
+            segment.to_stress = load;
+            if (const auto failure = advance(segment)) {
+                path.end = failure->message();
+            }
+        }
+        path.at_load.push_back(path.end.empty() ? static_cast<int>(path.equilibria.size()) - 1 : -1);
+    }
+    if (path.end.empty()) {
+        Segment on;
+        on.equilibria = further;
+        (void)advance(on); // as far as it goes
+    }
+    for (std::size_t k = 0; k < path.equilibria.size(); ++k) {
+        path.equilibria[k].opens = collector.opens(k, directions[k]);
+        predict(path.equilibria[k], directions[k], stiffness);
+    }
+    return path;
+}
+
+Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump, const RunOptions& options) {
+    RunCounters counters;
+    RunObserver<2> nobody;
+    Segment segment;
+    segment.equilibria = 0;
+    if (jump) {
+        loaded(state) = sigma;
+    } else if (sigma != loaded(state)) {
+        segment.equilibria.reset();
+        segment.direction = sigma > loaded(state) ? 1 : -1;
+        segment.to_stress = sigma;
+    }
+    const SegmentOutcome outcome = run_segment(state, segment, 0, options, counters, nobody);
+    if (outcome.failure) {
+        return *outcome.failure;
+    }
+    return carrying(state, certify(state));
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// The exact run beside a series.
+
+#include <isostat/compare/compare.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <string>
+#include <vector>
+
+namespace isostat::compare {
+
+struct Path {
+    std::vector<PathEquilibrium> equilibria;
+    std::vector<int> at_load; ///< per load: the equilibrium there, -1 beyond the end of the run
+    std::string end;          ///< empty, or why it ends before the last load
+};
+
+/// From `start` to each of the loads in turn, then three equilibria on in the last direction. Soft limits are added
+/// when `stiffness` > 0.
+Path follow(State<2> start, const std::vector<double>& loads, const RunOptions& options, double stiffness);
+
+/// The contacts that carry a force in the equilibrium at the loaded stress `sigma` that a run from `start` finds: on
+/// the way, or with `jump` after the whole change at once.
+Result<std::vector<Contact>> list_after(State<2> start, double sigma, bool jump, const RunOptions& options);
+
+/// The same state without rattlers.
+State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying);
+
+} // namespace isostat::compare

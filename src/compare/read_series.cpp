@@ -1,0 +1,252 @@
+// Frames of a series, matched by time step.
+#include "compare/dump.hpp"
+#include "compare/manifest.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+
+namespace isostat::compare {
+
+namespace {
+
+using foreign::Line;
+using foreign::Lines;
+
+/// Ids of walls in a file of contacts: -1 left, -2 bottom, -3 right, -4 top.
+constexpr long last_wall = -4;
+
+/// The table of frames.
+class FrameTable {
+  public:
+    FrameTable(const Manifest& manifest) // NOLINT(google-explicit-constructor)
+        : manifest_(manifest), text_(read_text(manifest.frames)), lines_(text_, manifest.frames) {
+        const Line names = lines_.next("names of columns", ',');
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            names_.emplace_back(names.field(k));
+        }
+        where_ = fmt::format("{}:{}", manifest.frames, names.number());
+        for (const char* name : {"timestep", "left", "bottom", "right", "top"}) {
+            (void)required(name); // the bounds of a dump are not the walls
+        }
+        if (find("sigma2") < 0 && (manifest.load == LoadKind::true_stress || find("force_top") < 0)) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: no column 'sigma2'{}: expected it", where_,
+                                    manifest.load == LoadKind::nominal ? " nor 'force_top'" : ""));
+        }
+    }
+
+    /// The next frame without its disks: walls and load. Nothing at the end.
+    std::optional<Frame> next(std::array<double, 4>& walls) {
+        if (lines_.only_blanks()) {
+            return std::nullopt;
+        }
+        const Line line = lines_.next("a frame", ',');
+        line.require_size(names_.size(), "one value per column");
+        Frame frame;
+        frame.number = count_++;
+        frame.row = fmt::format("{}:{}", manifest_.frames, line.number());
+        frame.timestep = line.integer(required("timestep"), "timestep", 0, 1L << 62);
+        for (std::size_t w = 0; w < 4; ++w) {
+            walls[w] = line.number(required(wall_names[w]), wall_names[w]) * manifest_.length_factor;
+        }
+        frame.load = load_of(line);
+        return frame;
+    }
+
+  private:
+    [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name, where_); }
+    [[nodiscard]] std::size_t required(const std::string& name) const {
+        const int at = find(name);
+        if (at < 0) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: no column '{}': expected timestep, the positions of the walls left, bottom, "
+                                    "right, top (the bounds of a dump are not taken for them), and sigma2 or force_top",
+                                    where_, name));
+        }
+        return static_cast<std::size_t>(at);
+    }
+
+    [[nodiscard]] Load<2> load_of(const Line& line) const {
+        Load<2> load;
+        load.kind = manifest_.load;
+        load.reference_length = manifest_.reference_length;
+        load.stress = {manifest_.sigma1, 0};
+        const double per_force = manifest_.force_factor / manifest_.reference_length[0];
+        if (const int at = find("sigma2"); at >= 0) {
+            load.stress[1] = line.number(static_cast<std::size_t>(at), "sigma2");
+        } else {
+            load.stress[1] = line.number(required("force_top"), "force_top") * per_force;
+        }
+        if (!(load.stress[1] > 0)) {
+            line.fail(fmt::format("{}", load.stress[1]), "sigma2", "a positive number");
+        }
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+            check_force(line, axis, load);
+        }
+        return load;
+    }
+
+    /// A force on a wall must be that of the load, to the digits that a file has.
+    void check_force(const Line& line, std::size_t axis, const Load<2>& load) const {
+        constexpr double digits = 1e-9;
+        const std::string name = axis == 0 ? "force_right" : "force_top";
+        const int at = find(name);
+        if (at < 0 || load.kind == LoadKind::true_stress) {
+            return;
+        }
+        const auto column = static_cast<std::size_t>(at);
+        const double expected = load.stress[axis] * load.reference_length[1 - axis];
+        if (!(std::abs(line.number(column, name) * manifest_.force_factor - expected) <= digits * expected)) {
+            line.fail(line.field(column), fmt::format("{} (column {})", name, at + 1),
+                      fmt::format("{}, the stress {} times the reference length {}", expected / manifest_.force_factor,
+                                  load.stress[axis], load.reference_length[1 - axis]));
+        }
+    }
+
+    const Manifest& manifest_;
+    std::string text_;
+    Lines lines_;
+    std::vector<std::string> names_;
+    std::string where_;
+    int count_ = 0;
+};
+
+/// Disks of the frames: those of the first one, by id.
+class Disks {
+  public:
+    explicit Disks(const Manifest& manifest) : manifest_(manifest), dump_(manifest.disks, "ATOMS") {}
+
+    void read(Frame& frame, const std::array<double, 4>& walls) {
+        const DumpFrame rows = dump_.at(frame.timestep);
+        const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
+        const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
+        std::map<long, const Line*> by_id;
+        for (const Line& row : rows.rows) {
+            if (manifest_.select_column.empty() ||
+                row.field(dump_.column(rows, manifest_.select_column)) == manifest_.select_value) {
+                if (!by_id.emplace(row.integer(id, "id", 0, 1L << 62), &row).second) {
+                    row.fail(row.field(id), "id", "every disk once");
+                }
+            }
+        }
+        if (by_id.empty()) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.line)));
+        }
+        frame.packing.walls = Walls<2>::box();
+        const double f = manifest_.length_factor;
+        for (const auto& [number, row] : by_id) {
+            const auto disk = frame.ids.size();
+            frame.ids.push_back(number);
+            frame.packing.radius.push_back(row->number(size, manifest_.size) * f * (manifest_.diameters ? 0.5 : 1));
+            if (!(frame.packing.radius.back() > 0)) {
+                row->fail(row->field(size), manifest_.size, "a positive number");
+            }
+            if (disk < first_.radius.size() && frame.packing.radius[disk] != first_.radius[disk]) {
+                row->fail(row->field(size), manifest_.size, "the one that this disk has in the first frame");
+            }
+            frame.packing.q.push_back(row->number(x, "x") * f - walls[0]);
+            frame.packing.q.push_back(row->number(y, "y") * f - walls[1]);
+            add_walls(frame, *row, rows, static_cast<int>(disk));
+        }
+        frame.packing.q.insert(frame.packing.q.end(), {walls[2] - walls[0], walls[3] - walls[1]});
+        if (frame.number > 0 && frame.ids != ids_) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: other ids than in the first frame: expected the same "
+                                                          "disks in every frame",
+                                                          dump_.where(rows.line)));
+        }
+        if (frame.number == 0) {
+            ids_ = frame.ids;
+            first_ = frame.packing;
+        }
+        validate(frame.packing, dump_.where(rows.line));
+    }
+
+  private:
+    /// Forces of walls that are not 0, positive when they press the disk inwards.
+    void add_walls(Frame& frame, const Line& row, const DumpFrame& rows, int disk) {
+        if (!manifest_.series.wall_forces) {
+            return;
+        }
+        for (std::size_t w = 0; w < wall_names.size(); ++w) {
+            const std::string& name = manifest_.wall_force[w];
+            const double force = row.number(dump_.column(rows, name), name) * manifest_.force_factor;
+            if (force != 0) {
+                frame.contacts.push_back({with_wall(disk, w), w < 2 ? force : -force, dump_.where(row.number())});
+            }
+        }
+    }
+
+    const Manifest& manifest_;
+    Dump dump_;
+    std::vector<long> ids_;
+    Packing<2> first_;
+};
+
+/// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
+void read_contacts(const Manifest& manifest, Dump& dump, Frame& frame) {
+    const DumpFrame rows = dump.at(frame.timestep);
+    const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j),
+                      force = dump.column(rows, manifest.contact_force);
+    const auto disk = [&](const Line& row, std::size_t at, const std::string& name) {
+        const long id = row.integer(at, name, 0, 1L << 62);
+        const auto found = std::lower_bound(frame.ids.begin(), frame.ids.end(), id);
+        if (found == frame.ids.end() || *found != id) {
+            row.fail(row.field(at), name, "the id of a disk");
+        }
+        return static_cast<int>(found - frame.ids.begin());
+    };
+    for (const Line& row : rows.rows) {
+        const int i = disk(row, first, manifest.contact_i);
+        const std::string_view other = row.field(second);
+        FileContact contact;
+        if (other.starts_with('-')) {
+            const long wall = row.integer(second, manifest.contact_j, last_wall, -1);
+            contact.contact = with_wall(i, static_cast<std::size_t>(-1 - wall));
+        } else {
+            const int j = disk(row, second, manifest.contact_j);
+            if (i == j) {
+                row.fail(other, manifest.contact_j, "another disk than the first");
+            }
+            contact.contact = {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+        }
+        contact.force = row.number(force, manifest.contact_force) * manifest.force_factor;
+        contact.row = dump.where(row.number());
+        frame.contacts.push_back(std::move(contact));
+    }
+}
+
+} // namespace
+
+Series read_series(const std::filesystem::path& path) {
+    const Manifest manifest = read_manifest(path);
+    Series series = manifest.series;
+    FrameTable table(manifest);
+    Disks disks(manifest);
+    std::optional<Dump> contacts;
+    if (series.listed) {
+        contacts.emplace(manifest.contacts, "ENTRIES");
+    }
+    std::array<double, 4> walls{};
+    while (auto frame = table.next(walls)) {
+        disks.read(*frame, walls);
+        if (contacts) {
+            read_contacts(manifest, *contacts, *frame);
+        }
+        series.frames.push_back(std::move(*frame));
+    }
+    if (series.frames.empty()) {
+        throw Error(ErrorKind::bad_input, manifest.frames + ": no frames: expected at least one row");
+    }
+    return series;
+}
+
+} // namespace isostat::compare

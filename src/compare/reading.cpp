@@ -1,0 +1,219 @@
+#include "compare/reading.hpp"
+
+#include "contact/separation.hpp"
+#include "crafted/peeling.hpp"
+
+#include <isostat/contact/candidates.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace isostat::compare {
+
+namespace {
+
+/// Deeper overlaps, in smallest radii, are no packing of nearly rigid disks.
+constexpr double deepest = 0.1;
+
+class Reader {
+  public:
+    Reader(const Series& series, const Frame& frame) : series_(series), frame_(frame) {
+        rounding_ = 0x1p-48 * std::max({frame.packing.length(0), frame.packing.length(1), frame.packing.max_radius()});
+        for (const Contact& c : find_candidates(frame.packing, 0.5).contacts) {
+            if (gap(frame.packing, c) < 0) {
+                overlaps_.push_back(c);
+            }
+        }
+    }
+
+    Reading run() {
+        take_rows();
+        add_overlaps();
+        out_.overlapping = static_cast<int>(overlaps_.size());
+        double sum = 0;
+        for (const auto& [contact, force] : force_) {
+            sum += std::max(force, 0.0);
+            out_.listed += force > 0 ? 1 : 0;
+        }
+        out_.mean = out_.listed > 0 ? sum / out_.listed : 0;
+        check_overlaps();
+        check_missing();
+        balance();
+        check_law();
+        make_list();
+        return std::move(out_);
+    }
+
+  private:
+    void contradict(const std::string& what) {
+        out_.contradiction = out_.contradiction.empty() ? what : out_.contradiction;
+    }
+    [[nodiscard]] std::string name(const Contact& c) const {
+        const auto id = [&](int i) { return frame_.ids[static_cast<std::size_t>(i)]; };
+        if (c.kind == ContactKind::disk_disk) {
+            return fmt::format("disks {} and {}", id(c.i), id(c.j));
+        }
+        const std::string wall = to_string<2>(Contact{c.kind, 0, c.j}).substr(2);
+        return fmt::format("disk {} and the {} wall", id(c.i), wall);
+    }
+    [[nodiscard]] std::string at(const Contact& c) const {
+        const auto row = row_.find(c);
+        const std::string where = row == row_.end() ? frame_.row : row->second;
+        return c.kind == ContactKind::disk_disk || where == frame_.row ? where : where + ", " + frame_.row;
+    }
+    [[nodiscard]] bool is_wall(const Contact& c) const { return c.kind != ContactKind::disk_disk; }
+
+    void take_rows() {
+        for (const FileContact& c : frame_.contacts) {
+            const auto [row, added] = row_.emplace(c.contact, c.row);
+            if (!added) {
+                ++out_.twice;
+                contradict(fmt::format("{}: {} come twice (first in {})", c.row, name(c.contact), row->second));
+            } else if (c.force != 0) {
+                force_.emplace(c.contact, c.force); // negative: a dashpot, or nonsense
+            }
+        }
+    }
+
+    /// Those that the files do not list, because they list no contacts of that kind.
+    void add_overlaps() {
+        for (const Contact& c : overlaps_) {
+            if (is_wall(c) ? !series_.wall_forces : !series_.listed) {
+                if (row_.emplace(c, frame_.row).second) {
+                    force_.emplace(c, -gap(frame_.packing, c) * series_.stiffness);
+                }
+            }
+        }
+    }
+
+    void check_overlaps() {
+        const double limit = deepest * frame_.packing.min_radius();
+        for (const Contact& c : overlaps_) {
+            if (gap(frame_.packing, c) < -limit) {
+                contradict(fmt::format("{}: {} overlap by {:.3g}: expected less than {:.3g}, {} of the smallest radius "
+                                       "(radii, or diameters?)",
+                                       at(c), name(c), -gap(frame_.packing, c), limit, deepest));
+                return;
+            }
+        }
+        for (const auto& [c, force] : force_) {
+            if (gap(frame_.packing, c) > limit) {
+                contradict(
+                    fmt::format("{}: {} have a force and are {:.3g} apart", at(c), name(c), gap(frame_.packing, c)));
+                return;
+            }
+        }
+    }
+
+    void check_law() {
+        if (series_.law == ForceLaw::none) {
+            out_.law = std::numeric_limits<double>::quiet_NaN();
+            return;
+        }
+        Contact worst;
+        double largest = 0;
+        for (const auto& [c, force] : force_) {
+            const double off = std::abs(force - expected(c)) - series_.stiffness * rounding_;
+            if (off > largest) {
+                largest = off;
+                worst = c;
+            }
+        }
+        out_.law = out_.mean > 0 ? largest / out_.mean : 0;
+        if (largest == 0) {
+            return;
+        }
+        out_.ratio = force_.at(worst) / expected(worst);
+        // In motion a dashpot is at work; then neither the forces of the files nor those of the law balance.
+        const bool dashpot = std::min(left_, left_by_law_) > series_.rest * out_.mean;
+        if (largest > series_.agreement * out_.mean && !dashpot) {
+            contradict(fmt::format("{}: the force between {} is {:.6g} and stiffness x overlap {:.6g} (ratio {:.6g})",
+                                   at(worst), name(worst), force_.at(worst), expected(worst), out_.ratio));
+        }
+    }
+
+    /// Overlaps that would carry a force and have no row.
+    void check_missing() {
+        for (const Contact& c : overlaps_) {
+            const bool law = series_.law == ForceLaw::linear;
+            const double force = law ? expected(c) - series_.stiffness * rounding_ : 0;
+            if (row_.count(c) == 0 && force > series_.agreement * out_.mean) {
+                ++out_.missing;
+                contradict(fmt::format("{}: {} overlap by {:.6g}, a force of {:.6g}, and have no contact in the files",
+                                       frame_.row, name(c), -gap(frame_.packing, c), expected(c)));
+            }
+        }
+    }
+
+    [[nodiscard]] double expected(const Contact& c) const {
+        return series_.stiffness * std::max(0.0, -gap(frame_.packing, c));
+    }
+
+    /// The largest force that is left on a disk or a movable wall.
+    [[nodiscard]] double left_by(const std::map<Contact, double>& forces) const {
+        std::vector<double> left = frame_.load.external_force(frame_.packing);
+        for (const auto& [c, force] : forces) {
+            const GapGradient<2> g = gap_gradient(frame_.packing, c);
+            for (int k = 0; k < g.count; ++k) {
+                const auto e = static_cast<std::size_t>(k);
+                left[static_cast<std::size_t>(g.coordinate[e])] += force * g.value[e];
+            }
+        }
+        const std::size_t n = frame_.packing.radius.size();
+        double largest = std::max(std::abs(left[2 * n]), std::abs(left[2 * n + 1]));
+        for (std::size_t i = 0; i < n; ++i) {
+            largest = std::max(largest, std::hypot(left[2 * i], left[2 * i + 1]));
+        }
+        return largest;
+    }
+
+    void balance() {
+        const bool law = series_.law == ForceLaw::linear;
+        if (law || (series_.listed && series_.wall_forces)) {
+            left_ = left_by(force_);
+            out_.unbalanced = out_.mean > 0 ? left_ / out_.mean : HUGE_VAL;
+        }
+        std::map<Contact, double> forces;
+        for (const Contact& c : overlaps_) {
+            forces.emplace(c, expected(c));
+        }
+        left_by_law_ = law ? left_by(forces) : 0;
+    }
+
+    void make_list() {
+        std::vector<Contact> strong;
+        for (const auto& [c, force] : force_) {
+            if (force > left_ || force == 0) {
+                strong.push_back(c);
+            }
+        }
+        const std::vector<int> from = crafted::peel(frame_.packing, strong).contact_from;
+        for (std::size_t l = 0; l < strong.size(); ++l) {
+            if (from[l] <= static_cast<int>(strong.size())) {
+                out_.contacts.push_back(strong[l]);
+                out_.forces.push_back(force_.at(strong[l]));
+            }
+        }
+    }
+
+    const Series& series_;
+    const Frame& frame_;
+    Reading out_;
+    double rounding_ = 0;               ///< of an overlap, as a length
+    double left_ = 0, left_by_law_ = 0; ///< largest force left, by the files and by the overlaps
+    std::vector<Contact> overlaps_;
+    std::map<Contact, double> force_;
+    std::map<Contact, std::string> row_;
+};
+
+} // namespace
+
+Reading read_frame(const Series& series, const Frame& frame) {
+    return Reader(series, frame).run();
+}
+
+} // namespace isostat::compare

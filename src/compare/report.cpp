@@ -1,0 +1,261 @@
+#include "io/json.hpp"
+#include "report/charts.hpp"
+#include "report/gnuplot.hpp"
+
+#include <isostat/compare/report.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+
+namespace isostat::compare {
+
+namespace {
+
+using json::Json;
+using json::or_null;
+
+/// One column: its name and its value.
+template <class Row> struct Column {
+    const char* name;
+    std::function<Json(const Row&)> value;
+};
+
+Json names(const std::vector<Contact>& contacts) {
+    std::string text;
+    for (const Contact& c : contacts) {
+        text += (text.empty() ? "" : " ") + to_string<2>(c);
+    }
+    return text;
+}
+
+const std::vector<Column<FrameResult>>& of_frames() {
+    using F = FrameResult;
+    static const std::vector<Column<F>> columns{{"frame", [](const F& f) { return f.frame; }},
+                                                {"timestep", [](const F& f) { return f.timestep; }},
+                                                {"sigma2", [](const F& f) { return or_null(f.sigma2); }},
+                                                {"unbalanced", [](const F& f) { return or_null(f.unbalanced); }},
+                                                {"listed", [](const F& f) { return f.listed; }},
+                                                {"overlapping", [](const F& f) { return f.overlapping; }},
+                                                {"twice", [](const F& f) { return f.twice; }},
+                                                {"missing_rows", [](const F& f) { return f.missing_rows; }},
+                                                {"dofs", [](const F& f) { return f.counting.dof_count; }},
+                                                {"contacts", [](const F& f) { return f.counting.contact_count; }},
+                                                {"rank", [](const F& f) { return f.counting.rank; }},
+                                                {"h", [](const F& f) { return f.counting.hyperstaticity; }},
+                                                {"k", [](const F& f) { return f.counting.mechanisms; }},
+                                                {"rattlers", [](const F& f) { return f.rattlers; }},
+                                                {"snap", [](const F& f) { return f.snapped; }},
+                                                {"distance", [](const F& f) { return or_null(f.distance); }},
+                                                {"walls", [](const F& f) { return or_null(f.walls); }},
+                                                {"expected", [](const F& f) { return f.expected; }},
+                                                {"found", [](const F& f) { return f.found; }},
+                                                {"status", [](const F& f) { return to_string(f.status); }},
+                                                {"missing", [](const F& f) { return names(f.missing); }},
+                                                {"extra", [](const F& f) { return names(f.extra); }},
+                                                {"law", [](const F& f) { return or_null(f.law); }},
+                                                {"ratio", [](const F& f) { return or_null(f.ratio); }},
+                                                {"rest", [](const F& f) { return or_null(f.rest); }},
+                                                {"stiffness", [](const F& f) { return or_null(f.stiffness); }},
+                                                {"eps1", [](const F& f) { return or_null(f.eps1); }},
+                                                {"eps2", [](const F& f) { return or_null(f.eps2); }},
+                                                {"true_eps1", [](const F& f) { return or_null(f.true_eps1); }},
+                                                {"true_eps2", [](const F& f) { return or_null(f.true_eps2); }},
+                                                {"reason", [](const F& f) { return f.reason; }}};
+    return columns;
+}
+
+const std::vector<Column<PathEquilibrium>>& of_path() {
+    using E = PathEquilibrium;
+    static const std::vector<Column<E>> columns{
+        {"number", [](const E& e) { return e.number; }},
+        {"sigma2", [](const E& e) { return or_null(e.sigma2); }},
+        {"eps2", [](const E& e) { return or_null(e.eps2); }},
+        {"sigma2_low", [](const E& e) { return or_null(e.low); }},
+        {"sigma2_high", [](const E& e) { return or_null(e.high); }},
+        {"arcs", [](const E& e) { return e.arcs; }},
+        {"contacts", [](const E& e) { return e.contacts.size(); }},
+        {"proved", [](const E& e) { return e.proved ? 1 : 0; }},
+        {"opens", [](const E& e) { return e.opens.i < 0 ? Json() : Json(to_string<2>(e.opens)); }},
+        {"soft_limit", [](const E& e) { return or_null(e.soft_limit); }},
+        {"stiffness_needed", [](const E& e) { return or_null(e.stiffness_needed); }}};
+    return columns;
+}
+
+/// Quoted where it must be; nothing for null.
+std::string cell(const Json& value) {
+    if (value.is_null()) {
+        return "nan";
+    }
+    if (!value.is_string()) {
+        return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
+    }
+    std::string safe;
+    for (const char c : value.get<std::string>()) {
+        safe += c == '"' ? std::string("\"\"") : std::string(1, c);
+    }
+    return safe.find_first_of(",\"\n") == std::string::npos ? safe : "\"" + safe + "\"";
+}
+
+template <class Row> std::vector<std::string> names_of_columns(const std::vector<Column<Row>>& columns) {
+    std::vector<std::string> out;
+    for (const auto& column : columns) {
+        out.emplace_back(column.name);
+    }
+    return out;
+}
+
+template <class Row> std::string csv(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows) {
+    std::string text = fmt::format("{}\n", fmt::join(names_of_columns(columns), ","));
+    for (const Row& row : rows) {
+        std::vector<std::string> cells;
+        for (const auto& column : columns) {
+            cells.push_back(cell(column.value(row)));
+        }
+        text += fmt::format("{}\n", fmt::join(cells, ","));
+    }
+    return text;
+}
+
+template <class Row> Json objects(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows) {
+    Json out = Json::array();
+    for (const Row& row : rows) {
+        Json object;
+        for (const auto& column : columns) {
+            object[column.name] = column.value(row);
+        }
+        out.push_back(std::move(object));
+    }
+    return out;
+}
+
+/// Data of the figure, in blocks: staircase of the exact run; frames; for each status its frames; errors.
+std::string figure_data(const Comparison& comparison) {
+    std::string text = "# exact run: eps2 sigma2\n";
+    for (std::size_t k = 0; k < comparison.path.size(); ++k) {
+        const PathEquilibrium& e = comparison.path[k];
+        if (k > 0) {
+            text += fmt::format("{} {}\n", comparison.path[k - 1].eps2, e.sigma2);
+        }
+        text += fmt::format("{} {}\n", e.eps2, e.sigma2);
+    }
+    text += "\n\n# frames: eps2 of the true vertex or of the frame, sigma2\n";
+    for (const FrameResult& f : comparison.frames) {
+        text += fmt::format("{} {}\n", std::isfinite(f.true_eps2) ? f.true_eps2 : f.eps2, f.sigma2);
+    }
+    text += "\n\n# statuses: sigma2 status\n";
+    for (const FrameResult& f : comparison.frames) {
+        text += fmt::format("{} {}\n", f.sigma2, static_cast<int>(f.status));
+    }
+    text += "\n\n# exact limits: sigma2\n";
+    for (const PathEquilibrium& e : comparison.path) {
+        text += fmt::format("{}\n", e.sigma2);
+    }
+    text += "\n\n# errors of the forces: sigma2 law rest stiffness\n";
+    for (const FrameResult& f : comparison.frames) {
+        const auto shown = [](double x) { return x > 0 && std::isfinite(x) ? fmt::format("{}", x) : "nan"; };
+        text += fmt::format("{} {} {} {}\n", f.sigma2, shown(f.law), shown(f.rest), shown(f.stiffness));
+    }
+    return text;
+}
+
+Chart figure(const Comparison& comparison) {
+    std::string tics;
+    for (int s = 0; s < frame_statuses; ++s) {
+        tics += fmt::format("{}\"{}\" {}", s > 0 ? ", " : "", to_string(static_cast<FrameStatus>(s)), s);
+    }
+    const std::string data = "\"comparison.dat\"";
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const FrameResult& f : comparison.frames) {
+        low = std::min(low, f.sigma2);
+        high = std::max(high, f.sigma2);
+    }
+    const double margin = 0.03 * (high - low) + 1e-6 * high;
+    std::string body = "set multiplot layout 3,1\nset grid\nset key left top\n";
+    body +=
+        fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_2\"\nset ylabel \"σ_2\"\n", low - margin, high + margin);
+    body += fmt::format("plot {0} index 0 with lines lw 2 lc \"#1f4e79\" title \"exact run\", {0} index 1 with points "
+                        "pt 6 lc \"#c55a11\" title \"frames\"\n",
+                        data);
+    body += fmt::format("unset key\nset xrange [{}:{}]\nset xlabel \"σ_2\"\nset ylabel \"\"\nset yrange [-0.5:{}] "
+                        "reverse\nset ytics ({})\n",
+                        low - margin, high + margin, frame_statuses - 0.5, tics);
+    body +=
+        fmt::format("plot {0} index 3 using 1:(-0.5):(0):({1}) with vectors nohead lc \"#bbbbbb\", {0} index 2 with "
+                    "points pt 7 ps 0.7 lc \"#c55a11\"\n",
+                    data, frame_statuses);
+    body += "set key left top\nset yrange [*:*] noreverse\nset ytics auto\nset logscale y\nset format y "
+            "\"10^{%L}\"\nset ylabel \"error / mean force\"\n";
+    body +=
+        fmt::format("plot {0} index 4 using 1:2 with points pt 4 lc \"#548235\" title \"law\", {0} index 4 using 1:3 "
+                    "with points pt 6 lc \"#1f4e79\" title \"rest\", {0} index 4 using 1:4 with points pt 7 lc "
+                    "\"#c55a11\" title \"stiffness\"\n",
+                    data);
+    body += "unset multiplot\nunset logscale\nset format y\nset xrange [*:*]\n";
+    return {"comparison", figure_data(comparison), chart_script("comparison", 800, 1000, body)};
+}
+
+} // namespace
+
+const std::vector<std::string>& frame_columns() {
+    static const std::vector<std::string> columns = names_of_columns(of_frames());
+    return columns;
+}
+
+const std::vector<std::string>& path_columns() {
+    static const std::vector<std::string> columns = names_of_columns(of_path());
+    return columns;
+}
+
+std::string frames_csv(const Comparison& comparison) {
+    return csv(of_frames(), comparison.frames);
+}
+
+std::string path_csv(const Comparison& comparison) {
+    return csv(of_path(), comparison.path);
+}
+
+std::string comparison_json(const Series& series, const Comparison& comparison) {
+    Json out;
+    out["title"] = series.title;
+    out["made_by"] = series.program;
+    out["stiffness"] = series.law == ForceLaw::linear ? Json(series.stiffness) : Json();
+    std::array<int, frame_statuses> counts{};
+    for (const FrameResult& f : comparison.frames) {
+        ++counts[static_cast<std::size_t>(f.status)];
+    }
+    for (std::size_t s = 0; s < counts.size(); ++s) {
+        out["counts"][to_string(static_cast<FrameStatus>(s))] = counts[s];
+    }
+    out["departure"] = nullptr;
+    if (const auto& d = comparison.departure) {
+        out["departure"] = {{"from", d->from},
+                            {"to", d->to},
+                            {"reason", d->reason},
+                            {"words", d->words},
+                            {"opened", names(d->opened)},
+                            {"closed", names(d->closed)}};
+    }
+    out["path_end"] = comparison.path_end;
+    out["status"] = comparison.status;
+    out["frames"] = objects(of_frames(), comparison.frames);
+    out["path"] = objects(of_path(), comparison.path);
+    return json::dumped(out, 1) + "\n";
+}
+
+std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison) {
+    make_directory(folder);
+    const Chart chart = figure(comparison);
+    write_atomically(folder / "comparison.csv", frames_csv(comparison));
+    write_atomically(folder / "path.csv", path_csv(comparison));
+    write_atomically(folder / "comparison.json", comparison_json(series, comparison));
+    write_atomically(folder / (chart.name + ".dat"), chart.data);
+    write_atomically(folder / (chart.name + ".gp"), chart.script);
+    return run_gnuplot(folder, chart.name + ".gp");
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,105 @@
+#include "compare/room.hpp"
+
+#include "contact/separation.hpp"
+
+#include <isostat/contact/candidates.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::compare {
+
+namespace {
+
+/// Pairs with at least one rattler that are near.
+std::vector<Contact> pairs_of(const Packing<2>& packing, const std::vector<unsigned char>& rattles) {
+    constexpr double reach = 0.5; // of the smallest radius; T6 allows up to 0.82
+    std::vector<Contact> out;
+    for (const Contact& c : find_candidates(packing, reach).contacts) {
+        const bool second = c.kind == ContactKind::disk_disk && rattles[static_cast<std::size_t>(c.j)] != 0;
+        if (rattles[static_cast<std::size_t>(c.i)] != 0 || second) {
+            out.push_back(c);
+        }
+    }
+    return out;
+}
+
+/// One sweep of projections: each pair that is nearer than `wanted` is parted by moving its rattlers.
+void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vector<unsigned char>& rattles,
+          double wanted) {
+    const std::size_t disks = 2 * packing.radius.size();
+    for (const Contact& pair : pairs) {
+        const double missing = wanted - gap(packing, pair);
+        if (!(missing > 0)) {
+            continue;
+        }
+        const GapGradient<2> gradient = gap_gradient(packing, pair);
+        const auto moves = [&](int k) {
+            const auto at = static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(k)]);
+            return at < disks && rattles[at / 2] != 0;
+        };
+        double square = 0;
+        for (int k = 0; k < gradient.count; ++k) {
+            const double g = gradient.value[static_cast<std::size_t>(k)];
+            square += moves(k) ? g * g : 0;
+        }
+        for (int k = 0; k < gradient.count; ++k) {
+            if (moves(k)) {
+                packing.q[static_cast<std::size_t>(gradient.coordinate[static_cast<std::size_t>(k)])] +=
+                    missing / square * gradient.value[static_cast<std::size_t>(k)];
+            }
+        }
+    }
+}
+
+/// Lower bound of the gap when every coordinate may be off by `radius`: rounding as in the centre of a certificate.
+double lower_gap(const Packing<2>& packing, const Contact& pair, double radius) {
+    constexpr double u = 0x1p-53;
+    const double h = gap(packing, pair);
+    const double length = std::abs(h) + touching_distance(packing.radius, pair);
+    const double off = pair.kind == ContactKind::disk_disk ? 1.4143 * 2 * radius : 2 * radius;
+    return h - (off + 16 * u * length) * (1 + 0x1p-49);
+}
+
+} // namespace
+
+std::string make_room(Snap& snap) {
+    if (snap.rattlers.empty()) {
+        return "";
+    }
+    std::vector<unsigned char> rattles(snap.packing.radius.size(), 0);
+    for (const int i : snap.rattlers) {
+        rattles[static_cast<std::size_t>(i)] = 1;
+    }
+    constexpr int rounds = 20, sweeps = 25; // the list of pairs is made anew in each round
+    const double radius = snap.truth.claims.vertex->radius;
+    Packing<2> placed;
+    Contact worst;
+    for (const double margin : {1e-2, 1e-4, 1e-6, 1e-9}) { // wanted gap in smallest radii
+        placed = snap.packing;
+        const double wanted = margin * placed.min_radius();
+        for (int k = 0; k < rounds; ++k) {
+            const std::vector<Contact> near = pairs_of(placed, rattles);
+            for (int sweep = 0; sweep < sweeps; ++sweep) {
+                part(placed, near, rattles, wanted);
+            }
+            double smallest = std::numeric_limits<double>::infinity();
+            for (const Contact& pair : pairs_of(placed, rattles)) {
+                const double h = lower_gap(placed, pair, radius);
+                worst = h < smallest ? pair : worst;
+                smallest = std::min(smallest, h);
+            }
+            if (smallest > 0) {
+                snap.packing = std::move(placed);
+                snap.cage = smallest;
+                return "";
+            }
+        }
+    }
+    return fmt::format("a rattler found no room at the vertex of the list: {} stay {:.3g} apart", to_string<2>(worst),
+                       gap(placed, worst));
+}
+
+} // namespace isostat::compare

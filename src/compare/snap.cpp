@@ -1,0 +1,205 @@
+#include "compare/room.hpp"
+#include "preparation/polish.hpp"
+
+#include <isostat/compare/snap.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace isostat::compare {
+
+namespace {
+
+/// A vertex is looked for within this distance, in smallest radii: farther away grains are not nearly rigid.
+constexpr double nearest_vertex = 0.1;
+constexpr double up = 1 + 0x1p-49; // of a difference, a sum and a hypotenuse, each rounded
+
+/// Disks and contacts of the list alone.
+void take_backbone(const SoftState& soft, Snap& out) {
+    const std::size_t n = soft.packing.radius.size();
+    std::vector<int> number(n, -1);
+    const auto use = [&](int i) { number[static_cast<std::size_t>(i)] = 0; };
+    for (const Contact& c : soft.contacts) {
+        use(c.i);
+        if (c.kind == ContactKind::disk_disk) {
+            use(c.j);
+        }
+    }
+    Packing<2>& packing = out.backbone.packing;
+    packing.walls = soft.packing.walls;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (number[i] < 0) {
+            out.rattlers.push_back(static_cast<int>(i));
+            continue;
+        }
+        number[i] = static_cast<int>(out.disks.size());
+        out.disks.push_back(static_cast<int>(i));
+        packing.radius.push_back(soft.packing.radius[i]);
+        packing.q.insert(packing.q.end(), {soft.packing.q[2 * i], soft.packing.q[2 * i + 1]});
+    }
+    packing.q.insert(packing.q.end(), {soft.packing.length(0), soft.packing.length(1)});
+    for (Contact c : soft.contacts) {
+        c.i = number[static_cast<std::size_t>(c.i)];
+        c.j = c.kind == ContactKind::disk_disk ? number[static_cast<std::size_t>(c.j)] : c.j;
+        out.backbone.contacts.push_back(c);
+    }
+    out.backbone.load = soft.load;
+    out.backbone.load.disk_force.clear();
+    // Where several forces vanish together for structural reasons, the end of the interval needs them.
+    out.backbone.load.infinitesimal = generic_infinitesimal<2>(packing.radius, 1);
+}
+
+/// In names of the whole packing.
+std::string renamed(const Snap& snap, const Contact& c) {
+    const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
+    return to_string<2>(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j});
+}
+
+/// The first force that is proved negative, or empty.
+std::string negative_force(const Snap& snap) {
+    const std::vector<Interval>& f = snap.truth.finite;
+    for (std::size_t l = 0; l < f.size(); ++l) {
+        if (f[l].upper < 0) {
+            return fmt::format("the force of {} is {:.3g} at the vertex of the list",
+                               renamed(snap, snap.backbone.contacts[l]), f[l].upper);
+        }
+    }
+    return "";
+}
+
+/// The deepest overlap of the backbone at the vertex, or empty.
+std::string overlapping_pair(const Snap& snap) {
+    Admissibility worst = certify_admissible(snap.backbone.packing, 0.0);
+    return worst.verdict == Verdict::refuted ? fmt::format("{} overlap by {:.3g} at the vertex of the list",
+                                                           renamed(snap, worst.worst), -worst.worst_gap)
+                                             : "";
+}
+
+void measure_moves(const SoftState& soft, Snap& out) {
+    const double radius = out.truth.claims.vertex->radius;
+    const std::vector<double>& q = out.backbone.packing.q;
+    const auto way = [&](std::size_t here, std::size_t there) {
+        return (std::abs(q[here] - soft.packing.q[there]) + radius) * up;
+    };
+    out.moved.assign(soft.packing.radius.size(), 0);
+    out.distance = 0;
+    for (std::size_t b = 0; b < out.disks.size(); ++b) {
+        const auto i = static_cast<std::size_t>(out.disks[b]);
+        out.moved[i] = std::hypot(way(2 * b, 2 * i), way(2 * b + 1, 2 * i + 1)) * up;
+        out.distance = std::max(out.distance, out.moved[i]);
+        std::copy_n(&q[2 * b], 2, &out.packing.q[2 * i]);
+    }
+    const std::size_t n = soft.packing.radius.size(), m = out.disks.size();
+    out.walls = std::max(way(2 * m, 2 * n), way(2 * m + 1, 2 * n + 1));
+    std::copy_n(&q[2 * m], 2, &out.packing.q[2 * n]);
+}
+
+/// Newton's method, no farther than grains that are nearly rigid are from their vertex. Empty, or why not.
+std::string find_vertex_of(Packing<2>& packing, const std::vector<Contact>& contacts) {
+    Packing<2> moved = packing;
+    long iterations = 0;
+    if (const auto failure = preparation::newton(moved, contacts, iterations)) {
+        return failure->message();
+    }
+    double farthest = 0;
+    for (std::size_t k = 0; k < packing.q.size(); ++k) {
+        farthest = std::max(farthest, std::abs(moved.q[k] - packing.q[k]));
+    }
+    const double reach = nearest_vertex * packing.min_radius();
+    if (!(farthest <= reach)) {
+        return fmt::format("Newton's method on the gaps of the list moves a coordinate by {:.3g}: expected at most "
+                           "{:.3g}, {} of the smallest radius",
+                           farthest, reach, nearest_vertex);
+    }
+    packing = std::move(moved);
+    return "";
+}
+
+void judge(Snap& out) {
+    const CertificateClaims& claims = out.truth.claims;
+    const std::string negative = negative_force(out);
+    const std::string overlap = negative.empty() ? overlapping_pair(out) : "";
+    if (out.truth.verdict == Verdict::refuted) {
+        out.outcome = SnapOutcome::refuted;
+        out.reason = !negative.empty() ? negative : !overlap.empty() ? overlap : out.truth.refuted.front();
+    } else if (claims.counting && claims.vertex && claims.forces && claims.gaps) {
+        out.outcome = SnapOutcome::vertex; // the interval of the load is another question
+    } else {
+        out.reason = claims.undecided.empty() ? "the vertex is not proved" : claims.undecided.front();
+    }
+}
+
+} // namespace
+
+const char* to_string(SnapOutcome outcome) {
+    switch (outcome) {
+    case SnapOutcome::vertex: return "vertex";
+    case SnapOutcome::hyperstatic: return "hyperstatic";
+    case SnapOutcome::moving: return "moving";
+    case SnapOutcome::refuted: return "refuted";
+    case SnapOutcome::undecided: break;
+    }
+    return "undecided";
+}
+
+Snap snap(const SoftState& soft) {
+    Snap out;
+    out.packing = soft.packing;
+    take_backbone(soft, out);
+    out.counting = count_contacts(out.backbone.packing, out.backbone.contacts);
+    const Counting& c = out.counting;
+    if (c.mechanisms > 0 || c.hyperstaticity > 0) {
+        // h is exact, or an upper bound: k = 0 makes the rank N_f, and h = N - N_f.
+        out.outcome = c.mechanisms > 0 ? SnapOutcome::moving : SnapOutcome::hyperstatic;
+        out.reason = fmt::format("the list has N_f = {}, N = {}, rank {}, h = {}, k = {}", c.dof_count, c.contact_count,
+                                 c.rank, c.hyperstaticity, c.mechanisms);
+        return out;
+    }
+    out.reason = find_vertex_of(out.backbone.packing, out.backbone.contacts);
+    if (!out.reason.empty()) {
+        return out;
+    }
+    out.truth = certify(out.backbone);
+    judge(out);
+    if (out.truth.claims.vertex) {
+        measure_moves(soft, out);
+    }
+    if (out.outcome == SnapOutcome::vertex) {
+        out.reason = make_room(out);
+        out.outcome = out.reason.empty() ? SnapOutcome::vertex : SnapOutcome::undecided;
+    }
+    return out;
+}
+
+std::vector<Contact> carrying(const State<2>& state, const Certification& truth) {
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        if (truth.structural_zero.size() != state.contacts.size() || truth.structural_zero[l] == 0) {
+            out.push_back(state.contacts[l]);
+        }
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+std::string names_of(const std::vector<Contact>& contacts) {
+    constexpr std::size_t most = 8;
+    std::string text;
+    for (std::size_t k = 0; k < std::min(most, contacts.size()); ++k) {
+        text += " " + to_string<2>(contacts[k]);
+    }
+    return contacts.empty()         ? " none"
+           : contacts.size() > most ? fmt::format("{} and {} more", text, contacts.size() - most)
+                                    : text;
+}
+
+std::vector<Contact> without(const std::vector<Contact>& a, const std::vector<Contact>& b) {
+    std::vector<Contact> out;
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(out));
+    return out;
+}
+
+} // namespace isostat::compare

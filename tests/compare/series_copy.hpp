@@ -1,0 +1,99 @@
+#pragma once
+// Copies of the series tests/data/series with damages.
+
+#include "support/scratch.hpp"
+
+#include <isostat/compare/compare.hpp>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace series {
+
+using Lines = std::vector<std::string>;
+
+inline Lines lines_of(const std::string& name) {
+    Lines lines;
+    std::istringstream text(scratch::read(scratch::data("series/" + name)));
+    for (std::string line; std::getline(text, line);) {
+        lines.push_back(line);
+    }
+    return lines;
+}
+
+inline Lines words_of(const std::string& line, char at = ' ') {
+    Lines words;
+    std::istringstream text(line);
+    for (std::string word; std::getline(text, word, at);) {
+        words.push_back(word);
+    }
+    return words;
+}
+
+inline std::string joined(const Lines& parts, char with) {
+    std::string text;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        text += (k > 0 ? std::string(1, with) : "") + parts[k];
+    }
+    return text;
+}
+
+/// The first `frames` frames, to be damaged, in a folder of their own.
+class Copy {
+  public:
+    explicit Copy(std::size_t frames) {
+        table.resize(frames + 1);
+        cut(disks, frames);
+        cut(contacts, frames);
+    }
+    Lines disks = lines_of("disks.dump"), contacts = lines_of("contacts.dump"), table = lines_of("frames.csv");
+    std::string manifest = scratch::read(scratch::data("series/series.toml"));
+
+    [[nodiscard]] std::string write() const {
+        const auto put = [&](const char* name, const Lines& lines) {
+            scratch::write(folder_ / name, joined(lines, '\n') + "\n");
+        };
+        put("disks.dump", disks);
+        put("contacts.dump", contacts);
+        put("frames.csv", table);
+        scratch::write(folder_ / "series.toml", manifest);
+        return (folder_ / "series.toml").string();
+    }
+    [[nodiscard]] isostat::compare::Comparison compare(const isostat::compare::CompareOptions& options = {}) const {
+        return isostat::compare::compare(isostat::compare::read_series(write()), options);
+    }
+    /// Number (from 0) of the line of a frame (from 0) and row (from 0) in a dump.
+    static std::size_t line(const Lines& dump, std::size_t frame, std::size_t row) {
+        std::size_t at = 0;
+        for (std::size_t k = 0;; ++k) {
+            while (!dump[at].starts_with("ITEM: ATOMS") && !dump[at].starts_with("ITEM: ENTRIES")) {
+                ++at;
+            }
+            ++at;
+            if (k == frame) {
+                return at + row;
+            }
+        }
+    }
+    static std::string field(const std::string& line, std::size_t k, const std::string& value) {
+        Lines words = words_of(line);
+        words[k] = value;
+        return joined(words, ' ');
+    }
+
+  private:
+    static void cut(Lines& dump, std::size_t frames) {
+        std::size_t seen = 0;
+        for (std::size_t at = 0; at < dump.size(); ++at) {
+            seen += dump[at] == "ITEM: TIMESTEP" ? 1 : 0;
+            if (seen > frames) {
+                dump.resize(at);
+            }
+        }
+    }
+    scratch::Folder folder_;
+};
+
+} // namespace series

@@ -1,0 +1,228 @@
+// A series of LAMMPS against the exact run: what each frame is, where the series departs, and damaged files by name.
+#include "compare/series_copy.hpp"
+
+#include <isostat/compare/report.hpp>
+#include <isostat/core/error.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include <functional>
+
+using namespace isostat;
+using compare::Comparison;
+using compare::FrameStatus;
+using series::Copy;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& what) {
+    return text.find(what) != std::string::npos;
+}
+
+/// Frame 1 of two is damaged: it is `file`, with words; the other one stays the equilibrium.
+void expect_file(const std::function<void(Copy&)>& damage, const std::vector<std::string>& words) {
+    Copy copy(2);
+    damage(copy);
+    const Comparison result = copy.compare();
+    BOOST_TEST(result.status == 1);
+    BOOST_TEST((result.frames[0].status == FrameStatus::same), result.frames[0].reason);
+    BOOST_TEST((result.frames[1].status == FrameStatus::file), to_string(result.frames[1].status));
+    for (const std::string& word : words) {
+        BOOST_TEST(contains(result.frames[1].reason, word), "'" << word << "' is not in: " << result.frames[1].reason);
+    }
+    BOOST_TEST_REQUIRE(result.departure.has_value());
+    BOOST_TEST(result.departure->reason == "file");
+}
+
+void expect_error(const std::function<void(Copy&)>& damage, const std::vector<std::string>& words) {
+    Copy copy(2);
+    damage(copy);
+    try {
+        (void)copy.compare();
+        BOOST_ERROR("no error");
+    } catch (const Error& error) {
+        BOOST_TEST((error.kind() == ErrorKind::bad_input));
+        for (const std::string& word : words) {
+            BOOST_TEST(contains(error.what(), word), "'" << word << "' is not in: " << error.what());
+        }
+    }
+}
+
+std::string& disk_row(Copy& copy, std::size_t row) {
+    return copy.disks[Copy::line(copy.disks, 1, row)];
+}
+std::string& contact_row(Copy& copy, std::size_t row) {
+    return copy.contacts[Copy::line(copy.contacts, 1, row)];
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(compare_series)
+
+BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_its_reason) {
+    const Comparison result = Copy(9).compare();
+    const std::vector<std::string> expected{"same",  "same",      "same",   "early", "same",
+                                            "other", "undecided", "moving", "soft"};
+    BOOST_TEST_REQUIRE(result.frames.size() == expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        BOOST_TEST(compare::to_string(result.frames[k].status) == expected[k],
+                   "frame " << k << ": " << compare::to_string(result.frames[k].status) << ": "
+                            << result.frames[k].reason);
+    }
+    for (const std::size_t k : {0U, 1U, 2U, 4U}) {
+        const compare::FrameResult& f = result.frames[k];
+        BOOST_TEST(f.missing.empty());
+        BOOST_TEST(f.extra.empty());
+        BOOST_TEST(f.expected == f.found);
+        BOOST_TEST(f.distance > 1e-4);
+        BOOST_TEST(f.distance < 1e-3);
+        BOOST_TEST(f.law < 1e-8);
+        BOOST_TEST(f.rest < 1e-7);
+        BOOST_TEST(f.stiffness > 1e-3);
+        BOOST_TEST(f.stiffness < 3e-2);
+        BOOST_TEST(std::abs(f.true_eps2 - f.eps2) < 1e-4);
+    }
+    BOOST_TEST(result.frames[3].found == result.frames[3].expected + 1);
+    BOOST_TEST(result.frames[8].counting.hyperstaticity == 1);
+    BOOST_TEST(result.status == 1);
+    BOOST_TEST_REQUIRE(result.departure.has_value());
+    BOOST_TEST(result.departure->reason == "stiffness");
+    BOOST_TEST(result.departure->from == 2);
+    BOOST_TEST(result.departure->to == 3);
+    // LAMMPS left this structure between 1.1490 and 1.1495.
+    const compare::PathEquilibrium& left = result.path[3];
+    BOOST_TEST(left.soft_limit > 1.1490);
+    BOOST_TEST(left.soft_limit < 1.1495);
+    BOOST_TEST(left.high > 1.1744);
+    BOOST_TEST(left.stiffness_needed > 2e6);
+    BOOST_TEST(left.stiffness_needed < 6e6);
+    for (const compare::PathEquilibrium& e : result.path) {
+        BOOST_TEST(e.proved);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
+    const Copy copy(3);
+    const Comparison result = copy.compare();
+    BOOST_TEST(result.status == 0);
+    BOOST_TEST(!result.departure.has_value());
+    const std::string text = compare::frames_csv(result);
+    BOOST_TEST(std::count(text.begin(), text.end(), '\n') == 4);
+    // Another order of the rows of a dump is the same frame.
+    Copy turned(3);
+    std::swap(disk_row(turned, 3), disk_row(turned, 60));
+    std::swap(contact_row(turned, 3), contact_row(turned, 60));
+    BOOST_TEST(compare::frames_csv(turned.compare()) == text);
+}
+
+BOOST_AUTO_TEST_CASE(two_ids_swapped) {
+    expect_file(
+        [](Copy& c) {
+            disk_row(c, 2) = Copy::field(disk_row(c, 2), 0, "67");
+            disk_row(c, 66) = Copy::field(disk_row(c, 66), 0, "3");
+            // The radii go with the ids, or the frame is bad input.
+            const std::string third = series::words_of(disk_row(c, 2))[2];
+            disk_row(c, 2) = Copy::field(disk_row(c, 2), 2, series::words_of(disk_row(c, 66))[2]);
+            disk_row(c, 66) = Copy::field(disk_row(c, 66), 2, third);
+        },
+        {"disks"});
+    expect_error([](Copy& c) { disk_row(c, 2) = Copy::field(disk_row(c, 2), 0, "67"); }, {"disks.dump:", "id is '67'"});
+}
+
+BOOST_AUTO_TEST_CASE(a_contact_twice) {
+    std::string row;
+    expect_file(
+        [&](Copy& c) {
+            const std::size_t at = Copy::line(c.contacts, 1, 7);
+            c.contacts[at] = c.contacts[at - 2];
+            row = fmt::format("contacts.dump:{}", at + 1);
+        },
+        {"come twice"});
+    expect_file([&](Copy& c) { contact_row(c, 7) = contact_row(c, 5); }, {row + ":", "twice"});
+}
+
+BOOST_AUTO_TEST_CASE(forces_in_other_units) {
+    const auto scaled = [](Copy& c) {
+        for (std::size_t k = Copy::line(c.contacts, 1, 0); k < c.contacts.size(); ++k) {
+            const double force = std::stod(series::words_of(c.contacts[k])[2]);
+            c.contacts[k] = Copy::field(c.contacts[k], 2, fmt::format("{}", 1000 * force));
+        }
+    };
+    expect_file(scaled, {"contacts.dump:", "stiffness x overlap", "ratio 1000"});
+}
+
+BOOST_AUTO_TEST_CASE(a_wall_moved) {
+    expect_file(
+        [](Copy& c) {
+            series::Lines cells = series::words_of(c.table[2], ',');
+            cells[3] = fmt::format("{}", std::stod(cells[3]) + 1e-4);
+            c.table[2] = series::joined(cells, ',');
+        },
+        {"right wall", "frames.csv:3"});
+}
+
+BOOST_AUTO_TEST_CASE(diameters_for_radii) {
+    const auto doubled = [](Copy& c) {
+        for (std::size_t frame : {0U, 1U}) {
+            for (std::size_t row = 0; row < 100; ++row) {
+                std::string& line = c.disks[Copy::line(c.disks, frame, row)];
+                line = Copy::field(line, 2, fmt::format("{}", 2 * std::stod(series::words_of(line)[2])));
+            }
+        }
+    };
+    Copy copy(2);
+    doubled(copy);
+    const Comparison result = copy.compare();
+    BOOST_TEST((result.frames[0].status == FrameStatus::file));
+    BOOST_TEST(contains(result.frames[0].reason, "diameters"), result.frames[0].reason);
+    copy.manifest = scratch::replaced(copy.manifest, "[columns]", "[columns]\ndiameter = \"radius\"");
+    BOOST_TEST(copy.compare().status == 0);
+    expect_error([](Copy& c) { disk_row(c, 4) = Copy::field(disk_row(c, 4), 2, "0.5"); },
+                 {"disks.dump:", "radius is '0.5'", "first frame"});
+}
+
+BOOST_AUTO_TEST_CASE(a_missing_contact) {
+    expect_file(
+        [](Copy& c) {
+            const std::size_t at = Copy::line(c.contacts, 1, 3);
+            c.contacts.erase(c.contacts.begin() + static_cast<long>(at));
+            const std::size_t count = Copy::line(c.contacts, 1, 0) - 6;
+            c.contacts[count] = std::to_string(std::stoi(c.contacts[count]) - 1);
+        },
+        {"overlap by", "no contact in the files", "disks 6 and 19"});
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_named_with_file_and_row) {
+    expect_error([](Copy& c) { c.table[0] = scratch::replaced(c.table[0], "right", "rihgt"); },
+                 {"frames.csv:1", "no column 'right'", "bounds of a dump are not taken"});
+    expect_error([](Copy& c) { contact_row(c, 3) = Copy::field(contact_row(c, 3), 1, "101"); },
+                 {"contacts.dump:", "j is '101'", "id of a disk"});
+    expect_error([](Copy& c) { contact_row(c, 3) = Copy::field(contact_row(c, 3), 2, "1.0x"); },
+                 {"contacts.dump:", "force is '1.0x'"});
+    expect_error([](Copy& c) { c.table[2] = scratch::replaced(c.table[2], "175000", "175001"); },
+                 {"disks.dump", "no time step 175001"});
+    expect_error([](Copy& c) { c.table[2] = scratch::replaced(c.table[2], ",1.03", ",1.04"); },
+                 {"frames.csv:3", "force_top", "column 7"});
+    expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "stiffness = 1e5", "stifness = 1e5"); },
+                 {"series.toml", "stiffness"});
+    expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "[law]", "colour = 1\n[law]"); },
+                 {"unknown key 'colour'"});
+    expect_error([](Copy& c) { c.manifest = scratch::replaced(c.manifest, "isostat-series 1", "isostat-series 2"); },
+                 {"isostat-series 1"});
+}
+
+BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
+    const Copy copy(3);
+    const compare::Series series = compare::read_series(copy.write());
+    const Comparison result = compare::compare(series);
+    const scratch::Folder folder;
+    (void)compare::write_comparison(folder / "out", series, result);
+    for (const char* name : {"comparison.csv", "path.csv", "comparison.json", "comparison.dat", "comparison.gp"}) {
+        BOOST_TEST(!scratch::read((folder / "out") / name).empty(), name);
+        BOOST_TEST(!std::filesystem::exists(folder / "out" / (std::string(name) + ".part")));
+    }
+    BOOST_TEST(contains(scratch::read(folder / "out" / "comparison.json"), "\"same\": 3"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,142 @@
+// The vertex of a list of contacts: proved near the soft place, or refused with the reason.
+#include "compare/series_copy.hpp"
+
+#include <isostat/compare/snap.hpp>
+#include <isostat/compare/soft_limit.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+using namespace isostat;
+using compare::Snap;
+using compare::SnapOutcome;
+using compare::SoftState;
+
+namespace {
+
+/// An equilibrium of 100 disks, without rattlers' contacts, pushed to the place of soft grains of that stiffness.
+struct Sample {
+    State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
+    std::vector<Contact> list = compare::carrying(state, certify(state));
+    State<2> backbone = compare::snap({state.packing, list, state.load}).backbone;
+
+    [[nodiscard]] SoftState soft(double stiffness) const {
+        const Snap exact = compare::snap({state.packing, list, state.load});
+        const auto there = compare::soften(exact.backbone, state.load.stress[1], stiffness);
+        SoftState out{state.packing, list, state.load};
+        for (std::size_t b = 0; b < exact.disks.size(); ++b) {
+            const auto i = static_cast<std::size_t>(exact.disks[b]);
+            out.packing.q[2 * i] = there->packing.q[2 * b];
+            out.packing.q[2 * i + 1] = there->packing.q[2 * b + 1];
+        }
+        out.packing.length(0) = there->packing.length(0);
+        out.packing.length(1) = there->packing.length(1);
+        return out;
+    }
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(compare_snap)
+
+BOOST_AUTO_TEST_CASE(soft_grains_are_proved_near_the_vertex_that_they_came_from) {
+    const Sample sample;
+    for (const double stiffness : {1e5, 1e7}) {
+        BOOST_TEST_CONTEXT("stiffness " << stiffness) {
+            const Snap found = compare::snap(sample.soft(stiffness));
+            BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+            BOOST_TEST(found.counting.hyperstaticity == 0);
+            // The distance holds and is no worse than twice the way; the vertex is that of the sample.
+            double way = 0;
+            for (std::size_t b = 0; b < found.disks.size(); ++b) {
+                const auto i = static_cast<std::size_t>(found.disks[b]);
+                const SoftState soft = sample.soft(stiffness);
+                const double here = std::hypot(soft.packing.q[2 * i] - sample.state.packing.q[2 * i],
+                                               soft.packing.q[2 * i + 1] - sample.state.packing.q[2 * i + 1]);
+                BOOST_TEST(found.moved[i] >= here - 1e-12);
+                way = std::max(way, here);
+            }
+            BOOST_TEST(found.distance >= way - 1e-12);
+            BOOST_TEST(found.distance < way + 1e-11);
+            BOOST_TEST(found.truth.claims.vertex->radius < 1e-11);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_the_list) {
+    const Sample sample;
+    const Snap found = compare::snap(sample.soft(1e6));
+    BOOST_TEST_REQUIRE(!found.rattlers.empty());
+    const auto state = compare::with_resting_rattlers(found, 3);
+    BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message()));
+    BOOST_TEST(state.value().contacts.size() == 202U);
+    const Certification truth = certify(state.value());
+    BOOST_TEST((truth.verdict == Verdict::proved));
+    BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+}
+
+BOOST_AUTO_TEST_CASE(lists_without_a_vertex_are_refused_with_the_reason) {
+    const Sample sample;
+    SoftState soft = sample.soft(1e6);
+    soft.contacts.erase(soft.contacts.begin() + 17);
+    const Snap fewer = compare::snap(soft);
+    BOOST_TEST((fewer.outcome == SnapOutcome::moving));
+    BOOST_TEST(fewer.reason.find("k = 1") != std::string::npos, fewer.reason);
+
+    soft = sample.soft(1e6);
+    const Contact near{ContactKind::disk_disk, 27, 29}; // its gap is 1.2e-3
+    BOOST_TEST_REQUIRE(!std::binary_search(soft.contacts.begin(), soft.contacts.end(), near));
+    soft.contacts.push_back(near);
+    std::sort(soft.contacts.begin(), soft.contacts.end());
+    const Snap more = compare::snap(soft);
+    BOOST_TEST((more.outcome == SnapOutcome::hyperstatic));
+    BOOST_TEST(more.reason.find("h = 1") != std::string::npos, more.reason);
+    const auto downhill = compare::exchange(soft, 1);
+    BOOST_TEST_REQUIRE(downhill.ok());
+    BOOST_TEST((downhill.value().truth.verdict == Verdict::proved));
+    BOOST_TEST((downhill.value().contacts == sample.list));
+
+    soft = sample.soft(1e6);
+    soft.load.stress[1] *= 1.2; // beyond the interval
+    const Snap overloaded = compare::snap(soft);
+    BOOST_TEST((overloaded.outcome == SnapOutcome::refuted));
+    BOOST_TEST(overloaded.reason.find("the force of") != std::string::npos, overloaded.reason);
+}
+
+BOOST_AUTO_TEST_CASE(a_rattler_without_room_is_no_vertex) {
+    const Sample sample;
+    SoftState soft = sample.soft(1e6);
+    const Snap before = compare::snap(soft);
+    BOOST_TEST_REQUIRE(!before.rattlers.empty());
+    BOOST_TEST(before.cage > 0.0);
+    soft.packing.radius[static_cast<std::size_t>(before.rattlers.front())] *= 1.5;
+    const Snap after = compare::snap(soft);
+    BOOST_TEST((after.outcome == SnapOutcome::undecided));
+    BOOST_TEST(after.reason.find("no room") != std::string::npos, after.reason);
+}
+
+BOOST_AUTO_TEST_CASE(soft_limits_approach_the_exact_one_as_one_over_the_stiffness) {
+    const Sample sample;
+    const Certification truth = certify(sample.backbone);
+    BOOST_TEST_REQUIRE(truth.claims.load_interval.has_value());
+    const double low = truth.claims.load_interval->low.stress.upper,
+                 high = truth.claims.load_interval->high.stress.lower;
+    for (const int direction : {-1, 1}) {
+        const compare::ExactInterval exact{low, high, direction};
+        const auto hard = compare::soft_limit(sample.backbone, exact, 1e7);
+        const auto soft = compare::soft_limit(sample.backbone, exact, 1e6);
+        BOOST_TEST_REQUIRE((hard && soft));
+        BOOST_TEST((soft->stress - exact.end()) / (hard->stress - exact.end()) == 10.0,
+                   boost::test_tools::tolerance(0.1));
+        const auto needed = compare::stiffness_needed(sample.backbone, exact);
+        BOOST_TEST_REQUIRE(needed.has_value());
+        const auto there = compare::soft_limit(sample.backbone, exact, *needed);
+        BOOST_TEST_REQUIRE(there.has_value());
+        BOOST_TEST(std::abs(there->stress - exact.end()) / exact.end() == 1e-3, boost::test_tools::tolerance(0.3));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

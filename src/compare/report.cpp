@@ -175,7 +175,7 @@ Chart figure(const Comparison& comparison) {
         high = std::max(high, f.sigma2);
     }
     const double margin = 0.03 * (high - low) + 1e-6 * high;
-    std::string body = "set multiplot layout 3,1\nset grid\nset key left top\n";
+    std::string body = "set multiplot layout 3,1\nset grid\nset key right bottom\n";
     body +=
         fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_2\"\nset ylabel \"σ_2\"\n", low - margin, high + margin);
     body += fmt::format("plot {0} index 0 with lines lw 2 lc \"#1f4e79\" title \"exact run\", {0} index 1 with points "
@@ -188,7 +188,7 @@ Chart figure(const Comparison& comparison) {
         fmt::format("plot {0} index 3 using 1:(-0.5):(0):({1}) with vectors nohead lc \"#bbbbbb\", {0} index 2 with "
                     "points pt 7 ps 0.7 lc \"#c55a11\"\n",
                     data, frame_statuses);
-    body += "set key left top\nset yrange [*:*] noreverse\nset ytics auto\nset logscale y\nset format y "
+    body += "set key right center\nset yrange [*:*] noreverse\nset ytics auto\nset logscale y\nset format y "
             "\"10^{%L}\"\nset ylabel \"error / mean force\"\n";
     body +=
         fmt::format("plot {0} index 4 using 1:2 with points pt 4 lc \"#548235\" title \"law\", {0} index 4 using 1:3 "

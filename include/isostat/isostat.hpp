@@ -6,6 +6,10 @@
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
 #include <isostat/checker/verify_run.hpp>
+#include <isostat/compare/compare.hpp>
+#include <isostat/compare/series.hpp>
+#include <isostat/compare/snap.hpp>
+#include <isostat/compare/soft_limit.hpp>
 #include <isostat/contact/candidates.hpp>
 #include <isostat/contact/contact.hpp>
 #include <isostat/contact/state.hpp>
@@ -32,4 +36,5 @@
 #include <isostat/rigidity/counting.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 #include <isostat/scene/scene.hpp>
+#include <isostat/scene/scene_run.hpp>
 #include <isostat/trajectory/programme.hpp>

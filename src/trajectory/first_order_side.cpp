@@ -98,8 +98,7 @@ std::optional<Failure> FirstOrderSide<Dim>::settle_load(Vertex<Dim>& vertex, con
 }
 
 template <int Dim>
-std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex,
-                                                   const std::vector<std::pair<Contact, Order>>& touching) const {
+std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex, const ZeroGaps& touching) const {
     const RadiusPerturbation& stored = *state_.perturbation;
     const auto& contacts = vertex.structure.contacts();
     const auto at = std::find(contacts.begin(), contacts.end(), stored.load_zero);

@@ -42,8 +42,7 @@ template <int Dim> class FirstOrderSide {
     /// From now on the load is meant as it is stored.
     void load_is_stored() const;
     /// At a start: the load that its state means, and the pairs that touch.
-    [[nodiscard]] std::optional<Failure> resume(Vertex<Dim>& vertex,
-                                                const std::vector<std::pair<Contact, Order>>& touching) const;
+    [[nodiscard]] std::optional<Failure> resume(Vertex<Dim>& vertex, const ZeroGaps& touching) const;
     /// The results at an equilibrium go with its state.
     void store(const Vertex<Dim>& vertex) const;
 

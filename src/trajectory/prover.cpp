@@ -36,6 +36,21 @@ void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<D
     }
 }
 
+/// Pairs that touch at the start of an arc and at its end: grains that make one body, and all when nothing moves, the
+/// contact that opens among them.
+template <int Dim> ZeroGaps touch_still(const Vertex<Dim>& from, const ArcProposal<Dim>& arc) {
+    ZeroGaps still;
+    for (const auto& pair : from.perturbed ? from.perturbed->zero : ZeroGaps()) {
+        if (arc.stays || std::find(arc.resting.begin(), arc.resting.end(), pair.first) != arc.resting.end()) {
+            still.push_back(pair);
+            if (arc.stays && pair.first == arc.record.closed) {
+                still.back().first = arc.record.opened;
+            }
+        }
+    }
+    return still;
+}
+
 } // namespace
 
 template <int Dim> void ArcProof<Dim>::count(const Decision& decision) {
@@ -122,7 +137,7 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
     if (first_order_ != nullptr) {
         first_order_->attach(*proof.vertex, at);
     }
-    const auto found = gaps(*proof.vertex);
+    const auto found = gaps(*proof.vertex, touch_still(from, arc));
     if (!found.ok()) {
         return at_end(found.failure());
     }

@@ -70,8 +70,9 @@ template <int Dim> class Prover {
     /// A vertex from nothing: full exact elimination, fresh factors and bound.
     Result<std::shared_ptr<Vertex<Dim>>> vertex(Packing<Dim> packing, std::vector<Contact> contacts,
                                                 const LimitLoad<Dim>& at);
-    Result<typename Vertex<Dim>::Gaps> gaps(Vertex<Dim>& vertex) {
-        return vertex.check_gaps(candidates_, kept_, first_order_ != nullptr);
+    /// `known`: pairs that touch, as far as that is known before.
+    Result<typename Vertex<Dim>::Gaps> gaps(Vertex<Dim>& vertex, const ZeroGaps& known = {}) {
+        return vertex.check_gaps(candidates_, kept_, first_order_ != nullptr ? &known : nullptr);
     }
     /// Whether the arc from a vertex, which starts with what was proved to open there, ends where it is proposed to,
     /// and what opens there: regularity, true vertex, order of the gaps, descent, power, next opening.

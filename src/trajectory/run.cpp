@@ -206,12 +206,14 @@ template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
 template <int Dim> std::optional<Failure> Run<Dim>::reload() {
     first_order_->load_is_stored();
     const auto touching = vertex_->perturbed->touching;
+    const ZeroGaps zero = vertex_->perturbed->zero;
     auto made = prover_.vertex(vertex_->packing, vertex_->structure.contacts(), load());
     if (!made.ok()) {
         return made.failure();
     }
     vertex_ = std::move(made.value());
     vertex_->perturbed->touching = touching;
+    vertex_->perturbed->zero = zero;
     return still_equilibrium();
 }
 

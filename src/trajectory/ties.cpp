@@ -94,11 +94,12 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
 }
 
 template <int Dim>
-Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact, Order>>& zero, ContactId slot,
-                            bool stayed, const std::vector<Contact>& resting) {
+Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slot, bool stayed,
+                            const std::vector<Contact>& resting) {
     Arrival<Dim> arrival;
     FirstOrderVertex<Dim>& side = *to.perturbed;
     side.touching.clear();
+    side.zero = zero;
     const Contact& closed = to.structure.contacts()[slot.index()];
     for (const auto& [contact, order] : zero) {
         const Enclosure c = side.first.gap(contact);
@@ -134,10 +135,10 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact
     return arrival;
 }
 
-template <int Dim>
-std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero) {
+template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const ZeroGaps& zero) {
     FirstOrderVertex<Dim>& side = *vertex.perturbed;
     side.touching.clear();
+    side.zero = zero;
     Words names;
     for (const auto& [contact, order] : zero) {
         const Enclosure c = side.first.gap(contact);
@@ -157,8 +158,7 @@ std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<st
 }
 
 template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
-template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
-                                      const std::vector<Contact>&);
-template std::optional<Failure> settle_touching<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&);
+template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, ContactId, bool, const std::vector<Contact>&);
+template std::optional<Failure> settle_touching<2>(Vertex<2>&, const ZeroGaps&);
 
 } // namespace isostat

@@ -26,12 +26,11 @@ template <int Dim> struct Arrival {
     std::vector<TieDecision> settled;
 };
 template <int Dim>
-Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const std::vector<std::pair<Contact, Order>>& zero, ContactId slot,
-                            bool stayed, const std::vector<Contact>& resting);
+Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slot, bool stayed,
+                            const std::vector<Contact>& resting);
 
 /// At a start: `touching` is set. Failure: `overlap` naming the pairs that overlap at first order.
-template <int Dim>
-std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const std::vector<std::pair<Contact, Order>>& zero);
+template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const ZeroGaps& zero);
 
 /// What was settled at a vertex since the last call goes into a record.
 template <int Dim> void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& into) {
@@ -43,8 +42,7 @@ template <int Dim> void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& 
 }
 
 extern template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
-extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&, ContactId, bool,
-                                             const std::vector<Contact>&);
-extern template std::optional<Failure> settle_touching<2>(Vertex<2>&, const std::vector<std::pair<Contact, Order>>&);
+extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, ContactId, bool, const std::vector<Contact>&);
+extern template std::optional<Failure> settle_touching<2>(Vertex<2>&, const ZeroGaps&);
 
 } // namespace isostat

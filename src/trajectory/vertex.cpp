@@ -130,7 +130,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::prove(const Vertex& from, ArcP
 
 template <int Dim>
 Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept,
-                                                           bool ties_are_values) {
+                                                           const ZeroGaps* known) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
     }
@@ -164,6 +164,14 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
     }
     Words names;
     for (const Contact& contact : doubtful) { // with as many bits as the ladder has
+        if (known != nullptr) {
+            const auto pair = std::find_if(known->begin(), known->end(),
+                                           [&contact](const auto& zero) { return zero.first == contact; });
+            if (pair != known->end()) {
+                gaps.zero.push_back(*pair);
+                continue;
+            }
+        }
         const Order order = gap_sign_at_vertex(packing, structure, factorisation, inverse, contact);
         if (order.decided && order.sign != 0) {
             gaps.rung = std::max(gaps.rung, order.rung);
@@ -173,7 +181,7 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             }
             continue;
         }
-        if (ties_are_values && is_tie(order, packing.min_radius())) {
+        if (known != nullptr && is_tie(order, packing.min_radius())) {
             gaps.zero.emplace_back(contact, order);
             continue;
         }
@@ -181,7 +189,7 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
                        order.decided ? Words("exactly 0") : words("0 to {} bits", order.bits));
     }
     if (!names.empty()) {
-        return failed(ties_are_values ? FailureKind::undecided : FailureKind::tie,
+        return failed(known != nullptr ? FailureKind::undecided : FailureKind::tie,
                       "gaps that are zero beside those of the contacts kept: {}", names);
     }
     return gaps;

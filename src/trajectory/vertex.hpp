@@ -18,6 +18,9 @@
 
 namespace isostat {
 
+/// Pairs whose gaps are 0, and how that was found.
+using ZeroGaps = std::vector<std::pair<Contact, Order>>;
+
 /// The first-order side of a vertex whose radii are R_i + eps rho_i.
 template <int Dim> struct FirstOrderVertex {
     /// `rate`: first-order term of the stress.
@@ -28,6 +31,8 @@ template <int Dim> struct FirstOrderVertex {
     Enclosure stress_rate;
     /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive.
     std::vector<std::pair<Contact, Enclosure>> touching;
+    /// The same pairs, with what says that they touch: where grains do not move against each other it is said once.
+    ZeroGaps zero;
     std::vector<ContactId>
         zeros; ///< of an equilibrium: forces that vanish in the base, and are positive at first order
 };
@@ -72,15 +77,16 @@ template <int Dim> class Vertex {
     struct Gaps {
         double margin = 0;
         Rung rung = Rung::double_bound;
-        std::optional<Contact> negative;             ///< proved to overlap: it closed before
-        std::vector<std::pair<Contact, Order>> zero; ///< only when asked for: ties
+        std::optional<Contact> negative; ///< proved to overlap: it closed before
+        ZeroGaps zero;                   ///< only when asked for: ties
     };
     /// Gaps of all pairs that are not contacts, at the true vertex: `candidates` is made anew when it is not complete
     /// there (T6). Climbs to double-double when needed. Failure: `tie`, naming the candidates whose gaps are 0 to the
     /// precision reached.
-    /// With `ties_are_values` they are returned instead; `undecided` when too few bits say that a gap is 0.
+    /// With `known` they are returned instead; `undecided` when too few bits say that a gap is 0. Not asked again of
+    /// pairs that are known to touch.
     /// `kept`: for the next vertices with the same list.
-    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept, bool ties_are_values = false);
+    Result<Gaps> check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
 
     /// Under `ties = "perturb"` only.
     std::unique_ptr<FirstOrderVertex<Dim>> perturbed;

@@ -1,10 +1,12 @@
 #include "verified/first_order.hpp"
 
 #include "contact/separation.hpp"
+#include "rigidity/rigid_group.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -21,6 +23,66 @@ double length_of(const std::vector<double>& x) {
     std::vector<double> size(x.size());
     std::transform(x.begin(), x.end(), size.begin(), [](double c) { return std::abs(c); });
     return norm_above(size);
+}
+
+/// The grains of a contact, disks first, then walls.
+std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
+    const auto i = static_cast<std::size_t>(c.i);
+    const auto j = static_cast<std::size_t>(c.j);
+    switch (c.kind) {
+    case ContactKind::disk_disk: return {i, j};
+    case ContactKind::lower_wall: return {i, disks + 2 * j};
+    case ContactKind::upper_wall: return {i, disks + 2 * j + 1};
+    case ContactKind::held: break;
+    }
+    return {disks, disks};
+}
+
+/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
+/// tried: the grains whose contacts carry the force of the pair, as far as doubles tell, and all contacts among them.
+template <int Dim>
+bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+           ContactId opened, const Contact& pair) {
+    constexpr double carries = 1e-8; // a guess: what it leaves out or takes in makes the count fail
+    const GapGradient<Dim> g = gap_gradient(packing, pair);
+    std::vector<double> a(static_cast<std::size_t>(structure.size()), 0.0);
+    for (int k = 0; k < g.count; ++k) {
+        const auto e = static_cast<std::size_t>(k);
+        const int dof = structure.dofs().dof_of(static_cast<std::size_t>(g.coordinate[e]));
+        if (dof >= 0) {
+            a[static_cast<std::size_t>(dof)] = -g.value[e];
+        }
+    }
+    factorisation.solve_forces(a);
+    if (std::abs(a[opened.index()]) > carries) {
+        return false;
+    }
+    const auto& contacts = structure.contacts();
+    const std::size_t disks = packing.radius.size();
+    std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
+    const auto join = [&](const Contact& c) {
+        for (const std::size_t grain : grains_of(c, disks)) {
+            in_body[grain] = 1;
+        }
+    };
+    join(pair);
+    for (std::size_t l = 0; l < a.size(); ++l) {
+        if (std::abs(a[l]) > carries) {
+            if (contacts[l].kind == ContactKind::held) {
+                return false;
+            }
+            join(contacts[l]);
+        }
+    }
+    std::vector<Contact> among;
+    for (std::size_t l = 0; l < a.size(); ++l) {
+        const auto grains = grains_of(contacts[l], disks);
+        if (l != opened.index() && contacts[l].kind != ContactKind::held && in_body[grains[0]] != 0 &&
+            in_body[grains[1]] != 0) {
+            among.push_back(contacts[l]);
+        }
+    }
+    return moves_as_one(structure.dofs(), packing.disk_count(), among, pair);
 }
 
 } // namespace
@@ -122,7 +184,9 @@ template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int directi
     }
     std::vector<double> approach(static_cast<std::size_t>(structure_->size()), 0.0);
     approach[opened.index()] = -direction;
-    return gap_rate(contact, velocity(approach, 0));
+    const Enclosure rate = gap_rate(contact, velocity(approach, 0));
+    const bool told = rate.decided() || !rests(*packing_, *structure_, *factorisation_, opened, contact);
+    return told ? rate : Enclosure{0, 0};
 }
 
 template <int Dim>

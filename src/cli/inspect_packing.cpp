@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "crafted/enclosed_bases.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/crafted/enclosed_bases.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/packing_file.hpp>
 

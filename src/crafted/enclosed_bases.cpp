@@ -1,9 +1,8 @@
-#include "crafted/enclosed_bases.hpp"
-
 #include "contact/separation.hpp"
 #include "verified/force_solution.hpp"
 #include "verified/inverse_bound.hpp"
 
+#include <isostat/crafted/enclosed_bases.hpp>
 #include <isostat/rigidity/isostatic.hpp>
 
 #include <algorithm>

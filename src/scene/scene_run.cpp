@@ -129,7 +129,8 @@ std::string advice(const Scene& scene, const Failure& failure, std::vector<doubl
 }
 
 SceneEnding ending_of(const Failure& failure, const std::string& where) {
-    return {status_of(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message), failure};
+    return {status_of(failure.kind), fmt::format("{}{}: {}", where, to_string(failure.kind), failure.message()),
+            failure};
 }
 
 SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directory, const std::string& program,

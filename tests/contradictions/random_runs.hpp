@@ -124,8 +124,9 @@ class Keeper final : public RunObserver<2> {
 inline RunHeader header_of(const RandomRun& run) {
     RunHeader header;
     header.program = "test";
-    header.settings = fmt::format(R"({{"run":{{"rule":"{}","certify":"{}"}}}})",
-                                  opening_rule_words[static_cast<std::size_t>(run.options.rule)], to_string(run.options.certify));
+    header.settings =
+        fmt::format(R"({{"run":{{"rule":"{}","certify":"{}"}}}})",
+                    opening_rule_words[static_cast<std::size_t>(run.options.rule)], to_string(run.options.certify));
     header.states_every = run.states_every;
     header.witnesses = run.options.certify == CertifyLevel::arcs;
     header.checkpoint_seconds = 0;

@@ -210,9 +210,9 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
     }
     BOOST_TEST(drawn.size() == negative.size());
     const auto& contacts = loaded.state.contacts;
-    const ContactId first =
-        *std::min_element(negative.begin(), negative.end(),
-                          [&](ContactId a, ContactId b) { return contacts[a.index()] < contacts[b.index()]; });
+    const ContactId first = *std::min_element(negative.begin(), negative.end(), [&](ContactId a, ContactId b) {
+        return contacts[a.index()] < contacts[b.index()];
+    });
     BOOST_TEST((choose(OpeningRule::least_index, 7) == first));
 }
 

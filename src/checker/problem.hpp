@@ -26,6 +26,8 @@ inline constexpr int row_curvature = 8;
 
 /// `Problem::digits` when more are not asked for.
 inline constexpr int usual_digits = 80;
+/// Of a question that stays open with fewer.
+inline constexpr int most_digits = 1280;
 
 /// Which coordinates move, and what each contact depends on.
 struct Structure {

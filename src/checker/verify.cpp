@@ -62,10 +62,10 @@ Verification judge(const CertificateClaims& claims, const Evidence& evidence) {
     return result;
 }
 
-/// Whether the claim about the vertex is made and not decided.
-bool leaves_vertex_open(const Verification& result) {
-    return std::any_of(result.checks.begin(), result.checks.end(), [](const ClaimCheck& check) {
-        return check.claim == "vertex" && check.claimed && check.verdict == Verdict::undecided;
+/// Whether a claim is made and not decided.
+bool leaves_open(const Verification& result, std::string_view claim) {
+    return std::any_of(result.checks.begin(), result.checks.end(), [claim](const ClaimCheck& check) {
+        return check.claim == claim && check.claimed && check.verdict == Verdict::undecided;
     });
 }
 
@@ -79,12 +79,16 @@ Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic
         const Evidence evidence(certificate.state, arithmetic);
         first = judged(evidence);
         if (arithmetic != CheckerArithmetic::automatic || evidence.inverse.singular_value == 0 ||
-            !leaves_vertex_open(*first)) {
-            return *first;
+            !leaves_open(*first, "vertex")) {
+            // An end of the interval may be claimed to more digits than the usual ones tell.
+            const bool vague = arithmetic == CheckerArithmetic::automatic && leaves_open(*first, "load_interval");
+            return vague && evidence.vertex.found
+                       ? judged(Evidence(certificate.state, arithmetic, false, {}, most_digits))
+                       : *first;
         }
     }
     Verification by_rows = judged(Evidence(certificate.state, CheckerArithmetic::rows));
-    return leaves_vertex_open(by_rows) ? *first : by_rows;
+    return leaves_open(by_rows, "vertex") ? *first : by_rows;
 }
 
 } // namespace isostat

@@ -45,7 +45,6 @@ class Replay {
 
   private:
     static constexpr int more_digits = 320;
-    static constexpr int most_digits = 1280;
 
     [[nodiscard]] bool stopped() const { return !result_.wrong.empty(); }
     /// False: the record is wrong, and the replay stops.

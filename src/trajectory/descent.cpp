@@ -201,7 +201,8 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
     }
     const Enclosure near =
         between(Place<Dim>{from.packing.q, a.correction, a.radius}, Place<Dim>{to.packing.q, b.correction, b.radius});
-    return near.decided() ? near : precise_decrease(from, to, load, infinitesimal, near);
+    const bool at_once = from.perturbed && from.packing.q == to.packing.q; // of length O(eps): it is 0
+    return near.decided() || at_once ? near : precise_decrease(from, to, load, infinitesimal, near);
 }
 
 template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);

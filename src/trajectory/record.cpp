@@ -171,10 +171,18 @@ template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, const
         return !end.unbounded && !(end.stress_error <= accuracy * std::max(std::abs(end.stress), largest));
     };
     for (double asked = vague; limit.ok() && worse_than(asked) && vertex.statics.climb(); asked = sharp) {
+        const std::vector<TieDecision> log = side != nullptr ? side->log : std::vector<TieDecision>();
         if (side != nullptr) {
             side->log.resize(settled); // the same question once more
         }
-        limit = find_limit(vertex.statics, sigma, direction, side);
+        auto again = find_limit(vertex.statics, sigma, direction, side);
+        if (!again.ok()) { // the vague answer is one
+            if (side != nullptr) {
+                side->log = log;
+            }
+            break;
+        }
+        limit = std::move(again);
     }
     return limit;
 }

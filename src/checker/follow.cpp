@@ -58,142 +58,195 @@ double gap_at(const Packing<2>& packing, const std::vector<double>& q, const Con
     return (c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i];
 }
 
+/// What a step meets: nothing, the end of the motion at a part of the step, or something that must not be there.
+struct Met {
+    bool lost = false; ///< the motion could not be computed
+    std::optional<double> end;
+    std::string wrong;
+};
+
+/// The walk along the motion on which all contacts but one stay closed.
+class Walk {
+  public:
+    Walk(const State<2>& from, const Motion& motion)
+        : from_(from), motion_(motion), turns_(motion.closed.kind == ContactKind::held),
+          tolerance_(1e-9 * from.packing.min_radius()), reach_(0.2 * from.packing.min_radius()),
+          kept_(from.packing, from.contacts, motion.solver), q_(from.packing.q) {}
+
+    Followed to_the_end() {
+        if (!kept_.square() || !(motion_.displacement > 0) || !std::isfinite(motion_.displacement)) {
+            return {};
+        }
+        const double step = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
+        const auto steps = static_cast<long>(std::min(8 * motion_.displacement / step + 16, 1e5));
+        std::vector<double> next;
+        for (long k = 0; k < steps; ++k) {
+            if (!move(step, next)) {
+                return {};
+            }
+            list_pairs(next);
+            const Met met = turns_ ? turn(next) : closing(next, k == 0);
+            if (met.lost || !met.wrong.empty()) {
+                return {{}, met.wrong};
+            }
+            if (met.end) {
+                return arrive(next, *met.end);
+            }
+            if (std::string wrong = closed_before(next); !wrong.empty()) {
+                return {{}, std::move(wrong)};
+            }
+            std::swap(q_, next);
+        }
+        return {};
+    }
+
+  private:
+    /// The next point. Contact `opened` opens in the first step; later the motion goes on in the same sense.
+    bool move(double step, std::vector<double>& next) {
+        constexpr double between = 0x1p-40; // accuracy of the points on the way
+        if (!kept_.motion(q_, motion_.opened, opening_)) {
+            return false;
+        }
+        Eigen::Index fastest = 0;
+        Eigen::VectorXd v = motion_.direction * opening_ / opening_.cwiseAbs().maxCoeff(&fastest);
+        if (velocity_.size() > 0 && v.dot(velocity_) < 0) {
+            v = -v;
+        }
+        velocity_ = v;
+        power_size_ = 0;
+        power_ = power(q_, velocity_, &power_size_);
+        powered_ = powered_ || power_ > 1e-9 * power_size_;
+        next = q_;
+        for (std::size_t d = 0; d < kept_.size(); ++d) {
+            next[kept_.coordinate(d)] += step * v(static_cast<Eigen::Index>(d));
+        }
+        return kept_.newton(next, System::Way{motion_.opened, fastest}, between);
+    }
+
+    /// Power of the load on a velocity; `size`: the sum of the absolute values of its terms is added.
+    [[nodiscard]] double power(const std::vector<double>& q, const Eigen::VectorXd& v, double* size = nullptr) const {
+        const std::vector<double> load = motion_.power_load(q);
+        double sum = 0;
+        for (std::size_t d = 0; d < kept_.size(); ++d) {
+            const double part = load[kept_.coordinate(d)] * v(static_cast<Eigen::Index>(d));
+            sum += part;
+            if (size != nullptr) {
+                *size += std::abs(part);
+            }
+        }
+        return sum;
+    }
+
+    /// The list of near pairs is made anew when a coordinate has moved far enough.
+    void list_pairs(const std::vector<double>& next) {
+        double moved = listed_at_.empty() ? reach_ : 0;
+        for (std::size_t c = 0; c < listed_at_.size(); ++c) {
+            moved = std::max(moved, std::abs(next[c] - listed_at_[c]));
+        }
+        if (moved >= reach_) {
+            pairs_ = near_pairs(from_.packing, q_, 2 * reach_);
+            listed_at_ = q_;
+        }
+    }
+
+    /// Does the power of the load turn on the way to `next`?
+    Met turn(const std::vector<double>& next) {
+        if (!kept_.motion(next, motion_.opened, opening_)) {
+            return {true, {}, {}};
+        }
+        const Eigen::VectorXd ahead = opening_.dot(velocity_) < 0 ? Eigen::VectorXd(-opening_) : opening_;
+        if (!powered_ || power(next, ahead) > 0) {
+            return {};
+        }
+        const auto c = static_cast<std::size_t>(motion_.closed.i);
+        const double way = next[c] - q_[c];
+        // The turn is within this step, or next to it as far as the power is rounded.
+        const double room = std::abs(way) + tolerance_;
+        if (motion_.held_at < std::min(q_[c], next[c]) - room || motion_.held_at > std::max(q_[c], next[c]) + room) {
+            return {false,
+                    {},
+                    fmt::format("the power of the load turns near {}, but {} is held at {}", q_[c],
+                                to_string<2>(motion_.closed), motion_.held_at)};
+        }
+        return {false, std::clamp(way != 0 ? (motion_.held_at - q_[c]) / way : 0, 0.0, 1.0), {}};
+    }
+
+    /// Does the contact close on the way to `next`?
+    [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
+        if (powered_ && power_ < -1e-6 * power_size_) {
+            return {false,
+                    {},
+                    fmt::format("the power of the load vanishes before {} closes", to_string<2>(motion_.closed))};
+        }
+        const double before = kept_.value(q_, motion_.closed);
+        const double after = kept_.value(next, motion_.closed);
+        // The opened contact itself, or one that touched from the start, must have opened first.
+        const bool from_start = first && (motion_.closed == from_.contacts[motion_.opened] ||
+                                          std::find(motion_.touching.begin(), motion_.touching.end(), motion_.closed) !=
+                                              motion_.touching.end());
+        if (after > 0 || from_start) {
+            return {};
+        }
+        return {false, before > 0 ? before / (before - after) : 1, {}};
+    }
+
+    /// Another pair that overlaps at `next`, as a message; empty: none.
+    [[nodiscard]] std::string closed_before(const std::vector<double>& next) const {
+        const auto kept = [&](const Contact& pair) {
+            return pair != from_.contacts[motion_.opened] &&
+                   std::find(from_.contacts.begin(), from_.contacts.end(), pair) != from_.contacts.end();
+        };
+        for (const Contact& pair : pairs_) {
+            if (pair != motion_.closed && gap_at(from_.packing, next, pair) < -tolerance_ && !kept(pair)) {
+                return fmt::format("{} close before {}", to_string<2>(pair), to_string<2>(motion_.closed));
+            }
+        }
+        return {};
+    }
+
+    /// The vertex of the contacts at the end, near a point of the last step.
+    [[nodiscard]] Followed arrive(const std::vector<double>& next, double part) const {
+        std::vector<Contact> contacts = from_.contacts;
+        contacts[motion_.opened] = motion_.closed;
+        System end(from_.packing, contacts);
+        if (turns_) {
+            end.hold(motion_.closed, motion_.held_at);
+        }
+        std::vector<double> q = q_;
+        for (std::size_t i = 0; i < q.size(); ++i) {
+            q[i] += part * (next[i] - q[i]);
+        }
+        if (!end.newton(q, {}, 0x1p-46)) {
+            return {};
+        }
+        for (const Contact& contact : contacts) { // held means held, rounding apart
+            if (contact.kind == ContactKind::held) {
+                q[static_cast<std::size_t>(contact.i)] = end.held_value(contact);
+            }
+        }
+        return {q, {}, end.solver()};
+    }
+
+    const State<2>& from_;
+    const Motion& motion_;
+    bool turns_;
+    double tolerance_; ///< of gaps that are looked at, not proved
+    double reach_;
+    System kept_;
+    std::vector<double> q_;
+    std::vector<double> listed_at_; ///< coordinates at which pairs_ was made
+    std::vector<Contact> pairs_;
+    Eigen::VectorXd opening_;  ///< the motion on which the gap alone grows
+    Eigen::VectorXd velocity_; ///< of the last step
+    bool powered_ = false;     ///< the power was positive
+    double power_ = 0;
+    double power_size_ = 0;
+};
+
 } // namespace
 
 Followed follow(const State<2>& from, const Motion& motion) {
-    const bool turns = motion.closed.kind == ContactKind::held;
-    const std::size_t opened = motion.opened;
-    System kept(from.packing, from.contacts, motion.solver);
-    std::vector<Contact> contacts = from.contacts;
-    contacts[opened] = motion.closed;
-    System end(from.packing, contacts);
-    if (turns) {
-        end.hold(motion.closed, motion.held_at);
-    }
-    if (!kept.square() || !(motion.displacement > 0) || !std::isfinite(motion.displacement)) {
-        return {};
-    }
-    const double unit = from.packing.min_radius();
-    const double step = std::min(motion.displacement / 4, motion.step * unit);
-    const auto steps = static_cast<long>(std::min(8 * motion.displacement / step + 16, 1e5));
-    const double tolerance = 1e-9 * unit; // of gaps that are looked at, not proved
-    constexpr double between = 0x1p-40;   // accuracy of the points on the way
-    const double reach = 0.2 * unit;
-    std::vector<double> q = from.packing.q;
-    std::vector<double> listed_at;
-    std::vector<Contact> pairs;
-    Eigen::VectorXd opening; // the motion on which the gap alone grows
-    Eigen::VectorXd previous;
-    bool powered = false;
-    double power = 0;
-    for (long k = 0; k < steps; ++k) {
-        // The motion: contact `opened` opens in the first step; later it goes on in the same sense.
-        if (!kept.motion(q, opened, opening)) {
-            return {};
-        }
-        Eigen::Index fastest = 0;
-        Eigen::VectorXd v = motion.direction * opening / opening.cwiseAbs().maxCoeff(&fastest);
-        if (previous.size() > 0 && v.dot(previous) < 0) {
-            v = -v;
-        }
-        previous = v;
-        double size = 0;
-        power = 0;
-        const std::vector<double> load_here = motion.power_load(q);
-        for (std::size_t d = 0; d < kept.size(); ++d) {
-            const double part = load_here[kept.coordinate(d)] * v(static_cast<Eigen::Index>(d));
-            power += part;
-            size += std::abs(part);
-        }
-        powered = powered || power > 1e-9 * size;
-        std::vector<double> next = q;
-        for (std::size_t d = 0; d < kept.size(); ++d) {
-            next[kept.coordinate(d)] += step * v(static_cast<Eigen::Index>(d));
-        }
-        if (!kept.newton(next, System::Way{opened, fastest}, between)) {
-            return {};
-        }
-        double moved = listed_at.empty() ? reach : 0;
-        for (std::size_t c = 0; c < listed_at.size(); ++c) {
-            moved = std::max(moved, std::abs(next[c] - listed_at[c]));
-        }
-        if (moved >= reach) {
-            pairs = near_pairs(from.packing, q, 2 * reach);
-            listed_at = q;
-        }
-        bool closes = false;
-        if (turns) {
-            // The power at the next point, with the motion there.
-            if (!kept.motion(next, opened, opening)) {
-                return {};
-            }
-            Eigen::VectorXd ahead = opening;
-            if (ahead.dot(v) < 0) {
-                ahead = -ahead;
-            }
-            double there = 0;
-            const std::vector<double> load_there = motion.power_load(next);
-            for (std::size_t d = 0; d < kept.size(); ++d) {
-                there += load_there[kept.coordinate(d)] * ahead(static_cast<Eigen::Index>(d));
-            }
-            closes = powered && there <= 0;
-            if (closes) {
-                const auto c = static_cast<std::size_t>(motion.closed.i);
-                const double way = next[c] - q[c];
-                // The turn is within this step, or next to it as far as the power is rounded.
-                const double room = std::abs(way) + tolerance;
-                if (motion.held_at < std::min(q[c], next[c]) - room ||
-                    motion.held_at > std::max(q[c], next[c]) + room) {
-                    return {{},
-                            fmt::format("the power of the load turns near {}, but {} is held at {}", q[c],
-                                        to_string<2>(motion.closed), motion.held_at)};
-                }
-                const double part = way != 0 ? (motion.held_at - q[c]) / way : 0;
-                for (std::size_t i = 0; i < q.size(); ++i) {
-                    q[i] += std::clamp(part, 0.0, 1.0) * (next[i] - q[i]);
-                }
-            }
-        } else {
-            if (powered && power < -1e-6 * size) {
-                return {{},
-                        fmt::format("the power of the load vanishes before {} closes", to_string<2>(motion.closed))};
-            }
-            const double before = kept.value(q, motion.closed);
-            const double after = kept.value(next, motion.closed);
-            // The opened contact itself, or one that touched from the start, must have opened first.
-            const bool from_start = k == 0 && (motion.closed == from.contacts[opened] ||
-                                               std::find(motion.touching.begin(), motion.touching.end(),
-                                                         motion.closed) != motion.touching.end());
-            closes = after <= 0 && !from_start;
-            if (closes) {
-                const double part = before > 0 ? before / (before - after) : 1;
-                for (std::size_t i = 0; i < q.size(); ++i) {
-                    q[i] += part * (next[i] - q[i]);
-                }
-            }
-        }
-        if (closes) {
-            if (!end.newton(q, {}, 0x1p-46)) {
-                return {};
-            }
-            for (std::size_t l = 0; l < contacts.size(); ++l) { // held means held, rounding apart
-                if (contacts[l].kind == ContactKind::held) {
-                    q[static_cast<std::size_t>(contacts[l].i)] = end.held_value(contacts[l]);
-                }
-            }
-            return {q, {}, end.solver()};
-        }
-        for (const Contact& pair : pairs) {
-            if (pair == motion.closed || gap_at(from.packing, next, pair) >= -tolerance ||
-                (std::find(from.contacts.begin(), from.contacts.end(), pair) != from.contacts.end() &&
-                 pair != from.contacts[opened])) {
-                continue;
-            }
-            return {{}, fmt::format("{} close before {}", to_string<2>(pair), to_string<2>(motion.closed))};
-        }
-        q = std::move(next);
-    }
-    return {};
+    return Walk(from, motion).to_the_end();
 }
 
 } // namespace isostat::checker

@@ -175,11 +175,57 @@ class Replay {
         return static_cast<std::size_t>(&event - records_.events.data());
     }
 
+    /// What a record says opens and closes at `here_`.
+    struct Change {
+        std::size_t position; ///< of what opens among the contacts
+        Contact closed;
+        bool rattles = false; ///< it opens under the infinitesimal loads
+        int direction = +1;   ///< -1: a held coordinate that falls
+        ExactLoad load{};     ///< at which it opens
+
+        [[nodiscard]] Opening opening() const { return {position, direction, rattles}; }
+    };
+
     /// One arc from `here_`, which becomes its end. False: undecided, or wrong.
     bool arc(const EventRecord& event) {
         if (!records_.certified_arcs) { // arcs with a witness are proved from it
             foresight_.look_ahead(here_, index_of(event));
         }
+        std::optional<Change> change = change_of(event);
+        if (!change) {
+            return false;
+        }
+        if (event.power_turn && !event.held_at) {
+            return judged(Objection{false, "the record does not say where the coordinate is held"}, event.where);
+        }
+        const bool opening = judged(asked([&] { return check_opening(event, *change); }), event.where);
+        if (stopped()) {
+            return false;
+        }
+        find_direction(event, *change);
+        if (here_.first && !judged(check_step(here_, event, change->position, change->direction), event.where)) {
+            return false;
+        }
+        Place next;
+        const bool stays =
+            std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+        const bool proved = !stays && records_.certified_arcs && prove_way_to(next, event, *change);
+        const Objections open = proved  ? Objections()
+                                : stays ? stay(next, event, *change)
+                                        : arrive(next, event, *change);
+        if (!check_arrival(next, event, *change, open)) {
+            return false;
+        }
+        result_.ties_checked += static_cast<int>(event.ties.size());
+        result_.turns_checked += event.power_turn ? 1 : 0;
+        here_ = std::move(next);
+        result_.arcs_proved += opening ? 1 : 0;
+        result_.ways_proved += proved || stays ? 1 : 0;
+        return true;
+    }
+
+    /// Nothing: the names of the record cannot be, and the replay stops.
+    std::optional<Change> change_of(const EventRecord& event) {
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
         const std::vector<Contact>& contacts = here_.state->contacts;
@@ -194,91 +240,85 @@ class Replay {
             !expect((event.arc == 1) == (event.kind == "limit"), event.where,
                     fmt::format("the kind is '{}' of arc {}: the first one, and no other, starts at a limit",
                                 event.kind, event.arc))) {
-            return false;
+            return {};
         }
-        const auto position = static_cast<std::size_t>(at - contacts.begin());
-        if (event.power_turn && !event.held_at) {
-            return judged(Objection{false, "the record does not say where the coordinate is held"}, event.where);
-        }
-        ExactLoad load = here_.load;
+        return Change{static_cast<std::size_t>(at - contacts.begin()), *closed, false, +1, here_.load};
+    }
+
+    /// Does the limit, or the rule, open what the record says? At a limit `change` gets its exact load.
+    Objections check_opening(const EventRecord& event, Change& change) {
         const double bound = before_->bound(event.stress > here_.stress() ? "sigma2_high" : "sigma2_low");
-        const bool opening = judged(asked([&] {
-                                        return event.kind == "limit"
-                                                   ? check_limit(here_, event, bound, position, load)
-                                                   : check_rule(here_, event, position, records_.rule);
-                                    }),
-                                    event.where);
-        if (stopped()) {
-            return false;
-        }
-        // A coordinate of a rattler is let go by the infinitesimal loads, as its contacts are.
+        return event.kind == "limit" ? check_limit(here_, event, bound, change.position, change.load)
+                                     : check_rule(here_, event, change.position, records_.rule);
+    }
+
+    /// A coordinate of a rattler is let go by the infinitesimal loads, as its contacts are.
+    void find_direction(const EventRecord& event, Change& change) const {
         const Evidence& evidence = *here_.evidence;
-        const bool held = opened->kind == ContactKind::held;
-        const bool rattles = event.kind == "rattler" || (held && evidence.forces[position].has_zero());
-        const Range& multiplier = (rattles ? evidence.infinitesimal() : evidence.forces)[position];
-        const int direction = held && multiplier.positive() ? -1 : +1;
-        if (here_.first && !judged(check_step(here_, event, position, direction), event.where)) {
-            return false;
-        }
-        const int fresh = event.power_turn ? static_cast<int>(position) : -1;
-        Place next;
-        bool proved = false; // the way, and with it the end
-        const bool stays =
-            std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
-        if (!stays && records_.certified_arcs) {
-            const std::optional<Witness> witness = witnesses_.of(event.step);
-            Objections missing = Objection{false, "the way is not proved: there is no witness"};
-            if (witness) {
-                const Way way{position, direction, rattles, event.kind == "limit", event.stress, *witness};
-                State<2> state = *here_.state;
-                missing = end_of(here_, *closed, way, state);
-                missing = missing ? missing : make_place(state, next, load, fresh);
-                missing = missing ? missing : prove_way(here_, next, way);
-            }
-            proved = !missing;
-            if (missing) {
-                leave(event.where, missing->text);
-                next = Place();
-            }
-        }
-        Objections open;
-        if (stays) {
+        const bool held = here_.state->contacts[change.position].kind == ContactKind::held;
+        change.rattles = event.kind == "rattler" || (held && evidence.forces[change.position].has_zero());
+        const Range& multiplier = (change.rattles ? evidence.infinitesimal() : evidence.forces)[change.position];
+        change.direction = held && multiplier.positive() ? -1 : +1;
+    }
+
+    /// Among the contacts at the end: what a power turn holds, or -1.
+    static int fresh(const EventRecord& event, const Change& change) {
+        return event.power_turn ? static_cast<int>(change.position) : -1;
+    }
+
+    /// The end from the witness of the way. False: not proved, which is noted.
+    bool prove_way_to(Place& next, const EventRecord& event, const Change& change) {
+        const std::optional<Witness> witness = witnesses_.of(event.step);
+        Objections missing = Objection{false, "the way is not proved: there is no witness"};
+        if (witness) {
+            const Way way{change.position,       change.direction, change.rattles,
+                          event.kind == "limit", event.stress,     *witness};
             State<2> state = *here_.state;
-            state.contacts[position] = *closed;
-            state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
-            open = make_place(std::move(state), next, load, fresh);
-        } else if (!proved) {
-            Arrival arrival = foresight_.arrive(here_, index_of(event), {position, direction, rattles}, load);
-            if (!arrival.followed.wrong.empty()) {
-                return judged(Objection{false, arrival.followed.wrong + ", as far as steps in double tell"},
-                              event.where);
-            }
-            if (!arrival.followed.end) {
-                return judged(
-                    Objection{false, fmt::format("the motion that opens {} was not found to {} {}", event.opened,
-                                                 event.power_turn ? "turn with" : "close", event.closed)},
-                    event.where);
-            }
-            open = std::move(arrival.open);
-            next = std::move(arrival.place);
+            missing = end_of(here_, change.closed, way, state);
+            missing = missing ? missing : make_place(state, next, change.load, fresh(event, change));
+            missing = missing ? missing : prove_way(here_, next, way);
         }
+        if (missing) {
+            leave(event.where, missing->text);
+            next = Place();
+        }
+        return !missing;
+    }
+
+    /// The end where only the list changes.
+    Objections stay(Place& next, const EventRecord& event, const Change& change) {
+        State<2> state = *here_.state;
+        state.contacts[change.position] = change.closed;
+        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
+        return make_place(std::move(state), next, change.load, fresh(event, change));
+    }
+
+    /// The end where steps in double lead.
+    Objections arrive(Place& next, const EventRecord& event, const Change& change) {
+        Arrival arrival = foresight_.arrive(here_, index_of(event), change.opening(), change.load);
+        if (!arrival.followed.wrong.empty()) {
+            return Objection{false, arrival.followed.wrong + ", as far as steps in double tell"};
+        }
+        if (!arrival.followed.end) {
+            return Objection{false, fmt::format("the motion that opens {} was not found to {} {}", event.opened,
+                                                event.power_turn ? "turn with" : "close", event.closed)};
+        }
+        next = std::move(arrival.place);
+        return std::move(arrival.open);
+    }
+
+    /// Is the end what the record says? `open`: what its place leaves open.
+    bool check_arrival(Place& next, const EventRecord& event, const Change& change, Objections open) {
         if (open && !open->wrong && next.evidence && next.evidence->vertex.found && !next.first) {
             open = sharpen(next, most_digits);
         }
-        if (!judged(open, event.where) ||
-            !judged(asked([&] { return check_end(here_, next, event, rattles); }, &next), event.where) ||
-            (event.power_turn && !judged(check_turn(next, event, rattles), event.where)) ||
-            (next.first && !judged(check_ties(here_, next, event, position, direction), event.where)) ||
-            !expect(next.first != nullptr || event.ties.empty(), event.where,
-                    "first-order decisions in a run without a direction of the radii")) {
-            return false;
-        }
-        result_.ties_checked += static_cast<int>(event.ties.size());
-        result_.turns_checked += event.power_turn ? 1 : 0;
-        here_ = std::move(next);
-        result_.arcs_proved += opening ? 1 : 0;
-        result_.ways_proved += proved || stays ? 1 : 0;
-        return true;
+        return judged(open, event.where) &&
+               judged(asked([&] { return check_end(here_, next, event, change.rattles); }, &next), event.where) &&
+               (!event.power_turn || judged(check_turn(next, event, change.rattles), event.where)) &&
+               (!next.first ||
+                judged(check_ties(here_, next, event, change.position, change.direction), event.where)) &&
+               expect(next.first != nullptr || event.ties.empty(), event.where,
+                      "first-order decisions in a run without a direction of the radii");
     }
 
     /// A row without arcs: the same vertex under another load.

@@ -77,8 +77,9 @@ class Walk {
         if (!kept_.square() || !(motion_.displacement > 0) || !std::isfinite(motion_.displacement)) {
             return {};
         }
-        const double step = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
+        double step = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
         const auto steps = static_cast<long>(std::min(8 * motion_.displacement / step + 16, 1e5));
+        int zooms = 0;
         std::vector<double> next;
         for (long k = 0; k < steps; ++k) {
             if (!move(step, next)) {
@@ -88,6 +89,11 @@ class Walk {
             const Met met = turns_ ? turn(next) : closing(next, k == 0);
             if (met.lost || !met.wrong.empty()) {
                 return {{}, met.wrong};
+            }
+            if (met.end && zooms < motion_.zooms) { // two ends may be near each other
+                ++zooms;
+                step /= 16;
+                continue;
             }
             if (met.end) {
                 return arrive(next, *met.end);

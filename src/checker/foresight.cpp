@@ -79,17 +79,30 @@ void Foresight::look_ahead(const Place& from, std::size_t event) {
     }
 }
 
+Foresight::Start Foresight::start_at(const Place& from, const ExactLoad& load) {
+    Start start{*from.state, from.evidence->solver, {}, load};
+    for (const Gap& gap : from.touching) {
+        start.touching.push_back(gap.pair);
+    }
+    return start;
+}
+
 Arrival Foresight::arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load) {
     if (ahead_.empty() || ahead_.front().event != event || !(ahead_.front().opening == opening)) {
         forget();
-        Start start{*from.state, from.evidence->solver, {}, load};
-        for (const Gap& gap : from.touching) {
-            start.touching.push_back(gap.pair);
-        }
-        ahead_.push_back(arc_of(start, event, opening));
+        ahead_.push_back(arc_of(start_at(from, load), event, opening));
     }
     Arc arc = std::move(ahead_.front());
     ahead_.pop_front();
+    return end_of(std::move(arc));
+}
+
+Arrival Foresight::arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load) {
+    forget();
+    return end_of(arc_of(start_at(from, load), event, opening, true));
+}
+
+Arrival Foresight::end_of(Arc arc) {
     Arrival arrival{std::move(arc.followed), {}, {}};
     if (arrival.followed.end) {
         Proved proved = arc.proof.get();
@@ -102,7 +115,7 @@ Arrival Foresight::arrive(const Place& from, std::size_t event, const Opening& o
     return arrival;
 }
 
-Foresight::Arc Foresight::arc_of(const Start& from, std::size_t event, const Opening& opening) const {
+Foresight::Arc Foresight::arc_of(const Start& from, std::size_t event, const Opening& opening, bool slowly) const {
     const EventRecord& record = records_.events[event];
     Arc arc{event, opening, {}, from.state, {}};
     Motion motion;
@@ -119,9 +132,12 @@ Foresight::Arc Foresight::arc_of(const Start& from, std::size_t event, const Ope
         at.q = q;
         return load_at(load, at, opening.rattles);
     };
-    arc.followed = follow(from.state, motion);
+    if (!slowly) {
+        arc.followed = follow(from.state, motion);
+    }
     if (!arc.followed.end) {
         motion.step /= 16;
+        motion.zooms = slowly ? 3 : 0;
         arc.followed = follow(from.state, motion);
     }
     if (!arc.followed.end) {

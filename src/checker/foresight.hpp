@@ -37,6 +37,8 @@ class Foresight {
     void look_ahead(const Place& from, std::size_t event);
     /// The arc of a record. What was foreseen is taken if it began in the same way and from the same vertex.
     Arrival arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
+    /// The same in steps a sixteenth as long, and shorter ones near the end.
+    Arrival arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
     /// The replay goes on elsewhere.
     void forget() { ahead_.clear(); }
 
@@ -58,7 +60,9 @@ class Foresight {
         std::vector<Contact> touching{};
         ExactLoad load{};
     };
-    [[nodiscard]] Arc arc_of(const Start& from, std::size_t event, const Opening& opening) const;
+    static Start start_at(const Place& from, const ExactLoad& load);
+    [[nodiscard]] Arc arc_of(const Start& from, std::size_t event, const Opening& opening, bool slowly = false) const;
+    Arrival end_of(Arc arc);
     [[nodiscard]] bool in_order(std::size_t event) const;
 
     const RunRecords& records_;

@@ -104,8 +104,9 @@ struct GapCourses::Motion {
     double rate_apart = 0;
 };
 
-GapCourses::GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened)
-    : moving_(moving), kept_(contacts.begin(), contacts.end()) {
+GapCourses::GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened,
+                       std::optional<std::vector<Contact>> watched)
+    : moving_(moving), kept_(contacts.begin(), contacts.end()), watched_(std::move(watched)) {
     kept_.erase(opened);
     if (opened.kind != ContactKind::held) {
         last_[opened] = Course::zero;
@@ -213,7 +214,7 @@ std::vector<Contact> GapCourses::near(const Tube& tube, double h) const {
 }
 
 bool GapCourses::look(const Tube& tube, double from, double to) {
-    const std::vector<Contact> pairs = near(tube, std::max(std::abs(from), std::abs(to)));
+    const std::vector<Contact> pairs = watched_ ? *watched_ : near(tube, std::max(std::abs(from), std::abs(to)));
     // What was seen falling and is not near any more stays where a look at it would put it.
     for (const Contact& pair : pairs) {
         if (!look(tube, pair, from, to)) {

@@ -5,8 +5,10 @@
 #include "checker/tube.hpp"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace isostat::checker {
 
@@ -15,8 +17,10 @@ enum class Course : unsigned char { zero, rising, falling };
 
 class GapCourses {
   public:
-    GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened);
-    /// Every pair but the kept contacts, for s in [from, to] on a tube. False: no sign of the gap nor of its rate was
+    /// `watched`: the pairs that are looked at; nothing: every pair but the kept contacts.
+    GapCourses(const Moving& moving, const std::vector<Contact>& contacts, const Contact& opened,
+               std::optional<std::vector<Contact>> watched = {});
+    /// Those pairs, for s in [from, to] on a tube. False: no sign of the gap nor of its rate was
     /// proved, `trouble()` says where.
     bool look(const Tube& tube, double from, double to);
     [[nodiscard]] bool falls(const Contact& pair) const;
@@ -30,6 +34,7 @@ class GapCourses {
 
     const Moving& moving_;
     std::set<Contact> kept_;
+    std::optional<std::vector<Contact>> watched_;
     std::map<Contact, Course> last_;
     std::string trouble_;
 };

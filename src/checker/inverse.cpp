@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <numeric>
+#include <optional>
+#include <utility>
 
 namespace isostat::checker {
 
@@ -88,9 +90,8 @@ long bits_of_count(int count) {
     return bits(Integer(count));
 }
 
-/// Rows of R as 64-bit integers times 2^-t, t chosen row by row so that no product or sum leaves 128 bits.
-InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const Columns<Integer>& exact) {
-    const int n = problem.dofs();
+/// The columns in 64 bits, and the bits of their largest entry; nothing: an entry has more than 60.
+std::optional<std::pair<Columns<std::int64_t>, long>> narrow(const Columns<Integer>& exact) {
     Columns<std::int64_t> a;
     a.start = exact.start;
     a.contact = exact.contact;
@@ -102,18 +103,90 @@ InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const C
         }
         a.value.push_back(value.get_si());
     }
-    // |r_l| < 2^row_bits, |a| < 2^entry_bits, at most n terms and the identity: below 2^126.
-    const long row_bits = std::min(62L, 124 - entry_bits - bits_of_count(n));
-    const long largest_shift = 125 - bits_of_count(n);
-    if (row_bits < 30) {
+    return {{std::move(a), entry_bits}};
+}
+
+/// Rows of R as 64-bit integers times 2^-t, t chosen row by row so that no product or sum leaves 128 bits.
+class Fixed64Rows {
+  public:
+    /// `rescale`: x of the solver is R in units of 2^rescale.
+    Fixed64Rows(const Problem& problem, const Columns<std::int64_t>& columns, long entry_bits, long rescale)
+        : problem_(problem), columns_(columns), rescale_(rescale),
+          row_bits_(std::min(62L, 124 - entry_bits - bits_of_count(problem.dofs()))),
+          largest_shift_(125 - bits_of_count(problem.dofs())), r_(static_cast<std::size_t>(problem.dofs())),
+          sums_(problem.dofs()) {}
+
+    /// |r_l| < 2^row_bits, |a| < 2^entry_bits, at most n terms and the identity: below 2^126. False: too few bits are
+    /// left for r.
+    [[nodiscard]] bool fits() const { return row_bits_ >= 30; }
+    [[nodiscard]] InverseBound bound() const { return sums_.bound(problem_, "64-bit integers"); }
+
+    /// Adds a row as the solver finds it. False: it is not finite, or its residual reaches 1.
+    template <class Row> bool add(int row, const Row& x) {
+        const double largest = x.template lpNorm<Eigen::Infinity>();
+        if (!(largest > 0) || !x.allFinite()) {
+            return false;
+        }
+        const long shift = std::min(row_bits_ - 1 - std::ilogb(largest) - rescale_, largest_shift_);
+        if (shift < 1) {
+            return false;
+        }
+        const double factor = std::ldexp(1.0, static_cast<int>(shift + rescale_));
+        const double down = std::ldexp(1.0, static_cast<int>(-shift));
+        WideMagnitude row_sum = 0;
+        WideMagnitude quadratic_sum = 0;
+        for (std::size_t l = 0; l < r_.size(); ++l) {
+            r_[l] = std::llrint(x(static_cast<Eigen::Index>(l)) * factor);
+            const WideMagnitude size = magnitude(r_[l]);
+            row_sum += size;
+            quadratic_sum += problem_.rows[l].quadratic ? size : 0;
+            sums_.column[l] += static_cast<double>(std::abs(r_[l])) * down;
+        }
+        sums_.row = std::max(sums_.row, static_cast<double>(row_sum) * down);
+        sums_.quadratic = std::max(sums_.quadratic, static_cast<double>(quadratic_sum) * down);
+        return add_residual(row, shift, down);
+    }
+
+  private:
+    /// 2^shift e_row - r A. False: an entry reaches 2^shift.
+    bool add_residual(int row, long shift, double down) {
+        const WideMagnitude one = static_cast<WideMagnitude>(1) << static_cast<unsigned>(shift);
+        WideMagnitude sum = 0;
+        for (std::size_t j = 0; j < r_.size(); ++j) {
+            Wide s = j == static_cast<std::size_t>(row) ? -static_cast<Wide>(one) : 0;
+            for (std::size_t p = columns_.start[j]; p < columns_.start[j + 1]; ++p) {
+                s += static_cast<Wide>(r_[static_cast<std::size_t>(columns_.contact[p])]) * columns_.value[p];
+            }
+            const WideMagnitude size = magnitude(s);
+            if (size >= one) {
+                return false;
+            }
+            sum += size;
+            sums_.residual_column[j] += static_cast<double>(size) * down;
+        }
+        sums_.residual_row = std::max(sums_.residual_row, static_cast<double>(sum) * down);
+        return true;
+    }
+
+    const Problem& problem_;
+    const Columns<std::int64_t>& columns_;
+    long rescale_, row_bits_, largest_shift_;
+    std::vector<std::int64_t> r_; ///< the row in work
+    Sums sums_;
+};
+
+InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const Columns<Integer>& exact) {
+    const int n = problem.dofs();
+    const auto narrowed = narrow(exact);
+    if (!narrowed) {
         return {};
     }
     // x of the solver is (A / 2^scale)^-1 in units of `fine`; in the units here the entries of A are 2^-spare as large.
-    const long rescale = problem.spare - solver.scale(problem);
-
-    Sums sums(n);
+    Fixed64Rows sums(problem, narrowed->first, narrowed->second, problem.spare - solver.scale(problem));
+    if (!sums.fits()) {
+        return {};
+    }
     constexpr int block = 16;
-    std::vector<std::int64_t> r(static_cast<std::size_t>(n));
     for (int first = 0; first < n; first += block) {
         const int width = std::min(block, n - first);
         Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(n, width);
@@ -122,45 +195,12 @@ InverseBound bound_fixed64(const Problem& problem, const Solver& solver, const C
         }
         const Eigen::MatrixXd rows = solver.solve_transposed(unit);
         for (int k = 0; k < width; ++k) {
-            const double largest = rows.col(k).lpNorm<Eigen::Infinity>();
-            if (!(largest > 0) || !rows.col(k).allFinite()) {
+            if (!sums.add(first + k, rows.col(k))) {
                 return {};
             }
-            const long shift = std::min(row_bits - 1 - std::ilogb(largest) - rescale, largest_shift);
-            if (shift < 1) {
-                return {};
-            }
-            const double factor = std::ldexp(1.0, static_cast<int>(shift + rescale));
-            WideMagnitude row_sum = 0;
-            WideMagnitude quadratic_sum = 0;
-            const double down = std::ldexp(1.0, static_cast<int>(-shift));
-            for (std::size_t l = 0; l < r.size(); ++l) {
-                r[l] = std::llrint(rows(static_cast<Eigen::Index>(l), k) * factor);
-                const WideMagnitude size = magnitude(r[l]);
-                row_sum += size;
-                quadratic_sum += problem.rows[l].quadratic ? size : 0;
-                sums.column[l] += static_cast<double>(std::abs(r[l])) * down;
-            }
-            const WideMagnitude one = static_cast<WideMagnitude>(1) << static_cast<unsigned>(shift);
-            WideMagnitude residual_sum = 0;
-            for (std::size_t j = 0; j < r.size(); ++j) {
-                Wide s = j == static_cast<std::size_t>(first + k) ? -static_cast<Wide>(one) : 0;
-                for (std::size_t p = a.start[j]; p < a.start[j + 1]; ++p) {
-                    s += static_cast<Wide>(r[static_cast<std::size_t>(a.contact[p])]) * a.value[p];
-                }
-                const WideMagnitude size = magnitude(s);
-                if (size >= one) {
-                    return {};
-                }
-                residual_sum += size;
-                sums.residual_column[j] += static_cast<double>(size) * down;
-            }
-            sums.row = std::max(sums.row, static_cast<double>(row_sum) * down);
-            sums.quadratic = std::max(sums.quadratic, static_cast<double>(quadratic_sum) * down);
-            sums.residual_row = std::max(sums.residual_row, static_cast<double>(residual_sum) * down);
         }
     }
-    return sums.bound(problem, "64-bit integers");
+    return sums.bound();
 }
 
 /// Rows of R as GMP integers times 2^-shift.

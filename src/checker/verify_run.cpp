@@ -22,6 +22,7 @@ class Replay {
         : records_(records), result_(result), witnesses_(records.directory / witness_records), foresight_(records) {
         result.arcs = static_cast<int>(records.events.size());
         result.equilibria = static_cast<int>(records.equilibria.size());
+        reached_.resize(records.equilibria.size());
     }
 
     void run(const std::function<void(const VerificationProgress&)>& progress) {
@@ -32,7 +33,11 @@ class Replay {
                         fmt::format("the number is {}, expected {}", line.integer("number"), k))) {
                 return;
             }
+            const RunVerification before = result_;
             k == 0 ? start(line) : equilibrium(line);
+            if (stopped() && k > 0) {
+                again(static_cast<int>(k), before);
+            }
             if (stopped()) {
                 return;
             }
@@ -102,9 +107,41 @@ class Replay {
         }
     }
 
+    /// What contradicts a row, or an arc towards it, is believed only where every arc from the last stored state on is
+    /// proved to end where it was found to: steps in double may have led to another vertex of the same contacts.
+    void again(int number, const RunVerification& before) {
+        const std::string seen = std::exchange(result_.wrong, {});
+        std::vector<int> rows{number};
+        for (int k = previous_of(number); k > 0 && k < rows.back() && !reached_[static_cast<std::size_t>(k)].stored;
+             k = previous_of(k)) {
+            rows.push_back(k);
+        }
+        certain_ = true;
+        here_number_ = -1; // from the state that is kept
+        for (auto row = rows.rbegin(); row != rows.rend() && !stopped(); ++row) {
+            result_ = before;
+            event_ = reached_[static_cast<std::size_t>(*row)].first_event;
+            arcs_here_ = 0;
+            equilibrium(records_.equilibria[static_cast<std::size_t>(*row)]);
+        }
+        certain_ = false;
+        if (!stopped() && result_.undecided.size() > before.undecided.size()) {
+            leave(
+                records_.equilibria[static_cast<std::size_t>(number)].where,
+                fmt::format(
+                    "steps in double ended where the records seem wrong ({}), but not provably at the ends of the arcs",
+                    seen));
+        }
+    }
+
+    [[nodiscard]] int previous_of(int number) const {
+        return records_.equilibria[static_cast<std::size_t>(number)].integer("previous");
+    }
+
     /// The events of one rearrangement, which must be numbered in order.
     std::vector<const EventRecord*> events_of(const EquilibriumLine& line) {
         std::vector<const EventRecord*> events;
+        reached_[static_cast<std::size_t>(line.integer("number"))].first_event = event_;
         while (event_ < records_.events.size() && records_.events[event_].equilibrium == line.integer("number")) {
             const EventRecord& event = records_.events[event_++];
             events.push_back(&event);
@@ -146,9 +183,9 @@ class Replay {
         before_ = &records_.equilibria[static_cast<std::size_t>(previous)];
         if (here_number_ != previous || !here_.state) {
             here_ = {};
-            const std::optional<State<2>>& from = reached_[static_cast<std::size_t>(previous)];
-            if (from) {
-                go_to(*from, line.where, reached_load_[static_cast<std::size_t>(previous)]);
+            const Reached& from = reached_[static_cast<std::size_t>(previous)];
+            if (from.state) {
+                go_to(*from.state, line.where, from.load);
             } else {
                 leave(line.where, "the equilibrium before was not reached by the replay");
             }
@@ -210,9 +247,10 @@ class Replay {
         const bool stays =
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
         const bool proved = !stays && records_.certified_arcs && prove_way_to(next, event, *change);
-        const Objections open = proved  ? Objections()
-                                : stays ? stay(next, event, *change)
-                                        : arrive(next, event, *change);
+        const Objections open = proved     ? Objections()
+                                : stays    ? stay(next, event, *change)
+                                : certain_ ? arrive_certainly(next, event, *change)
+                                           : arrive(next, event, *change, false);
         if (!check_arrival(next, event, *change, open)) {
             return false;
         }
@@ -294,8 +332,9 @@ class Replay {
     }
 
     /// The end where steps in double lead.
-    Objections arrive(Place& next, const EventRecord& event, const Change& change) {
-        Arrival arrival = foresight_.arrive(here_, index_of(event), change.opening(), change.load);
+    Objections arrive(Place& next, const EventRecord& event, const Change& change, bool slowly) {
+        Arrival arrival = slowly ? foresight_.arrive_slowly(here_, index_of(event), change.opening(), change.load)
+                                 : foresight_.arrive(here_, index_of(event), change.opening(), change.load);
         if (!arrival.followed.wrong.empty()) {
             return Objection{false, arrival.followed.wrong + ", as far as steps in double tell"};
         }
@@ -305,6 +344,23 @@ class Replay {
         }
         next = std::move(arrival.place);
         return std::move(arrival.open);
+    }
+
+    /// The same, at a vertex that is proved to be where the arc ends if it ends with what the record says.
+    Objections arrive_certainly(Place& next, const EventRecord& event, const Change& change) {
+        const Witness none{};
+        const Way way{change.position, change.direction, change.rattles, event.kind == "limit", event.stress, none};
+        Objections missing;
+        for (const bool slowly : {false, true}) {
+            Objections open = arrive(next, event, change, slowly);
+            const bool found = next.evidence && next.evidence->vertex.found;
+            missing = found ? prove_end(here_, next, way) : open;
+            if (found && !missing) {
+                return open;
+            }
+            next = Place();
+        }
+        return missing ? missing : Objection{false, "the end was not found"};
     }
 
     /// Is the end what the record says? `open`: what its place leaves open.
@@ -342,26 +398,27 @@ class Replay {
 
     /// Checks the row, and the stored state if there is one.
     void close(const EquilibriumLine& line) {
-        reached_.emplace_back();
-        reached_load_.emplace_back();
+        const int number = line.integer("number");
+        Reached& reached = reached_[static_cast<std::size_t>(number)];
+        reached.state.reset();
         if (!here_.state) {
             return;
         }
-        const int number = line.integer("number");
         if (here_.first && here_.ties.empty() && (here_.load.shift.lower != 0 || here_.load.shift.upper != 0)) {
             go_to(State<2>(*here_.state), line.where, {}); // no force vanishes: the load is the stored one
             if (!here_.state) {
                 return;
             }
         }
+        const std::string state = fmt::format("states/eq_{:06}.json", number);
         const bool row = judged(asked([&] { return check_equilibrium(here_, line); }), line.where);
         const bool row_and_files =
-            row && same_file(fmt::format("states/eq_{:06}.json", number)) &&
-            (number + 1 < result_.equilibria || same_file("states/last.json")) &&
+            row && same_file(state) && (number + 1 < result_.equilibria || same_file("states/last.json")) &&
             (!records_.certified_states || judged(check_certificate(records_.directory, here_, line), line.where));
         result_.equilibria_proved += row_and_files ? 1 : 0;
-        reached_.back() = *here_.state;
-        reached_load_.back() = here_.load;
+        reached.state = *here_.state;
+        reached.load = here_.load;
+        reached.stored = row_and_files && std::filesystem::exists(records_.directory / state);
         here_number_ = number;
     }
 
@@ -386,8 +443,14 @@ class Replay {
     int here_number_ = -1;
     const EquilibriumLine* before_ = nullptr; ///< where the rearrangement started
     std::size_t event_ = 0;
-    std::vector<std::optional<State<2>>> reached_;
-    std::vector<ExactLoad> reached_load_;
+    struct Reached {
+        std::optional<State<2>> state; ///< nothing: the replay was lost
+        ExactLoad load;
+        bool stored = false;         ///< it is that of the state file
+        std::size_t first_event = 0; ///< of the rearrangement towards it
+    };
+    std::vector<Reached> reached_; ///< by number
+    bool certain_ = false;         ///< ends of arcs that steps in double lead to are proved to be on the way
 };
 
 } // namespace

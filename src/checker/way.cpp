@@ -49,6 +49,11 @@ class Follower {
     [[nodiscard]] std::vector<double> widened(const std::vector<double>& q) const;
     std::unique_ptr<Tube> start();
     std::unique_ptr<Tube> tube_at(std::vector<double> centre, int row, int direction) const;
+    Objections begin();
+    /// Joins the tube around q, in which a row falls or grows as here, at s of this one.
+    bool join_near(const std::vector<double>& q, double s, int row);
+    /// The same at a place of our own choice before `reach`.
+    bool join_on_the_way(double reach);
     Objections chain();
     Objections arrive(const Bounds& place);
     bool join(std::unique_ptr<Tube> next, double s);
@@ -118,7 +123,7 @@ Objections Follower::set_up() {
     start_off_ = product_above(rounded_up(a), coordinates);
     end_off_ = product_above(rounded_up(b), coordinates);
     for (const Gap& gap : smallest_gaps(problem, start, from_.evidence->vertex)) {
-        if (!gap.value.positive()) {
+        if (!way_.end_only && !gap.value.positive()) {
             return open(fmt::format("the gap of {} is not proved positive at the start", to_string<2>(gap.pair)));
         }
     }
@@ -188,7 +193,8 @@ bool Follower::finish(double s, bool last) {
     const double length = s - here_.lower;
     const double begin = here_.lower + (pieces_ == 1 && way_.at_limit ? open_share * length : 0);
     const double end = s - (last && closed().kind == ContactKind::held ? open_share * length : 0);
-    if (!power_is_positive(pushing_, moving_, *tube_, begin, end)) {
+    const bool power_ends = closed().kind == ContactKind::held;
+    if ((power_ends || !way_.end_only) && !power_is_positive(pushing_, moving_, *tube_, begin, end)) {
         trouble_ = "the power of the load is not proved positive";
         return false;
     }
@@ -230,7 +236,7 @@ Objections Follower::arrive(const Bounds& place) {
     return {};
 }
 
-Objections Follower::chain() {
+Objections Follower::begin() {
     tube_ = start();
     if (!tube_) {
         return open("no tube around the start");
@@ -246,7 +252,34 @@ Objections Follower::chain() {
             return open("the coordinate that is released is not proved to move");
         }
     }
-    gaps_ = std::make_unique<GapCourses>(moving_, from_.state->contacts, opened());
+    std::optional<std::vector<Contact>> watched;
+    if (way_.end_only) {
+        watched.emplace();
+        if (closed().kind != ContactKind::held) {
+            watched->push_back(closed());
+        }
+    }
+    gaps_ = std::make_unique<GapCourses>(moving_, from_.state->contacts, opened(), std::move(watched));
+    return {};
+}
+
+bool Follower::join_near(const std::vector<double>& q, double s, int row) {
+    return join(tube_at(q, row, tube_->slope(row, s).middle() > 0 ? 1 : -1), s);
+}
+
+bool Follower::join_on_the_way(double reach) {
+    bool found = false;
+    for (double share = 0.9; share > 1e-3 && !found && trouble_.empty(); share *= 0.5) {
+        const double on = here_.upper + share * (reach - here_.upper);
+        found = on > here_.upper && join_near(tube_->corrected(on), on, tube_->fastest(on));
+    }
+    return found;
+}
+
+Objections Follower::chain() {
+    if (Objections objection = begin()) {
+        return objection;
+    }
     const std::vector<Witness::Centre>& hints = way_.witness.centres;
     std::size_t hint = 0;
     for (int piece = 0; piece < most_pieces; ++piece) {
@@ -265,29 +298,16 @@ Objections Follower::chain() {
             continue;
         }
         const double s = std::min(ahead, reach);
-        if (s > here_.upper) {
-            const int next = last ? tube_->fastest(s) : hints[hint].held;
-            const int direction = tube_->slope(next, s).middle() > 0 ? 1 : -1;
-            if (join(tube_at(q, next, direction), s)) {
-                ++hint;
-                continue;
-            }
-            if (!trouble_.empty()) {
-                return open(fmt::format("{} in piece {}", trouble_, pieces_));
-            }
+        bool joined = s > here_.upper && join_near(q, s, last ? tube_->fastest(s) : hints[hint].held);
+        if (joined) {
+            ++hint;
+        } else if (trouble_.empty()) { // a place of our own, on the way there
+            joined = join_on_the_way(reach);
         }
-        // A place of our own, on the way there.
-        bool found = false;
-        for (double share = 0.9; share > 1e-3 && !found; share *= 0.5) {
-            const double on = here_.upper + share * (reach - here_.upper);
-            const int next = tube_->fastest(on);
-            found = on > here_.upper &&
-                    join(tube_at(tube_->corrected(on), next, tube_->slope(next, on).middle() > 0 ? 1 : -1), on);
-            if (!trouble_.empty()) {
-                return open(fmt::format("{} in piece {}", trouble_, pieces_));
-            }
+        if (!trouble_.empty()) {
+            return open(fmt::format("{} in piece {}", trouble_, pieces_));
         }
-        if (!found) {
+        if (!joined) {
             return open(fmt::format("no tube goes on after {} pieces", pieces_));
         }
     }
@@ -335,6 +355,11 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
 }
 
 Objections prove_way(const Place& from, const Place& to, const Way& way) {
+    return Follower(from, to, way).prove();
+}
+
+Objections prove_end(const Place& from, const Place& to, Way way) {
+    way.end_only = true;
     return Follower(from, to, way).prove();
 }
 

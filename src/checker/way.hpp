@@ -15,6 +15,7 @@ struct Way {
     bool at_limit = false;  ///< the power grows from 0
     double stress = 0;      ///< on the loaded axis
     const Witness& witness;
+    bool end_only = false; ///< of the gaps and the power only what ends the arc is watched
 };
 
 /// The state in which the witness says that the arc ends: its contacts are those of `from`, the opened one replaced.
@@ -26,5 +27,11 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
 /// of the load but for a hundredth of the first piece at a limit, and of the last one before a power turn. Otherwise
 /// what is not proved; it is never a refutation.
 Objections prove_way(const Place& from, const Place& to, const Way& way);
+
+/// Nothing: the curve of the kept contacts leads from the true vertex of `from` to that of `to`, and before it neither
+/// the gap of the contact that closes there is 0 again nor, at a power turn, the power. An arc that ends as the record
+/// says ends there and nowhere else: what contradicts the record there refutes it. Other pairs may overlap on the way
+/// (then the record is wrong too). Otherwise what is not proved. `way.witness` may be empty.
+Objections prove_end(const Place& from, const Place& to, Way way);
 
 } // namespace isostat::checker

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
 
 namespace isostat::crafted {
 
@@ -92,174 +94,125 @@ const char* to_string(exact::OneSign sign) {
     return "";
 }
 
-std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
-    const DofMap<2> dofs(approximate(packing));
-    std::vector<std::string> contact_names, dof_names;
-    for (const Contact& contact : inspection.contacts) {
-        contact_names.push_back(to_string<2>(contact));
-    }
-    for (int d = 0; d < dofs.dof_count(); ++d) {
-        dof_names.push_back(dofs.name(d));
-    }
-    const bool exact = inspection.rank_exact == Verdict::proved;
-    const char* most = exact ? "" : "<= ";
-    std::string out;
-    const auto line = [&](const std::string& key, const std::string& value) {
-        out += fmt::format("{:<22} {}\n", key, value);
-    };
-    line("disks", std::to_string(packing.disk_count()));
-    line("degrees of freedom N_f", std::to_string(inspection.dof_count));
-    line("contacts N", fmt::format("{} (gaps decided exactly)", inspection.contacts.size()));
-    line("contact list",
-         inspection.contacts.empty() ? "none" : joined(contact_names, [](const std::string& name) { return name; }));
-    line("rank", fmt::format("{}{} ({})", exact ? "" : ">= ", inspection.rank,
-                             exact ? "proved" : "lower bound proved, upper bound undecided"));
-    line("hyperstaticity h", fmt::format("{}{}", most, inspection.hyperstaticity));
-    line("mechanisms k", fmt::format("{}{} ({} common rigid motions, {}{} internal)", most, inspection.mechanisms,
-                                     inspection.rigid_motions, most, inspection.internal_mechanisms()));
-    line("verdict", inspection.verdict());
-    line("generic rank", fmt::format("{} (same contact graph, random coordinates)", inspection.generic_rank));
-    line("special position", std::string(to_string(inspection.special_position)));
-    line("rattlers", number_list(disks_with(inspection, DiskHold::rattler)));
-    line("bridges", number_list(disks_with(inspection, DiskHold::bridge)));
-    if (inspection.forces_unique &&
-        (inspection.support == Support::positive || inspection.support == Support::with_zeros)) {
-        line("disks without force", number_list(inspection.without_force));
-    }
-    std::vector<std::string> idle;
-    for (std::size_t l = 0; l < contact_names.size(); ++l) {
-        if (inspection.carrying[l] == 0) {
-            idle.push_back(contact_names[l]);
-        }
-    }
-    line("contacts without force",
-         idle.empty() ? "none by position of the normals" : joined(idle, [](const std::string& s) { return s; }));
-    line("self-stress, one sign", inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided");
-    line("support of the load",
-         fmt::format("{}{}", to_string(inspection.support), inspection.forces_unique ? " (forces unique)" : ""));
-    if (!inspection.forces.empty()) {
-        line(inspection.forces_unique ? "forces" : "forces, one choice", vector_text(inspection.forces, contact_names));
-    }
-    std::vector<std::string> structural, special;
-    for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
-        if (inspection.forces[l].is_zero()) {
-            (inspection.structural_zero[l] != 0 ? structural : special).push_back(contact_names[l]);
-        }
-    }
-    if (!structural.empty()) {
-        line("zero for any position", joined(structural, [](const std::string& s) { return s; }));
-    }
-    if (!special.empty()) {
-        line("zero by position", joined(special, [](const std::string& s) { return s; }));
-    }
-    line("second order (bars)", to_string(inspection.second_order));
-    line("stable", packing.load ? std::string(to_string(inspection.stable)) : "no load");
-    if (inspection.bases_exact == Verdict::proved) {
-        for (std::size_t s = 0; s < std::min<std::size_t>(inspection.self_stresses.size(), 10); ++s) {
-            line(fmt::format("self-stress {}", s + 1), vector_text(inspection.self_stresses[s], contact_names));
-        }
-        for (std::size_t m = 0; m < std::min<std::size_t>(inspection.motions.size(), 10); ++m) {
-            line(fmt::format("motion {}", m + 1), vector_text(inspection.motions[m], dof_names));
-        }
-    }
-    return out;
-}
+namespace {
 
-std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
-                                        const std::string& source) {
-    std::vector<std::string> out;
-    const bool exact = inspection.rank_exact == Verdict::proved;
-    // A count that is only a bound matches nothing.
-    const auto count = [&](int value) { return exact ? std::to_string(value) : "undecided"; };
-    const std::map<std::string, std::string> words = {
-        {"N_f", std::to_string(inspection.dof_count)},
-        {"N", std::to_string(inspection.contacts.size())},
-        {"rank", count(inspection.rank)},
-        {"h", count(inspection.hyperstaticity)},
-        {"k", count(inspection.mechanisms)},
-        {"rigid_motions", std::to_string(inspection.rigid_motions)},
-        {"generic_rank", std::to_string(inspection.generic_rank)},
-        {"special", std::string(to_string(inspection.special_position))},
-        {"verdict", inspection.verdict()},
-        {"one_sign", inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided"},
-        {"support", to_string(inspection.support)},
-        {"second_order", to_string(inspection.second_order)},
-        {"stable", std::string(to_string(inspection.stable))},
-    };
-    const auto mismatch = [&](const ExpectedEntry& entry, const std::string& wanted, const std::string& found) {
-        out.push_back(fmt::format("{}:{}: {}: expected {}, found {}", source, entry.line, entry.key, wanted, found));
-    };
-    const auto bad = [&](const ExpectedEntry& entry, const std::string& wanted) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: expected.{}: expected {}", source, entry.line, entry.key, wanted));
-    };
-    for (const ExpectedEntry& entry : file.expected) {
-        if (const auto word = words.find(entry.key); word != words.end()) {
-            if (entry.values.size() != 1 || entry.values[0].size() != 1) {
-                bad(entry, "one value");
+/// The table, a part of it a function.
+class InspectionTable {
+  public:
+    InspectionTable(const Inspection& inspection, const ExactPacking& packing)
+        : inspection_(inspection), packing_(packing), exact_(inspection.rank_exact == Verdict::proved) {
+        for (const Contact& contact : inspection.contacts) {
+            contact_names_.push_back(to_string<2>(contact));
+        }
+        counts();
+        grains();
+        forces();
+        bases();
+    }
+    [[nodiscard]] std::string text() && { return std::move(out_); }
+
+  private:
+    void line(const std::string& key, const std::string& value) { out_ += fmt::format("{:<22} {}\n", key, value); }
+    static std::string list(const std::vector<std::string>& names, const char* none) {
+        return names.empty() ? none : joined(names, [](const std::string& name) { return name; });
+    }
+
+    void counts() {
+        const char* most = exact_ ? "" : "<= ";
+        line("disks", std::to_string(packing_.disk_count()));
+        line("degrees of freedom N_f", std::to_string(inspection_.dof_count));
+        line("contacts N", fmt::format("{} (gaps decided exactly)", inspection_.contacts.size()));
+        line("contact list", list(contact_names_, "none"));
+        line("rank", fmt::format("{}{} ({})", exact_ ? "" : ">= ", inspection_.rank,
+                                 exact_ ? "proved" : "lower bound proved, upper bound undecided"));
+        line("hyperstaticity h", fmt::format("{}{}", most, inspection_.hyperstaticity));
+        line("mechanisms k", fmt::format("{}{} ({} common rigid motions, {}{} internal)", most, inspection_.mechanisms,
+                                         inspection_.rigid_motions, most, inspection_.internal_mechanisms()));
+        line("verdict", inspection_.verdict());
+        line("generic rank", fmt::format("{} (same contact graph, random coordinates)", inspection_.generic_rank));
+        line("special position", std::string(to_string(inspection_.special_position)));
+    }
+
+    void grains() {
+        line("rattlers", number_list(disks_with(inspection_, DiskHold::rattler)));
+        line("bridges", number_list(disks_with(inspection_, DiskHold::bridge)));
+        if (inspection_.forces_unique &&
+            (inspection_.support == Support::positive || inspection_.support == Support::with_zeros)) {
+            line("disks without force", number_list(inspection_.without_force));
+        }
+    }
+
+    void forces() {
+        std::vector<std::string> idle;
+        for (std::size_t l = 0; l < contact_names_.size(); ++l) {
+            if (inspection_.carrying[l] == 0) {
+                idle.push_back(contact_names_[l]);
             }
-            if (entry.values[0][0] != word->second) {
-                mismatch(entry, entry.values[0][0], word->second);
+        }
+        line("contacts without force", list(idle, "none by position of the normals"));
+        line("self-stress, one sign",
+             inspection_.one_sign_decided ? to_string(inspection_.one_sign.kind) : "undecided");
+        line("support of the load",
+             fmt::format("{}{}", to_string(inspection_.support), inspection_.forces_unique ? " (forces unique)" : ""));
+        if (!inspection_.forces.empty()) {
+            line(inspection_.forces_unique ? "forces" : "forces, one choice",
+                 vector_text(inspection_.forces, contact_names_));
+        }
+        std::vector<std::string> structural, special;
+        for (std::size_t l = 0; l < inspection_.structural_zero.size(); ++l) {
+            if (inspection_.forces[l].is_zero()) {
+                (inspection_.structural_zero[l] != 0 ? structural : special).push_back(contact_names_[l]);
             }
-        } else if (entry.key == "contacts" || entry.key == "rattlers" || entry.key == "bridges" ||
-                   entry.key == "without_force" || entry.key == "structural_zeros") {
-            std::vector<std::string> wanted, found;
-            for (const auto& row : entry.values) {
-                wanted.insert(wanted.end(), row.begin(), row.end());
-            }
-            if (entry.key == "contacts") {
-                for (const Contact& contact : inspection.contacts) {
-                    found.push_back(to_string<2>(contact));
-                }
-            } else if (entry.key == "structural_zeros") {
-                for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
-                    if (inspection.structural_zero[l] != 0) {
-                        found.push_back(to_string<2>(inspection.contacts[l]));
-                    }
-                }
-            } else if (entry.key == "without_force") {
-                for (const int i : inspection.without_force) {
-                    found.push_back(std::to_string(i));
-                }
-                if (!inspection.forces_unique) {
-                    found.emplace_back("forces that are not unique");
-                }
-            } else {
-                for (const int i :
-                     disks_with(inspection, entry.key == "rattlers" ? DiskHold::rattler : DiskHold::bridge)) {
-                    found.push_back(std::to_string(i));
-                }
-            }
-            std::sort(wanted.begin(), wanted.end());
-            std::sort(found.begin(), found.end());
-            if (wanted != found) {
-                mismatch(entry, fmt::format("[{}]", fmt::join(wanted, ", ")),
-                         fmt::format("[{}]", fmt::join(found, ", ")));
-            }
+        }
+        if (!structural.empty()) {
+            line("zero for any position", list(structural, ""));
+        }
+        if (!special.empty()) {
+            line("zero by position", list(special, ""));
+        }
+        line("second order (bars)", to_string(inspection_.second_order));
+        line("stable", packing_.load ? std::string(to_string(inspection_.stable)) : "no load");
+    }
+
+    void bases() {
+        constexpr std::size_t most = 10;
+        if (inspection_.bases_exact != Verdict::proved) {
+            return;
+        }
+        const DofMap<2> dofs(approximate(packing_));
+        std::vector<std::string> dof_names;
+        for (int d = 0; d < dofs.dof_count(); ++d) {
+            dof_names.push_back(dofs.name(d));
+        }
+        for (std::size_t s = 0; s < std::min(inspection_.self_stresses.size(), most); ++s) {
+            line(fmt::format("self-stress {}", s + 1), vector_text(inspection_.self_stresses[s], contact_names_));
+        }
+        for (std::size_t m = 0; m < std::min(inspection_.motions.size(), most); ++m) {
+            line(fmt::format("motion {}", m + 1), vector_text(inspection_.motions[m], dof_names));
+        }
+    }
+
+    const Inspection& inspection_;
+    const ExactPacking& packing_;
+    bool exact_;
+    std::vector<std::string> contact_names_;
+    std::string out_;
+};
+
+/// What a file expects against what was found.
+class Comparison {
+  public:
+    Comparison(const Inspection& inspection, const std::string& source)
+        : inspection_(inspection), source_(source), words_(words(inspection)) {}
+
+    void check(const ExpectedEntry& entry) {
+        if (const auto word = words_.find(entry.key); word != words_.end()) {
+            check_word(entry, word->second);
+        } else if (auto found = list(entry.key)) {
+            check_list(entry, std::move(*found));
         } else if (entry.key == "forces") {
             for (const auto& row : entry.values) {
-                if (row.size() != 2) {
-                    bad(entry, "pairs [contact, force]");
-                }
-                const Number wanted = [&] {
-                    try {
-                        return Number::parse(row[1]);
-                    } catch (const Error& error) {
-                        throw Error(ErrorKind::bad_input,
-                                    fmt::format("{}:{}: expected.forces: {}", source, entry.line, error.what()));
-                    }
-                }();
-                std::string found = inspection.forces_unique ? "no such contact" : "forces that are not unique";
-                bool holds = false;
-                for (std::size_t l = 0; l < inspection.contacts.size() && inspection.forces_unique; ++l) {
-                    if (to_string<2>(inspection.contacts[l]) == row[0]) {
-                        found = inspection.forces[l].text();
-                        holds = inspection.forces[l] == wanted;
-                    }
-                }
-                if (!holds) {
-                    mismatch(entry, row[0] + " = " + wanted.text(), found);
-                }
+                check_force(entry, row);
             }
         } else {
             bad(entry, "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
@@ -267,7 +220,139 @@ std::vector<std::string> check_expected(const Inspection& inspection, const Pack
                        "one_sign, support, second_order or stable");
         }
     }
-    return out;
+    [[nodiscard]] std::vector<std::string> mismatches() && { return std::move(out_); }
+
+  private:
+    static std::map<std::string, std::string> words(const Inspection& inspection) {
+        // A count that is only a bound matches nothing.
+        const auto count = [&](int value) {
+            return inspection.rank_exact == Verdict::proved ? std::to_string(value) : "undecided";
+        };
+        return {
+            {"N_f", std::to_string(inspection.dof_count)},
+            {"N", std::to_string(inspection.contacts.size())},
+            {"rank", count(inspection.rank)},
+            {"h", count(inspection.hyperstaticity)},
+            {"k", count(inspection.mechanisms)},
+            {"rigid_motions", std::to_string(inspection.rigid_motions)},
+            {"generic_rank", std::to_string(inspection.generic_rank)},
+            {"special", std::string(to_string(inspection.special_position))},
+            {"verdict", inspection.verdict()},
+            {"one_sign", inspection.one_sign_decided ? to_string(inspection.one_sign.kind) : "undecided"},
+            {"support", to_string(inspection.support)},
+            {"second_order", to_string(inspection.second_order)},
+            {"stable", std::string(to_string(inspection.stable))},
+        };
+    }
+
+    [[noreturn]] void bad(const ExpectedEntry& entry, const std::string& wanted) const {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}:{}: expected.{}: expected {}", source_, entry.line, entry.key, wanted));
+    }
+    void mismatch(const ExpectedEntry& entry, const std::string& wanted, const std::string& found) {
+        out_.push_back(fmt::format("{}:{}: {}: expected {}, found {}", source_, entry.line, entry.key, wanted, found));
+    }
+
+    void check_word(const ExpectedEntry& entry, const std::string& found) {
+        if (entry.values.size() != 1 || entry.values[0].size() != 1) {
+            bad(entry, "one value");
+        }
+        if (entry.values[0][0] != found) {
+            mismatch(entry, entry.values[0][0], found);
+        }
+    }
+
+    /// The list that a key names; nothing: the key names none.
+    [[nodiscard]] std::optional<std::vector<std::string>> list(const std::string& key) const {
+        std::vector<std::string> found;
+        const auto numbers = [&](const std::vector<int>& disks) {
+            for (const int i : disks) {
+                found.push_back(std::to_string(i));
+            }
+        };
+        const auto contacts = [&](const auto& listed) {
+            for (std::size_t l = 0; l < inspection_.contacts.size(); ++l) {
+                if (listed(l)) {
+                    found.push_back(to_string<2>(inspection_.contacts[l]));
+                }
+            }
+        };
+        if (key == "contacts") {
+            contacts([](std::size_t) { return true; });
+        } else if (key == "structural_zeros") {
+            const auto& zero = inspection_.structural_zero;
+            contacts([&](std::size_t l) { return l < zero.size() && zero[l] != 0; });
+        } else if (key == "without_force") {
+            numbers(inspection_.without_force);
+            if (!inspection_.forces_unique) {
+                found.emplace_back("forces that are not unique");
+            }
+        } else if (key == "rattlers" || key == "bridges") {
+            numbers(disks_with(inspection_, key == "rattlers" ? DiskHold::rattler : DiskHold::bridge));
+        } else {
+            return {};
+        }
+        return found;
+    }
+
+    void check_list(const ExpectedEntry& entry, std::vector<std::string> found) {
+        std::vector<std::string> wanted;
+        for (const auto& row : entry.values) {
+            wanted.insert(wanted.end(), row.begin(), row.end());
+        }
+        std::sort(wanted.begin(), wanted.end());
+        std::sort(found.begin(), found.end());
+        if (wanted != found) {
+            mismatch(entry, fmt::format("[{}]", fmt::join(wanted, ", ")), fmt::format("[{}]", fmt::join(found, ", ")));
+        }
+    }
+
+    [[nodiscard]] Number number(const ExpectedEntry& entry, const std::string& text) const {
+        try {
+            return Number::parse(text);
+        } catch (const Error& error) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}:{}: expected.forces: {}", source_, entry.line, error.what()));
+        }
+    }
+
+    void check_force(const ExpectedEntry& entry, const std::vector<std::string>& row) {
+        if (row.size() != 2) {
+            bad(entry, "pairs [contact, force]");
+        }
+        const Number wanted = number(entry, row[1]);
+        std::string found = inspection_.forces_unique ? "no such contact" : "forces that are not unique";
+        bool holds = false;
+        for (std::size_t l = 0; l < inspection_.contacts.size() && inspection_.forces_unique; ++l) {
+            if (to_string<2>(inspection_.contacts[l]) == row[0]) {
+                found = inspection_.forces[l].text();
+                holds = inspection_.forces[l] == wanted;
+            }
+        }
+        if (!holds) {
+            mismatch(entry, row[0] + " = " + wanted.text(), found);
+        }
+    }
+
+    const Inspection& inspection_;
+    const std::string& source_;
+    std::map<std::string, std::string> words_;
+    std::vector<std::string> out_;
+};
+
+} // namespace
+
+std::string to_text(const Inspection& inspection, const ExactPacking& packing) {
+    return InspectionTable(inspection, packing).text();
+}
+
+std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
+                                        const std::string& source) {
+    Comparison comparison(inspection, source);
+    for (const ExpectedEntry& entry : file.expected) {
+        comparison.check(entry);
+    }
+    return std::move(comparison).mismatches();
 }
 
 } // namespace isostat::crafted

@@ -9,78 +9,121 @@
 
 namespace isostat::exact {
 
-std::vector<int> independent_columns(const sparse::Matrix<std::uint64_t>& matrix) {
-    const auto rows = static_cast<std::size_t>(matrix.rows);
-    std::vector<std::vector<std::pair<int, std::uint64_t>>> lower; // multipliers of each pivot column
-    std::vector<int> pivot_of_row(rows, -1);
-    std::vector<int> row_weight(rows, 0);
-    for (const int r : matrix.row) {
-        ++row_weight[static_cast<std::size_t>(r)];
-    }
-    std::vector<std::uint64_t> x(rows, 0);
-    std::vector<unsigned char> seen(rows, 0);
-    std::vector<int> touched;
-    std::vector<int> independent;
-    std::vector<int> row_of_pivot;
-    for (int column = 0; column < matrix.cols && independent.size() < rows; ++column) {
-        std::priority_queue<int, std::vector<int>, std::greater<>> pending; // pivots to apply, in order
-        const auto touch = [&](int r) {
-            const auto i = static_cast<std::size_t>(r);
-            if (seen[i] == 0) {
-                seen[i] = 1;
-                touched.push_back(r);
-                if (pivot_of_row[i] >= 0) {
-                    pending.push(pivot_of_row[i]);
-                }
-            }
-        };
-        for (int e = matrix.start[static_cast<std::size_t>(column)];
-             e < matrix.start[static_cast<std::size_t>(column) + 1]; ++e) {
-            const auto s = static_cast<std::size_t>(e);
-            x[static_cast<std::size_t>(matrix.row[s])] = matrix.value[s];
-            touch(matrix.row[s]);
+namespace {
+
+/// Left-looking elimination mod p, a column after the other.
+class Elimination {
+  public:
+    explicit Elimination(const sparse::Matrix<std::uint64_t>& matrix)
+        : matrix_(matrix), pivot_of_row_(static_cast<std::size_t>(matrix.rows), -1),
+          row_weight_(static_cast<std::size_t>(matrix.rows), 0), x_(static_cast<std::size_t>(matrix.rows), 0),
+          seen_(static_cast<std::size_t>(matrix.rows), 0) {
+        for (const int r : matrix.row) {
+            ++row_weight_[static_cast<std::size_t>(r)];
         }
-        while (!pending.empty()) {
-            const auto pivot = static_cast<std::size_t>(pending.top());
-            pending.pop();
-            const std::uint64_t factor = x[static_cast<std::size_t>(row_of_pivot[pivot])];
+    }
+
+    /// True: the column is independent of those that came before.
+    bool add(int column) {
+        const auto begin = static_cast<std::size_t>(matrix_.start[static_cast<std::size_t>(column)]);
+        const auto end = static_cast<std::size_t>(matrix_.start[static_cast<std::size_t>(column) + 1]);
+        for (std::size_t e = begin; e < end; ++e) {
+            x_[static_cast<std::size_t>(matrix_.row[e])] = matrix_.value[e];
+            touch(matrix_.row[e]);
+        }
+        apply_pivots();
+        const int row = lightest_row();
+        if (row >= 0) {
+            make_pivot(row);
+        }
+        for (const int r : touched_) {
+            x_[static_cast<std::size_t>(r)] = 0;
+            seen_[static_cast<std::size_t>(r)] = 0;
+        }
+        touched_.clear();
+        return row >= 0;
+    }
+
+    [[nodiscard]] std::size_t rank() const { return row_of_pivot_.size(); }
+
+  private:
+    /// A row of the column in work that may not be 0.
+    void touch(int r) {
+        const auto i = static_cast<std::size_t>(r);
+        if (seen_[i] == 0) {
+            seen_[i] = 1;
+            touched_.push_back(r);
+            if (pivot_of_row_[i] >= 0) {
+                pending_.push(pivot_of_row_[i]);
+            }
+        }
+    }
+
+    void apply_pivots() {
+        while (!pending_.empty()) {
+            const auto pivot = static_cast<std::size_t>(pending_.top());
+            pending_.pop();
+            const std::uint64_t factor = x_[static_cast<std::size_t>(row_of_pivot_[pivot])];
             if (factor == 0) {
                 continue;
             }
-            for (const auto& [r, multiplier] : lower[pivot]) {
+            for (const auto& [r, multiplier] : lower_[pivot]) {
                 touch(r);
-                auto& value = x[static_cast<std::size_t>(r)];
+                auto& value = x_[static_cast<std::size_t>(r)];
                 value = subtract(value, multiply(multiplier, factor));
             }
         }
+    }
+
+    /// Of the rows without pivot that are not 0, the one with the fewest entries; -1: there is none.
+    [[nodiscard]] int lightest_row() const {
         int chosen = -1;
-        for (const int r : touched) {
+        for (const int r : touched_) {
             const auto i = static_cast<std::size_t>(r);
-            if (pivot_of_row[i] < 0 && x[i] != 0 &&
-                (chosen < 0 || row_weight[i] < row_weight[static_cast<std::size_t>(chosen)] ||
-                 (row_weight[i] == row_weight[static_cast<std::size_t>(chosen)] && r < chosen))) {
+            if (pivot_of_row_[i] < 0 && x_[i] != 0 &&
+                (chosen < 0 ||
+                 std::pair(row_weight_[i], r) < std::pair(row_weight_[static_cast<std::size_t>(chosen)], chosen))) {
                 chosen = r;
             }
         }
-        if (chosen >= 0) {
-            const auto c = static_cast<std::size_t>(chosen);
-            pivot_of_row[c] = static_cast<int>(independent.size());
-            row_of_pivot.push_back(chosen);
-            independent.push_back(column);
-            const std::uint64_t reciprocal = inverse(x[c]);
-            lower.emplace_back();
-            for (const int r : touched) {
-                const auto i = static_cast<std::size_t>(r);
-                if (x[i] != 0 && pivot_of_row[i] < 0) {
-                    lower.back().emplace_back(r, multiply(x[i], reciprocal));
-                }
+        return chosen;
+    }
+
+    void make_pivot(int row) {
+        const auto c = static_cast<std::size_t>(row);
+        pivot_of_row_[c] = static_cast<int>(rank());
+        row_of_pivot_.push_back(row);
+        const std::uint64_t reciprocal = inverse(x_[c]);
+        lower_.emplace_back();
+        for (const int r : touched_) {
+            const auto i = static_cast<std::size_t>(r);
+            if (x_[i] != 0 && pivot_of_row_[i] < 0) {
+                lower_.back().emplace_back(r, multiply(x_[i], reciprocal));
             }
         }
-        for (const int r : touched) {
-            x[static_cast<std::size_t>(r)] = 0;
-            seen[static_cast<std::size_t>(r)] = 0;
+    }
+
+    const sparse::Matrix<std::uint64_t>& matrix_;
+    std::vector<std::vector<std::pair<int, std::uint64_t>>> lower_; ///< multipliers of each pivot column
+    std::vector<int> pivot_of_row_;
+    std::vector<int> row_of_pivot_;
+    std::vector<int> row_weight_;                                        ///< entries of each row
+    std::vector<std::uint64_t> x_;                                       ///< the column in work
+    std::vector<unsigned char> seen_;                                    ///< rows of it
+    std::vector<int> touched_;                                           ///< the same as a list
+    std::priority_queue<int, std::vector<int>, std::greater<>> pending_; ///< pivots to apply, in order
+};
+
+} // namespace
+
+std::vector<int> independent_columns(const sparse::Matrix<std::uint64_t>& matrix) {
+    Elimination elimination(matrix);
+    std::vector<int> independent;
+    const auto rows = static_cast<std::size_t>(matrix.rows);
+    for (int column = 0; column < matrix.cols && elimination.rank() < rows; ++column) {
+        if (elimination.add(column)) {
+            independent.push_back(column);
         }
-        touched.clear();
     }
     return independent;
 }

@@ -72,6 +72,53 @@ bool is_row_of_names(const Line& line) {
     return line.size() > 0;
 }
 
+/// Names of columns, and the line they stand in; 0: no line of the file names them.
+struct Header {
+    std::vector<std::string> names;
+    int line = 0;
+};
+
+/// From the comments before the first row, a row of names, or the options; reads up to the first row of numbers.
+Header read_header(Lines& lines, const std::string& source, const ForeignOptions& options, char separator_of_rows,
+                   Raw& raw, Header header) {
+    const Line first(lines.peek(), lines.number() + 1, &source, separator_of_rows);
+    if (is_row_of_names(first)) {
+        header.names = names_of(first);
+        (void)lines.take("names");
+        header.line = lines.number();
+    }
+    if (!options.columns.empty()) {
+        if (!header.names.empty()) {
+            raw.notes.push_back(fmt::format("line {} ({}) is taken for names of columns; those stated are used",
+                                            header.line, fmt::join(header.names, " ")));
+        }
+        header.names = options.columns;
+    }
+    if (header.names.empty()) {
+        first.fail(first.text(), "first row",
+                   "names of the columns before it ('# x y r' or a row of names), or --columns x,y,r: nothing says "
+                   "which column is what");
+    }
+    for (std::string& name : header.names) {
+        name = name == "-" ? "" : name;
+    }
+    return header;
+}
+
+/// The last comment before the first row that names columns.
+Header header_in_comments(Lines& lines, const std::string& source) {
+    Header header;
+    while (!lines.at_end() && (is_blank(lines.peek()) || is_comment(lines.peek()))) {
+        const std::string_view line = lines.take("a row");
+        if (is_comment(line)) {
+            if (auto found = names_in_comment(line, lines.number(), source); !found.empty()) {
+                header = {std::move(found), lines.number()};
+            }
+        }
+    }
+    return header;
+}
+
 } // namespace
 
 Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options) {
@@ -80,53 +127,23 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
                                                       source, *options.frame));
     }
     Lines lines(text, source);
-    std::vector<std::string> names;
-    int header = 0;
-    for (; !lines.at_end() && (is_blank(lines.peek()) || is_comment(lines.peek()));) {
-        const std::string_view line = lines.take("a row");
-        if (is_comment(line)) {
-            if (auto found = names_in_comment(line, lines.number(), source); !found.empty()) {
-                names = std::move(found);
-                header = lines.number();
-            }
-        }
-    }
+    Header header = header_in_comments(lines, source);
     if (lines.at_end()) {
         lines.fail("the file ends here: expected rows of numbers");
     }
     const char separator = separator_of(lines.peek());
-    const Line first(lines.peek(), lines.number() + 1, &source, separator);
     Raw raw;
-    if (is_row_of_names(first)) {
-        names = names_of(first);
-        (void)lines.take("names");
-        header = lines.number();
-    }
-    if (!options.columns.empty()) {
-        if (!names.empty()) {
-            raw.notes.push_back(fmt::format("line {} ({}) is taken for names of columns; those stated are used", header,
-                                            fmt::join(names, " ")));
-        }
-        names = options.columns;
-    }
-    if (names.empty()) {
-        first.fail(first.text(), "first row",
-                   "names of the columns before it ('# x y r' or a row of names), or --columns x,y,r: nothing says "
-                   "which column is what");
-    }
-    const std::string where = header == 0 ? source : fmt::format("{}:{}", source, header);
-    for (std::string& name : names) {
-        name = name == "-" ? "" : name;
-    }
+    header = read_header(lines, source, options, separator, raw, std::move(header));
+    const std::string where = header.line == 0 ? source : fmt::format("{}:{}", source, header.line);
     Columns columns;
-    columns.x = find_column(names, "x", where);
-    columns.y = find_column(names, "y", where);
-    columns.z = find_column(names, "z", where);
-    columns.id = find_column(names, "id", where);
+    columns.x = find_column(header.names, "x", where);
+    columns.y = find_column(header.names, "y", where);
+    columns.z = find_column(header.names, "z", where);
+    columns.id = find_column(header.names, "id", where);
     if (columns.x < 0 || columns.y < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no columns x and y: expected them in the header", where));
     }
-    find_size(columns, names, options, where, raw);
+    find_size(columns, header.names, options, where, raw);
     Rows rows(columns, source);
     while (!lines.at_end()) {
         if (is_blank(lines.peek()) || is_comment(lines.peek())) {
@@ -134,7 +151,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
             continue;
         }
         const Line line = lines.next("a row", separator);
-        line.require_size(names.size(), "one value per column");
+        line.require_size(header.names.size(), "one value per column");
         rows.add(line, raw);
     }
     rows.finish();

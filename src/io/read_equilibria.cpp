@@ -26,15 +26,68 @@ double column(const std::string& name, std::string_view field, const std::string
     return value;
 }
 
+/// One row by the names of its columns.
+class Fields {
+  public:
+    Fields(std::string_view content, std::string where) : where_(std::move(where)) {
+        for (std::size_t at = 0; at <= content.size();) {
+            const std::size_t comma = std::min(content.find(',', at), content.size());
+            fields_.push_back(content.substr(at, comma - at));
+            at = comma + 1;
+        }
+        const std::size_t expected = equilibria_columns().size();
+        if (fields_.size() != expected) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: {} columns: expected {}", where_, fields_.size(), expected));
+        }
+    }
+    [[nodiscard]] double number(const char* name) const {
+        const std::vector<std::string>& columns = equilibria_columns();
+        const auto index = std::find(columns.begin(), columns.end(), name) - columns.begin();
+        return column(name, fields_[static_cast<std::size_t>(index)], where_);
+    }
+    [[nodiscard]] int integer(const char* name) const {
+        constexpr double largest = std::numeric_limits<int>::max();
+        const double value = number(name);
+        if (!(std::abs(value) <= largest) || value != std::trunc(value)) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: {} is {}: expected an integer", where_, name, value));
+        }
+        return static_cast<int>(value);
+    }
+
+  private:
+    std::string where_;
+    std::vector<std::string_view> fields_;
+};
+
+EquilibriumRow row_of(const Fields& fields) {
+    EquilibriumRow row;
+    row.number = fields.integer("number");
+    row.previous = fields.integer("previous");
+    row.segment = fields.integer("segment");
+    row.stress = fields.number("sigma2");
+    row.ratio = fields.number("ratio");
+    row.strain1 = fields.number("eps1");
+    row.strain2 = fields.number("eps2");
+    row.solid_fraction = fields.number("solid_fraction");
+    row.arcs = fields.integer("arcs");
+    row.rattlers = fields.integer("rattlers");
+    row.backbone = fields.integer("backbone");
+    row.hyperstaticity = fields.integer("h");
+    row.stress_low = fields.number("sigma2_low");
+    row.stress_high = fields.number("sigma2_high");
+    row.min_force = fields.number("min_force");
+    row.min_gap = fields.number("min_gap");
+    row.margin = fields.number("margin");
+    row.proved = fields.integer("proved") == 1;
+    return row;
+}
+
 } // namespace
 
 std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
     const std::string content_of_file = read_text(path);
     const std::string_view text = without_byte_order_mark(content_of_file);
-    const std::vector<std::string>& columns = equilibria_columns();
-    const auto index = [&](const char* name) {
-        return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
-    };
     std::vector<EquilibriumRow> rows;
     std::size_t begin = 0;
     for (int line = 1; begin < text.size(); ++line) {
@@ -44,53 +97,13 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
         }
         const std::string_view content = text.substr(begin, end - begin);
         begin = end + 1;
-        if (line == 1) {
-            if (std::string(content) + "\n" != equilibria_header()) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}:{}: the names of the columns are not those of this program: expected {}",
-                                        path.string(), line, equilibria_header()));
-            }
-            continue;
-        }
-        std::vector<std::string_view> fields;
-        for (std::size_t at = 0; at <= content.size();) {
-            const std::size_t comma = std::min(content.find(',', at), content.size());
-            fields.push_back(content.substr(at, comma - at));
-            at = comma + 1;
-        }
-        const std::string where = fmt::format("{}:{}", path.string(), line);
-        if (fields.size() != columns.size()) {
+        if (line > 1) {
+            rows.push_back(row_of(Fields(content, fmt::format("{}:{}", path.string(), line))));
+        } else if (std::string(content) + "\n" != equilibria_header()) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {} columns: expected {}", where, fields.size(), columns.size()));
+                        fmt::format("{}:{}: the names of the columns are not those of this program: expected {}",
+                                    path.string(), line, equilibria_header()));
         }
-        const auto number = [&](const char* name) { return column(name, fields[index(name)], where); };
-        const auto integer = [&](const char* name) {
-            constexpr double largest = std::numeric_limits<int>::max();
-            const double value = number(name);
-            if (!(std::abs(value) <= largest) || value != std::trunc(value)) {
-                throw Error(ErrorKind::bad_input, fmt::format("{}: {} is {}: expected an integer", where, name, value));
-            }
-            return static_cast<int>(value);
-        };
-        EquilibriumRow& row = rows.emplace_back();
-        row.number = integer("number");
-        row.previous = integer("previous");
-        row.segment = integer("segment");
-        row.stress = number("sigma2");
-        row.ratio = number("ratio");
-        row.strain1 = number("eps1");
-        row.strain2 = number("eps2");
-        row.solid_fraction = number("solid_fraction");
-        row.arcs = integer("arcs");
-        row.rattlers = integer("rattlers");
-        row.backbone = integer("backbone");
-        row.hyperstaticity = integer("h");
-        row.stress_low = number("sigma2_low");
-        row.stress_high = number("sigma2_high");
-        row.min_force = number("min_force");
-        row.min_gap = number("min_gap");
-        row.margin = number("margin");
-        row.proved = integer("proved") == 1;
     }
     return rows;
 }

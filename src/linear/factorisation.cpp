@@ -26,6 +26,7 @@ struct Direction {
     std::vector<double> step, image;
     double square = 0; ///< of the image
 };
+using Directions = std::array<Direction, kept_directions>;
 
 /// Directions with their factors, all in one sweep.
 template <std::size_t count>
@@ -109,6 +110,35 @@ struct Factorisation::Implementation {
         }
     }
 
+    /// Direction k of the iteration: from the residual, with the images of the last ones taken out of its own.
+    const Direction& next_direction(Side side, std::size_t k, Directions& directions) {
+        Direction& now = directions[k % kept_directions];
+        now.step = r;
+        pass(side, now.step);
+        now.image.resize(r.size());
+        multiply(side, now.step, now.image);
+        const auto back = [&](std::size_t steps) { return &directions[(k - steps) % kept_directions]; };
+        const double taken_out = k == 0   ? 0.0
+                                 : k == 1 ? orthogonalise<1>(now, {back(1)})
+                                 : k == 2 ? orthogonalise<2>(now, {back(1), back(2)})
+                                          : orthogonalise<3>(now, {back(1), back(2), back(3)});
+        now.square = dot(now.image, now.image);
+        if (now.square < cancelled * taken_out) { // rounding is left: it is no longer the image of what is left
+            multiply(side, now.step, now.image);
+            now.square = dot(now.image, now.image);
+        }
+        return now;
+    }
+
+    /// What the changes to come may amount to: change^2 / previous where they fall fast. A direction across the
+    /// residual also makes a small step: the residual has to tell the same.
+    [[nodiscard]] double error_left(double change, double previous, double size, double size_of_rhs) const {
+        const double next = change * change / previous;
+        return change < 0.1 * previous && largest(r) * std::max(size, size_of_rhs) <= 100 * next * size_of_rhs
+                   ? next
+                   : std::numeric_limits<double>::infinity();
+    }
+
     /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
     /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
     /// refinement and converges where that does not.
@@ -136,24 +166,10 @@ struct Factorisation::Implementation {
             std::transform(x.begin(), x.end(), rhs.begin(), [down](double c) { return c * down; });
             return true;
         };
-        std::array<Direction, kept_directions> directions;
+        Directions directions;
         double previous = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < max_passes; ++k) {
-            Direction& now = directions[k % kept_directions];
-            now.step = r;
-            pass(side, now.step);
-            now.image.resize(n);
-            multiply(side, now.step, now.image);
-            const auto back = [&](std::size_t steps) { return &directions[(k - steps) % kept_directions]; };
-            const double taken_out = k == 0   ? 0.0
-                                     : k == 1 ? orthogonalise<1>(now, {back(1)})
-                                     : k == 2 ? orthogonalise<2>(now, {back(1), back(2)})
-                                              : orthogonalise<3>(now, {back(1), back(2), back(3)});
-            now.square = dot(now.image, now.image);
-            if (now.square < cancelled * taken_out) { // rounding is left: it is no longer the image of what is left
-                multiply(side, now.step, now.image);
-                now.square = dot(now.image, now.image);
-            }
+            const Direction& now = next_direction(side, k, directions);
             if (now.square == 0 && largest(r) == 0) {
                 return deliver(); // nothing is left to correct
             }
@@ -179,12 +195,8 @@ struct Factorisation::Implementation {
                 return deliver();
             }
             if (enough) {
-                double left = std::numeric_limits<double>::infinity();
-                if (k > 0 && change < 0.1 * previous) {
-                    const double next = change * change / previous;
-                    // A direction across the residual also makes a small step: the residual has to tell the same.
-                    left = largest(r) * std::max(size, size_of_rhs) <= 100 * next * size_of_rhs ? next : left;
-                }
+                const double left =
+                    k > 0 ? error_left(change, previous, size, size_of_rhs) : std::numeric_limits<double>::infinity();
                 deliver();
                 if (enough(rhs, left * down)) {
                     error = left * down;

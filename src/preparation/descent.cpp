@@ -51,6 +51,53 @@ class Matching {
     std::size_t next_ = 0;
 };
 
+/// The interior point for a renewed list: pairs that stay keep theirs, others begin with the mean product. `active`
+/// goes with them.
+InteriorPoint carry(const InteriorPoint& point, const std::vector<Contact>& before, const std::vector<Contact>& after,
+                    const std::vector<double>& gaps, ActiveSet& active) {
+    double product = 0;
+    for (std::size_t l = 0; l < point.slack.size(); ++l) {
+        product += point.slack[l] * point.force[l] / static_cast<double>(point.slack.size());
+    }
+    InteriorPoint matched;
+    Matching old(before);
+    std::vector<unsigned char> held(after.size(), 0);
+    for (std::size_t l = 0; l < after.size(); ++l) {
+        if (const auto place = old.find(after[l])) {
+            matched.slack.push_back(point.slack[*place]);
+            matched.force.push_back(point.force[*place]);
+            held[l] = active.row[*place];
+        } else {
+            matched.slack.push_back(std::max(gaps[l], least_slack));
+            matched.force.push_back(product / matched.slack.back());
+        }
+    }
+    active.row = std::move(held);
+    return matched;
+}
+
+/// Largest displacement of a disk from where the list was made; 0 while there is none.
+double moved_since(const std::vector<double>& anchor, const std::vector<double>& q, std::size_t disk_coordinates) {
+    double moved = 0;
+    for (std::size_t k = 0; k < disk_coordinates && !anchor.empty(); ++k) {
+        moved = std::max(moved, std::abs(q[k] - anchor[k]));
+    }
+    return moved;
+}
+
+/// Counts what an iteration changed among the rows that are active, and how far they are from a basis.
+void count_changes(const ActiveSet& before, const ActiveSet& now, std::size_t coordinates, ProgrammeStep& step) {
+    step.changes = 0;
+    long held = 0;
+    for (std::size_t l = 0; l < now.row.size(); ++l) {
+        const bool was = !before.row.empty() && before.row[l] != 0;
+        held += now.row[l];
+        step.changes += was != (now.row[l] != 0) ? 1 : 0;
+    }
+    const bool bounded = std::any_of(now.column.begin(), now.column.end(), [](auto c) { return c != 0; });
+    step.bounds = static_cast<int>(std::abs(held - static_cast<long>(coordinates))) + (bounded ? 1 : 0);
+}
+
 } // namespace
 
 template <int Dim>
@@ -89,7 +136,6 @@ template <int Dim>
 ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
                                              const std::function<void(const ProgrammeStep&)>& watch) {
     const std::size_t disks = infinitesimal_->size();
-    const auto wanted = static_cast<long>(packing.q.size());
     ProgrammeStep step;
     Rows rows;
     InteriorPoint point;
@@ -104,41 +150,15 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
             step.outcome = ProgrammeStep::Outcome::interrupted;
             return step;
         }
-        double moved = 0;
-        for (std::size_t k = 0; k < disks && !anchor.empty(); ++k) {
-            moved = std::max(moved, std::abs(packing.q[k] - anchor[k]));
-        }
         Rows next;
-        const bool renew = !descent || moved > renewal * trust_;
+        const bool renew = !descent || moved_since(anchor, packing.q, disks) > renewal * trust_;
         if (renew) {
             collect(packing, next);
+            point = descent ? carry(point, rows.contact, next.contact, next.gap, active) : first_point(packing, next);
         } else {
             for (const Contact& contact : rows.contact) {
                 next.add(packing, contact);
             }
-        }
-        if (!descent) {
-            point = first_point(packing, next);
-        } else if (renew) {
-            double product = 0;
-            for (std::size_t l = 0; l < point.slack.size(); ++l) {
-                product += point.slack[l] * point.force[l] / static_cast<double>(point.slack.size());
-            }
-            InteriorPoint matched;
-            Matching old(rows.contact);
-            std::vector<unsigned char> held(next.contact.size(), 0);
-            for (std::size_t l = 0; l < next.contact.size(); ++l) {
-                if (const auto before = old.find(next.contact[l])) {
-                    matched.slack.push_back(point.slack[*before]);
-                    matched.force.push_back(point.force[*before]);
-                    held[l] = active.row[*before];
-                } else {
-                    matched.slack.push_back(std::max(next.gap[l], least_slack));
-                    matched.force.push_back(product / matched.slack.back());
-                }
-            }
-            point = std::move(matched);
-            active.row = std::move(held);
         }
         rows = std::move(next);
         // A gap is never smaller than the linear one: the rest of it is slack.
@@ -164,24 +184,22 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
             packing.q[k] += made.x[k];
             step.largest = k < disks ? std::max(step.largest, std::abs(made.x[k])) : step.largest;
         }
-        step.changes = 0;
-        long held = 0;
-        for (std::size_t l = 0; l < made.active.row.size(); ++l) {
-            const bool before = !active.row.empty() && active.row[l] != 0;
-            held += made.active.row[l];
-            step.changes += before != (made.active.row[l] != 0) ? 1 : 0;
-        }
+        count_changes(active, made.active, packing.q.size(), step);
         active = std::move(made.active);
-        const bool bounded = std::any_of(active.column.begin(), active.column.end(), [](auto c) { return c != 0; });
-        step.bounds = static_cast<int>(std::abs(held - wanted)) + (bounded ? 1 : 0);
         const bool low = made.product < settled_product && made.violation < feasible;
         below += low ? 1 : 0;
         settled = low && step.changes == 0 && step.bounds == 0 ? settled + 1 : 0;
         watch(step);
     }
-    if (settled < settled_steps && below < most_below) {
-        return step;
+    if (settled >= settled_steps || below >= most_below) {
+        keep_basis(std::move(rows), active, packing.q.size(), step);
     }
+    return step;
+}
+
+template <int Dim>
+void ContactProgramme<Dim>::keep_basis(Rows rows, const ActiveSet& active, std::size_t coordinates,
+                                       ProgrammeStep& step) {
     step.outcome = ProgrammeStep::Outcome::optimal;
     row_contact_ = std::move(rows.contact);
     row_status_.resize(row_contact_.size());
@@ -191,12 +209,12 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
             step.contacts.push_back(row_contact_[l]);
         }
     }
-    column_status_.assign(packing.q.size(), ClpSimplex::basic);
+    column_status_.assign(coordinates, ClpSimplex::basic);
     first_ = false;
     inside_ = step.bounds != 0 || step.changes > few_changes;
-    return step;
 }
 
+template void ContactProgramme<2>::keep_basis(Rows, const ActiveSet&, std::size_t, ProgrammeStep&);
 template ProgrammeStep ContactProgramme<2>::descend(Packing<2>&, double,
                                                     const std::function<void(const ProgrammeStep&)>&);
 template InteriorPoint ContactProgramme<2>::first_point(const Packing<2>&, const Rows&) const;

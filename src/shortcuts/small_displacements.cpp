@@ -103,111 +103,137 @@ template <int Dim> std::vector<Contact> pairs_near(const Packing<Dim>& packing, 
     return pairs;
 }
 
+/// Loading with linear gaps, an arc after the other.
+template <int Dim> class LinearLoading {
+  public:
+    LinearLoading(const State<Dim>& start, LinearGeometry geometry)
+        : at_{start.packing, start.packing, {}, {}}, contacts_(start.contacts), load_(start.load),
+          reference_(start.packing.length(start.load.loaded_axis)), frozen_(geometry == LinearGeometry::frozen) {
+        if (!frozen_) {
+            return;
+        }
+        const ContactSet first(contacts_, start.packing.disk_count());
+        at_.pairs = pairs_near(start.packing, contacts_);
+        for (const Contact& c : at_.pairs) {
+            at_.linear.push_back(first.contains(c) ? 0.0 : gap(start.packing, c));
+        }
+    }
+
+    LinearTrajectory<Dim> run(int equilibria, long max_arcs) {
+        while (run_.stopped.empty() && static_cast<int>(run_.equilibria.size()) <= equilibria) {
+            auto structure = IsostaticStructure<Dim>::prove(at_.geometry, contacts_);
+            if (!structure.ok()) {
+                run_.stopped = structure.failure().message();
+                break;
+            }
+            std::optional<Factorisation> factorisation;
+            {
+                const ProcessorTime time(run_.seconds);
+                factorisation.emplace(structure.value());
+            }
+            const std::optional<Opening> opening = open(structure.value(), *factorisation);
+            if (!opening || static_cast<int>(run_.equilibria.size()) > equilibria) {
+                break;
+            }
+            if (static_cast<long>(run_.arcs.size()) >= max_arcs) {
+                run_.stopped = fmt::format("{} arcs", max_arcs);
+                break;
+            }
+            move(structure.value(), *factorisation, *opening);
+        }
+        return std::move(run_);
+    }
+
+  private:
+    /// What opens: a tension; at an equilibrium, which is recorded, the contact whose force vanishes first. Nothing:
+    /// the run stops.
+    std::optional<Opening> open(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation) {
+        const InverseBound inverse = bound_inverse(structure, factorisation, cache_);
+        const ProcessorTime time(run_.seconds);
+        Statics<Dim> statics(at_.geometry, load_, structure, factorisation, inverse);
+        const auto decision =
+            decide_opening(statics, stress(), OpeningRule::most_negative, ContactId(), std::uint64_t{0});
+        if (!decision.ok()) {
+            run_.stopped = decision.failure().message();
+            return {};
+        }
+        return decision.value().opening ? decision.value().opening : open_at_limit(statics);
+    }
+
+    std::optional<Opening> open_at_limit(Statics<Dim>& statics) {
+        auto limit = find_limit(statics, stress(), +1);
+        run_.equilibria.push_back({stress(), std::numeric_limits<double>::infinity(),
+                                   (reference_ - at_.grains.length(load_.loaded_axis)) / reference_, arcs_});
+        if (!limit.ok() || limit.value().unbounded) {
+            run_.stopped = limit.ok() ? "every load is supported" : limit.failure().message();
+            return {};
+        }
+        run_.equilibria.back().stress_high = limit.value().stress;
+        stress() = limit.value().stress;
+        if (frozen_) {
+            // To first order the new contact carries nothing at the limit itself: rounding would decide whether the
+            // arc is taken back.
+            stress() += std::max(4 * limit.value().stress_error, frozen_excess * std::abs(limit.value().stress));
+        }
+        arcs_ = 0;
+        Opening opening;
+        opening.contact = limit.value().opens;
+        return opening;
+    }
+
+    /// One arc.
+    void move(const IsostaticStructure<Dim>& structure, const Factorisation& factorisation, const Opening& opening) {
+        ++arcs_;
+        const ProcessorTime time(run_.seconds);
+        if (!frozen_) {
+            at_.pairs = pairs_near(at_.geometry, {});
+        }
+        auto event = find_linear_event(at_.geometry, structure, factorisation, opening.contact, opening.direction,
+                                       at_.pairs, at_.linear);
+        if (!event.ok()) {
+            run_.stopped = event.failure().message();
+            return;
+        }
+        for (std::size_t c = 0; c < at_.grains.q.size(); ++c) {
+            at_.grains.q[c] += event.value().displacement[c];
+        }
+        Contact& changes = contacts_[opening.contact.index()];
+        LinearArc arc{static_cast<int>(run_.equilibria.size()) - 1, stress(), changes, event.value().closed, 0};
+        changes = event.value().closed;
+        if (frozen_) {
+            for (std::size_t k = 0; k < at_.pairs.size(); ++k) {
+                at_.linear[k] += rate(gap_gradient(at_.geometry, at_.pairs[k]), event.value().displacement);
+            }
+        } else {
+            snap_to_grid(at_.grains);
+            at_.geometry = at_.grains;
+        }
+        for (const Contact& c : contacts_) {
+            arc.drift = std::max(arc.drift, std::abs(gap(at_.grains, c)) / at_.grains.min_radius());
+        }
+        run_.arcs.push_back(arc);
+        run_.coordinates.push_back(at_.grains.q);
+    }
+
+    double& stress() { return load_.stress[static_cast<std::size_t>(load_.loaded_axis)]; }
+
+    LinearTrajectory<Dim> run_;
+    Approximation<Dim> at_;
+    std::vector<Contact> contacts_;
+    Load<Dim> load_;
+    double reference_; ///< length along the loaded axis at the start
+    bool frozen_;
+    InverseBoundCache cache_;
+    int arcs_ = 0; ///< since the last equilibrium
+};
+
 } // namespace
 
 template <int Dim>
 LinearTrajectory<Dim> load_with_linear_gaps(const State<Dim>& start, LinearGeometry geometry, int equilibria,
                                             long max_arcs) {
     require_floating_point();
-    LinearTrajectory<Dim> run;
-    Approximation<Dim> at{start.packing, start.packing, {}, {}};
-    std::vector<Contact> contacts = start.contacts;
-    Load<Dim> load = start.load;
-    const auto axis = static_cast<std::size_t>(load.loaded_axis);
-    const bool frozen = geometry == LinearGeometry::frozen;
-    if (frozen) {
-        const ContactSet first(contacts, start.packing.disk_count());
-        at.pairs = pairs_near(start.packing, contacts);
-        for (const Contact& c : at.pairs) {
-            at.linear.push_back(first.contains(c) ? 0.0 : gap(start.packing, c));
-        }
-    }
-    InverseBoundCache cache;
-    int arcs = 0;
-    std::optional<Opening> opening;
-    while (true) {
-        auto structure = IsostaticStructure<Dim>::prove(at.geometry, contacts);
-        if (!structure.ok()) {
-            run.stopped = structure.failure().message();
-            return run;
-        }
-        std::optional<Factorisation> factorisation;
-        {
-            const ProcessorTime time(run.seconds);
-            factorisation.emplace(structure.value());
-        }
-        const InverseBound inverse = bound_inverse(structure.value(), *factorisation, cache);
-        std::optional<Statics<Dim>> statics;
-        {
-            const ProcessorTime time(run.seconds);
-            statics.emplace(at.geometry, load, structure.value(), *factorisation, inverse);
-            auto decision =
-                decide_opening(*statics, load.stress[axis], OpeningRule::most_negative, ContactId(), std::uint64_t{0});
-            if (!decision.ok()) {
-                run.stopped = decision.failure().message();
-                return run;
-            }
-            opening = decision.value().opening;
-            if (!opening) {
-                auto limit = find_limit(*statics, load.stress[axis], +1);
-                const double reference = start.packing.length(load.loaded_axis);
-                run.equilibria.push_back({load.stress[axis], std::numeric_limits<double>::infinity(),
-                                          (reference - at.grains.length(load.loaded_axis)) / reference, arcs});
-                if (!limit.ok() || limit.value().unbounded) {
-                    run.stopped = limit.ok() ? "every load is supported" : limit.failure().message();
-                    return run;
-                }
-                run.equilibria.back().stress_high = limit.value().stress;
-                if (static_cast<int>(run.equilibria.size()) > equilibria) {
-                    return run;
-                }
-                load.stress[axis] = limit.value().stress;
-                if (frozen) {
-                    // To first order the new contact carries nothing at the limit itself: rounding would decide
-                    // whether the arc is taken back.
-                    load.stress[axis] +=
-                        std::max(4 * limit.value().stress_error, frozen_excess * std::abs(limit.value().stress));
-                }
-                opening = Opening{};
-                opening->contact = limit.value().opens;
-                arcs = 0;
-            }
-        }
-        if (static_cast<long>(run.arcs.size()) >= max_arcs) {
-            run.stopped = fmt::format("{} arcs", max_arcs);
-            return run;
-        }
-        ++arcs;
-        const ProcessorTime time(run.seconds);
-        if (!frozen) {
-            at.pairs = pairs_near(at.geometry, {});
-        }
-        auto event = find_linear_event(at.geometry, structure.value(), *factorisation, opening->contact,
-                                       opening->direction, at.pairs, at.linear);
-        if (!event.ok()) {
-            run.stopped = event.failure().message();
-            return run;
-        }
-        for (std::size_t c = 0; c < at.grains.q.size(); ++c) {
-            at.grains.q[c] += event.value().displacement[c];
-        }
-        LinearArc arc{static_cast<int>(run.equilibria.size()) - 1, load.stress[axis],
-                      contacts[opening->contact.index()], event.value().closed, 0};
-        contacts[opening->contact.index()] = event.value().closed;
-        if (frozen) {
-            for (std::size_t k = 0; k < at.pairs.size(); ++k) {
-                at.linear[k] += rate(gap_gradient(at.geometry, at.pairs[k]), event.value().displacement);
-            }
-        } else {
-            snap_to_grid(at.grains);
-            at.geometry = at.grains;
-        }
-        for (const Contact& c : contacts) {
-            arc.drift = std::max(arc.drift, std::abs(gap(at.grains, c)) / at.grains.min_radius());
-        }
-        run.arcs.push_back(arc);
-        run.coordinates.push_back(at.grains.q);
-    }
+    return LinearLoading<Dim>(start, geometry).run(equilibria, max_arcs);
 }
 
 template Result<LinearEvent> find_linear_event<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,

@@ -193,86 +193,106 @@ void BlockCholesky::analyse() {
     }
 }
 
+/// Arrays of a factorisation: not read through `this`, which every store might change.
+struct BlockCholesky::Arrays {
+    Block* value;
+    Block* work; ///< the column in work
+    int* place;  ///< of each row in it
+    const int* start;
+    const int* row;
+    const int* column;
+    const int* across;
+};
+
+/// Column j of H H^T - shift I, scattered; returns how many blocks L has below the diagonal.
+inline std::size_t BlockCholesky::load_column(const Arrays& at, std::size_t j, double shift) const {
+    const auto begin = static_cast<std::size_t>(at.start[j]);
+    const auto count = static_cast<std::size_t>(at.start[j + 1]) - begin;
+    std::fill_n(at.work, count + 1, Block{});
+    at.place[j] = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        at.place[static_cast<std::size_t>(at.row[begin + k])] = static_cast<int>(k) + 1;
+    }
+    at.work[0] = diagonal_[j];
+    at.work[0].value[0] -= shift;
+    at.work[0].value[3] -= shift;
+    for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) {
+        const Pair& pair = pairs_[static_cast<std::size_t>(by_column_[static_cast<std::size_t>(p)])];
+        std::array<double, 4>& w = at.work[at.place[pair.row.place]].value;
+        const std::array<double, 2>& own = pair.column.value;
+        const std::array<double, 2>& other = pair.row.value;
+        w[0] += other[0] * own[0];
+        w[1] += other[1] * own[0];
+        w[2] += other[0] * own[1];
+        w[3] += other[1] * own[1];
+    }
+    return count;
+}
+
+/// work -= m l^T for the columns of row j, in the order of the scalar operations: the bits do not depend on the width.
+/// Two columns at a time when one is the parent of the other and has as many rows left: it has the same rows then.
+ISOSTAT_WITHIN_WIDE void BlockCholesky::subtract_columns(const Arrays& at, std::size_t begin, std::size_t end) {
+    Block* const value = at.value;
+    Block* const work = at.work;
+    const int* const place = at.place;
+    const int* const start = at.start;
+    const int* const row = at.row;
+    for (std::size_t a = begin; a < end; ++a) {
+        const int c = at.column[a];
+        const int own = at.across[a];
+        const int left = start[c + 1] - own;
+        Wide l;
+        read(l, value[own].value.data());
+        const Wide first = __builtin_shufflevector(l, l, 0, 0, 1, 1);
+        const Wide second = __builtin_shufflevector(l, l, 2, 2, 3, 3);
+        const bool two =
+            a + 1 < end && row[start[c]] == at.column[a + 1] && start[at.column[a + 1] + 1] - at.across[a + 1] == left;
+        if (!two) {
+            for (int q = 0; q < left; ++q) {
+                double* target = work[place[row[own + q]]].value.data();
+                Wide m;
+                Wide w;
+                read(m, value[own + q].value.data());
+                read(w, target);
+                w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
+                w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
+                write(target, w);
+            }
+            continue;
+        }
+        const int other = at.across[++a];
+        read(l, value[other].value.data());
+        const Wide third = __builtin_shufflevector(l, l, 0, 0, 1, 1);
+        const Wide fourth = __builtin_shufflevector(l, l, 2, 2, 3, 3);
+        for (int q = 0; q < left; ++q) {
+            double* target = work[place[row[own + q]]].value.data();
+            Wide m;
+            Wide k;
+            Wide w;
+            read(m, value[own + q].value.data());
+            read(k, value[other + q].value.data());
+            read(w, target);
+            w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
+            w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
+            w = w - __builtin_shufflevector(k, k, 0, 1, 0, 1) * third;
+            w = w - __builtin_shufflevector(k, k, 2, 3, 2, 3) * fourth;
+            write(target, w);
+        }
+    }
+}
+
 ISOSTAT_WIDE
 bool BlockCholesky::factorise(double shift) {
     place_.resize(blocks_);
     work_.resize(blocks_);
     pivot_.resize(blocks_);
-    int* const place = place_.data(); // of each row in the column in work
-    Block* const work = work_.data();
-    Block* const value = value_.data(); // not through `this`, which every store might change
-    const int* const start = start_.data();
-    const int* const row = row_.data();
-    const int* const column = column_.data();
-    const int* const across = across_.data();
+    const Arrays at{value_.data(), work_.data(),   place_.data(), start_.data(),
+                    row_.data(),   column_.data(), across_.data()};
     for (std::size_t j = 0; j < blocks_; ++j) {
-        const auto begin = static_cast<std::size_t>(start[j]);
-        const auto count = static_cast<std::size_t>(start[j + 1]) - begin;
-        std::fill_n(work, count + 1, Block{});
-        place[j] = 0;
-        for (std::size_t k = 0; k < count; ++k) {
-            place[static_cast<std::size_t>(row[begin + k])] = static_cast<int>(k) + 1;
-        }
-        work[0] = diagonal_[j];
-        work[0].value[0] -= shift;
-        work[0].value[3] -= shift;
-        for (int p = column_start_[j]; p < column_start_[j + 1]; ++p) {
-            const Pair& pair = pairs_[static_cast<std::size_t>(by_column_[static_cast<std::size_t>(p)])];
-            std::array<double, 4>& w = work[place[pair.row.place]].value;
-            const std::array<double, 2>& own = pair.column.value;
-            const std::array<double, 2>& other = pair.row.value;
-            w[0] += other[0] * own[0];
-            w[1] += other[1] * own[0];
-            w[2] += other[0] * own[1];
-            w[3] += other[1] * own[1];
-        }
-        // work -= m l^T for the columns of this row, in the order of the scalar operations: the bits do not depend on
-        // the width. Two columns at a time when one is the parent of the other and has as many rows left: it has the
-        // same rows then.
-        const auto across_end = static_cast<std::size_t>(across_start_[j + 1]);
-        for (auto a = static_cast<std::size_t>(across_start_[j]); a < across_end; ++a) {
-            const int c = column[a];
-            const int own = across[a];
-            const int left = start[c + 1] - own;
-            Wide l;
-            read(l, value[own].value.data());
-            const Wide first = __builtin_shufflevector(l, l, 0, 0, 1, 1);
-            const Wide second = __builtin_shufflevector(l, l, 2, 2, 3, 3);
-            const bool two = a + 1 < across_end && row[start[c]] == column[a + 1] &&
-                             start[column[a + 1] + 1] - across[a + 1] == left;
-            if (!two) {
-                for (int q = 0; q < left; ++q) {
-                    double* target = work[place[row[own + q]]].value.data();
-                    Wide m;
-                    Wide w;
-                    read(m, value[own + q].value.data());
-                    read(w, target);
-                    w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
-                    w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
-                    write(target, w);
-                }
-                continue;
-            }
-            const int other = across[++a];
-            read(l, value[other].value.data());
-            const Wide third = __builtin_shufflevector(l, l, 0, 0, 1, 1);
-            const Wide fourth = __builtin_shufflevector(l, l, 2, 2, 3, 3);
-            for (int q = 0; q < left; ++q) {
-                double* target = work[place[row[own + q]]].value.data();
-                Wide m;
-                Wide k;
-                Wide w;
-                read(m, value[own + q].value.data());
-                read(k, value[other + q].value.data());
-                read(w, target);
-                w = w - __builtin_shufflevector(m, m, 0, 1, 0, 1) * first;
-                w = w - __builtin_shufflevector(m, m, 2, 3, 2, 3) * second;
-                w = w - __builtin_shufflevector(k, k, 0, 1, 0, 1) * third;
-                w = w - __builtin_shufflevector(k, k, 2, 3, 2, 3) * fourth;
-                write(target, w);
-            }
-        }
-        const std::array<double, 4>& diagonal = work[0].value;
+        const std::size_t count = load_column(at, j, shift);
+        subtract_columns(at, static_cast<std::size_t>(across_start_[j]),
+                         static_cast<std::size_t>(across_start_[j + 1]));
+        const std::array<double, 4>& diagonal = at.work[0].value;
         const double d0 = diagonal[0];
         if (!(d0 > 0)) {
             return false;
@@ -288,8 +308,8 @@ bool BlockCholesky::factorise(double shift) {
         const double by00 = 1 / l00;
         const double by11 = 1 / l11;
         for (std::size_t k = 0; k < count; ++k) {
-            const std::array<double, 4>& w = work[k + 1].value;
-            std::array<double, 4>& l = value[begin + k].value;
+            const std::array<double, 4>& w = at.work[k + 1].value;
+            std::array<double, 4>& l = at.value[static_cast<std::size_t>(at.start[j]) + k].value;
             l[0] = w[0] * by00;
             l[1] = w[1] * by00;
             l[2] = (w[2] - l[0] * l10) * by11;

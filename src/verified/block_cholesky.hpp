@@ -40,6 +40,9 @@ class BlockCholesky {
         Part column, row; ///< column.place < row.place
     };
 
+    struct Arrays;
+    std::size_t load_column(const Arrays& at, std::size_t j, double shift) const;
+    static void subtract_columns(const Arrays& at, std::size_t begin, std::size_t end);
     void arrange(const std::vector<int>& order);
     void analyse();
     double largest_ratio(const std::vector<double>& relative, double shift, std::vector<double>& x) const;

@@ -150,7 +150,8 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed) {
     RandomRun run;
     snap_to_grid(start->packing);
     run.start = *start;
-    run.options.rule = static_cast<OpeningRule>(random.integer(2) == 0 ? 0 : random.integer(4));
+    run.options.rule = static_cast<OpeningRule>(
+        random.integer(2) == 0 ? 0 : random.integer(static_cast<int>(opening_rule_words.size())));
     run.options.rule_seed = random.bits();
     run.options.certify = static_cast<CertifyLevel>(random.integer(4));
     run.options.max_strain = 1e3;

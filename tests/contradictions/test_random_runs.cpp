@@ -194,4 +194,24 @@ BOOST_AUTO_TEST_CASE(no_run_is_refuted_and_no_recorded_number_is_outside_its_bou
     BOOST_TEST((only >= 0 || results.numbers > 10 * results.runs));
 }
 
+// Two vertices of one contact list, mirror images to 3e-4 of a radius and with the same box: the checker's steps lead
+// to the other one, in which a pair overlaps.
+BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refuted) {
+    RandomRun run;
+    run.start = read_state<2>(fs::path(ISOSTAT_TEST_DATA) / "contradictions" / "mirror_vertices.json").state;
+    run.segments.emplace_back();
+    run.segments.back().equilibria = 1;
+    run.change = {0};
+    run.options.certify = CertifyLevel::states;
+    const scratch::Folder folder;
+    std::vector<Recorded> records;
+    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
+    BOOST_TEST_REQUIRE(records.size() == 2U);
+    const RunVerification answer = verify_run(folder.path() / "run");
+    BOOST_TEST(answer.wrong == "");
+    BOOST_TEST(answer.arcs == 23);
+    BOOST_TEST(answer.undecided.size() == 0U);
+    BOOST_TEST(answer.arcs_proved == 23);
+}
+
 BOOST_AUTO_TEST_SUITE_END()

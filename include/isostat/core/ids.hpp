@@ -34,6 +34,8 @@ using DofId = Id<struct DofTag>;
 
 } // namespace isostat
 
+/// \cond
 template <class Tag> struct std::hash<isostat::Id<Tag>> {
     std::size_t operator()(isostat::Id<Tag> id) const noexcept { return std::hash<int>{}(id.value()); }
 };
+/// \endcond

@@ -1,0 +1,87 @@
+// isostat snap, isostat compare and isostat inspect --at as a user runs them: exit statuses, what is printed and
+// written.
+#include "cli/program.hpp"
+
+#include <filesystem>
+
+using namespace program;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// snap of a frame of the series, with its walls and loads as frames.csv has them.
+Outcome snap(int frame, const std::string& box, const std::string& stress, const fs::path& output) {
+    return run({"snap", scratch::data("series/disks.dump"), "--frame", std::to_string(frame), "--box", box,
+                "--contacts", scratch::data("series/contacts.dump"), "--contact-columns", "i,j,force", "--stress",
+                stress, "-o", output.string()});
+}
+
+const std::string first_box = "0:15.4590235640695,0:14.8856200965158";
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
+    const scratch::Folder folder;
+    const fs::path state = folder / "state.json";
+    const Outcome made = snap(0, first_box, "1,1", state);
+    expect(made, 0);
+    for (const char* words : {"156 pairs with a force", "h = 0, k = 0, 7 rattlers", "snap      vertex"}) {
+        BOOST_TEST(contains(made.out, words), words << " not in " << made.out);
+    }
+    expect(run({"certify", state.string(), "-o", (folder / "certificate.json").string()}), 0);
+    expect(run({"verify", (folder / "certificate.json").string()}), 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_hyperstatic_frame_has_no_state_and_status_1) {
+    const scratch::Folder folder;
+    const Outcome made = snap(8, "0:16.0045436303101,0:14.4378229180508", "1,1.56", folder / "state.json");
+    expect(made, 1);
+    BOOST_TEST(contains(made.out, "snap      hyperstatic: the list has N_f = 198, N = 199"), made.out);
+    BOOST_TEST(!fs::exists(folder / "state.json"));
+}
+
+BOOST_AUTO_TEST_CASE(what_snap_cannot_read_leaves_nothing) {
+    const scratch::Folder folder;
+    const fs::path state = folder / "state.json";
+    expect(run({"snap", (folder / "absent").string(), "-o", state.string()}), 65, {"absent"});
+    expect(snap(0, "0:15", "1,1", state), 64);
+    expect(snap(99, first_box, "1,1", state), 65, {"frame 99"});
+    BOOST_TEST(!fs::exists(state));
+}
+
+BOOST_AUTO_TEST_CASE(forces_at_another_load_are_those_of_a_state_under_it) {
+    const scratch::Folder folder;
+    const std::string state = (folder / "state.json").string();
+    expect(snap(0, first_box, "1,1", state), 0);
+    const Outcome inside = run({"inspect", state, "--at", "1.03"});
+    expect(inside, 0);
+    BOOST_TEST(contains(inside.out, "sigma = (1, 1.03)"), inside.out);
+    expect(snap(0, first_box, "1,1.03", state), 0);
+    const Outcome stored = run({"inspect", state, "--at", "1.03"});
+    expect(stored, 0);
+    const auto forces = [](const std::string& text) { return text.substr(text.find("force 0-19")); };
+    BOOST_TEST(contains(inside.out, "force 0-19"), inside.out);
+    BOOST_TEST(forces(inside.out) == forces(stored.out));
+    const Outcome outside = run({"inspect", state, "--at", "1.2"}); // beyond 1.0398, where 26-35 opens
+    expect(outside, 1);
+    BOOST_TEST(contains(outside.out, "refuted"), outside.out);
+    expect(run({"inspect", state, "--at", "high"}), 64);
+}
+
+BOOST_AUTO_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables) {
+    const scratch::Folder folder;
+    const fs::path output = folder / "comparison";
+    const Outcome made = run({"compare", scratch::data("series/series.toml"), "-o", output.string(), "--bundle", "0"});
+    expect(made, 1);
+    BOOST_TEST(contains(made.out, "9 frames: 4 same, 1 early, 1 other, 1 soft, 1 moving, 1 undecided"), made.out);
+    BOOST_TEST(contains(made.out, "FIRST DEPARTURE: frames 2 -> 3: stiffness"), made.out);
+    for (const char* name : {"comparison.csv", "comparison.json", "path.csv"}) {
+        BOOST_TEST(fs::file_size(output / name) > 100U, name);
+    }
+    expect(run({"compare", (folder / "absent.toml").string(), "-o", (folder / "none").string()}), 65, {"absent.toml"});
+    BOOST_TEST(!fs::exists(folder / "none"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -21,7 +21,7 @@ isostat_wheel_packages=(python3-pip python3-setuptools python3-wheel)
 # For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
 isostat_count_packages=(valgrind)
 # For the style of the sources and the pages of the headers: optional, installed by continuous integration.
-isostat_lint_packages=(clang-format-16 clang-tidy-16 doxygen)
+isostat_lint_packages=(clang-format-16 doxygen)
 if [ "${CI:-}" = true ]; then
   isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_wheel_packages[@]}"
     "${isostat_count_packages[@]}" "${isostat_lint_packages[@]}")

@@ -37,11 +37,24 @@ void print_frames(const compare::Comparison& comparison) {
                                   : f.found == f.expected ? fmt::format("{}", f.expected)
                                   : f.found < 0           ? fmt::format("{}/-", f.expected)
                                                           : fmt::format("{}/{}", f.expected, f.found);
-        fmt::print("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}\n",
+        const std::string local = f.local.empty() ? "" : fmt::format("; from the frame before: {}", f.local);
+        fmt::print("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}{}\n",
                    f.frame, f.sigma2, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count,
                    f.counting.hyperstaticity, f.counting.mechanisms, f.rattlers, shown(f.distance), shown(f.law),
                    shown(f.rest), shown(f.stiffness), place, to_string(f.status), f.reason.empty() ? "" : ": ",
-                   f.reason);
+                   f.reason, local);
+    }
+}
+
+/// How many frames are where the exact run leads from the frame before.
+void print_local(const std::vector<compare::FrameResult>& frames) {
+    int asked = 0, same = 0;
+    for (const compare::FrameResult& f : frames) {
+        asked += f.local.empty() ? 0 : 1;
+        same += f.local == "same" ? 1 : 0;
+    }
+    if (asked > 0) {
+        fmt::print("local: {} of {} frames are where the exact run from the frame before ends\n", same, asked);
     }
 }
 
@@ -69,6 +82,7 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
         }
     }
     fmt::print("\n{} frames: {}\n", comparison.frames.size(), text);
+    print_local(comparison.frames);
     if (const auto& d = comparison.departure) {
         fmt::print("FIRST DEPARTURE: frames {} -> {}: {}: {}\n", d->from < 0 ? "-" : std::to_string(d->from), d->to,
                    d->reason, d->words);
@@ -82,6 +96,7 @@ int compare_series(const CompareArguments& a) {
     const compare::Series series = compare::read_series(a.series);
     compare::CompareOptions options;
     options.bundle = a.bundle;
+    options.local = a.local;
     if (!a.reference.empty()) {
         options.start = start_of(a.reference);
         if (options.start->packing.radius != series.frames.front().packing.radius) {

@@ -434,6 +434,9 @@ struct Program {
         command
             .add_option("--bundle", a.bundle, "exact runs with other rules of opening at the departure (default 16)")
             ->check(CLI::Range(0, 10000));
+        command.add_flag(
+            "--local", a.local,
+            "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
         add_threads(command, a.common);
         add_common(command, a.common, true);
         command.callback([&a, line, this] {

@@ -1,5 +1,6 @@
 #include "compare/departure.hpp"
 #include "compare/frame.hpp"
+#include "compare/local.hpp"
 #include "compare/path.hpp"
 
 #include <fmt/format.h>
@@ -84,10 +85,13 @@ Comparison compare(const Series& series, const CompareOptions& options) {
     std::vector<JudgedFrame> judged;
     std::optional<State<2>> start = options.start;
     for (const Frame& frame : series.frames) {
-        judged.push_back(judge(series, frame, !start));
+        judged.push_back(judge(series, frame, !start || options.local));
         if (!start && judged.back().state) {
             start = judged.back().state;
         }
+    }
+    if (options.local) {
+        compare_with_frame_before(judged, run);
     }
     Path path;
     std::vector<double> loads;

@@ -65,6 +65,7 @@ const std::vector<Column<FrameResult>>& of_frames() {
                                                 {"eps2", [](const F& f) { return or_null(f.eps2); }},
                                                 {"true_eps1", [](const F& f) { return or_null(f.true_eps1); }},
                                                 {"true_eps2", [](const F& f) { return or_null(f.true_eps2); }},
+                                                {"local", [](const F& f) { return f.local; }},
                                                 {"reason", [](const F& f) { return f.reason; }}};
     return columns;
 }

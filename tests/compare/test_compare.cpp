@@ -102,6 +102,26 @@ BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_i
     }
 }
 
+BOOST_AUTO_TEST_CASE(every_frame_is_compared_with_the_exact_run_from_the_frame_before_when_asked) {
+    const Copy copy(5);
+    const auto compared = [&copy](bool local) {
+        compare::CompareOptions options;
+        options.bundle = 0;
+        options.local = local;
+        return copy.compare(options);
+    };
+    const Comparison result = compared(true);
+    const std::vector<std::string> expected{"", "same", "same", "other", "same"};
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        BOOST_TEST(result.frames[k].local == expected[k], "frame " << k << ": " << result.frames[k].local);
+    }
+    const Comparison without = compared(false);
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        BOOST_TEST(without.frames[k].local.empty());
+        BOOST_TEST((without.frames[k].status == result.frames[k].status));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     const Copy copy(3);
     const Comparison result = copy.compare();

@@ -1,11 +1,5 @@
 // Links something of every room, so that a missing library shows; then computes in another way, which must be refused.
-#include <isostat/certificate/inspect.hpp>
-#include <isostat/core/error.hpp>
-#include <isostat/io/state_file.hpp>
-#include <isostat/preparation/preparation.hpp>
-#include <isostat/report/picture.hpp>
-#include <isostat/scene/scene.hpp>
-#include <isostat/trajectory/trajectory.hpp>
+#include <isostat/isostat.hpp> // every public header: none may need a private one
 
 #include <cfenv>
 #include <cstdio>

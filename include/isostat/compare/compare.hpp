@@ -2,10 +2,9 @@
 /// \file
 /// A series of frames of soft grains against the exact trajectory of rigid ones.
 
-#include "statics/decisions.hpp"
-
 #include <isostat/compare/series.hpp>
 #include <isostat/compare/snap.hpp>
+#include <isostat/statics/opening_rule.hpp>
 
 #include <atomic>
 #include <optional>
@@ -49,6 +48,10 @@ struct FrameResult {
     double law = 0, ratio = 1, rest = 0, stiffness = 0;
     double eps1 = 0, eps2 = 0;           ///< strains of the frame
     double true_eps1 = 0, true_eps2 = 0; ///< of its true vertex
+    /// With `local`: the exact run from the vertex of the frame before, at the load of this one, has the list of this
+    /// frame ("same"), another one ("other"), or ended before ("undecided" and why). Empty: not asked, or no vertex
+    /// there.
+    std::string local;
 };
 
 /// One equilibrium of the exact run: a list of contacts, the interval of sigma_2 in which it is supported, and what
@@ -76,7 +79,8 @@ struct Departure {
 struct CompareOptions {
     std::optional<State<2>> start; ///< of the exact run; none: the vertex of the first frame that has one
     OpeningRule rule = OpeningRule::most_negative;
-    int bundle = 16; ///< runs with other rules and resting places, where the departure asks for them
+    int bundle = 16;    ///< runs with other rules and resting places, where the departure asks for them
+    bool local = false; ///< besides, the exact run from every frame to the next
     const std::atomic<bool>* stop = nullptr;
 };
 

@@ -1,0 +1,33 @@
+#include "compare/local.hpp"
+
+#include "compare/path.hpp"
+
+#include <isostat/core/threads.hpp>
+
+#include <cstddef>
+#include <string>
+
+namespace isostat::compare {
+
+namespace {
+
+std::string outcome(const JudgedFrame& before, const JudgedFrame& after, const RunOptions& options) {
+    const FrameResult& r = after.result;
+    if (!before.state || r.status == FrameStatus::file || r.status == FrameStatus::moving) {
+        return {};
+    }
+    const auto list = list_after(*before.state, r.sigma2, false, options);
+    return !list.ok() ? "undecided: " + list.failure().message() : list.value() == after.list ? "same" : "other";
+}
+
+} // namespace
+
+void compare_with_frame_before(std::vector<JudgedFrame>& frames, const RunOptions& options) {
+    parallel_pieces(frames.size(), [&](std::size_t k) {
+        if (k > 0) {
+            frames[k].result.local = outcome(frames[k - 1], frames[k], options);
+        }
+    });
+}
+
+} // namespace isostat::compare

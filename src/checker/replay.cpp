@@ -456,7 +456,9 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
     if (place.first) {
         return check_limit_at(place, limit, opened, at_limit);
     }
-    const int direction = event.stress > place.stress() ? 1 : -1;
+    // An equilibrium that stands at the end of its interval leaves it on the side on which the force falls.
+    const bool up = event.stress == place.stress() ? e.slopes()[opened].negative() : event.stress > place.stress();
+    const int direction = up ? 1 : -1;
     if (Objections wrong = check_load_end(place, limit, opened, direction)) {
         // The arc may have been found on a lower rung than the row, and has no bound of its own.
         const Bounded roughly{event.stress, bound + record_tolerance * size};

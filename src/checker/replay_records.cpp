@@ -1,5 +1,6 @@
 // The numbers of records against the vertices of a replay.
 #include "checker/gaps.hpp"
+#include "checker/newton.hpp"
 #include "checker/replay.hpp"
 
 #include <fmt/format.h>
@@ -306,6 +307,75 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     return {};
 }
 
+namespace {
+
+/// First-order terms of a stored state whose radii have a direction.
+Objections check_direction(const Place& place, const RadiusPerturbation& said) {
+    const auto meets = [](const Range& range, const Enclosure& term) {
+        return term.radius >= 0 && range.lower <= Rational(term.value) + Rational(term.radius) &&
+               range.upper >= Rational(term.value) - Rational(term.radius);
+    };
+    if (said.open.size() != place.touching.size() || said.zero.size() != place.ties.size()) {
+        return Objection{true,
+                         fmt::format("{} pairs that touch and {} forces that vanish, found {} and {}", said.open.size(),
+                                     said.zero.size(), place.touching.size(), place.ties.size())};
+    }
+    for (const auto& [pair, term] : said.open) {
+        const auto found = std::find_if(place.touching.begin(), place.touching.end(),
+                                        [&pair = pair](const Gap& gap) { return gap.pair == pair; });
+        if (found == place.touching.end() || !meets(found->value, term)) {
+            return Objection{true, fmt::format("the first-order gap of {} is {} +- {}, found {}", to_string<2>(pair),
+                                               term.value, term.radius,
+                                               found == place.touching.end() ? "no such pair" : shown(found->value))};
+        }
+    }
+    for (const auto& [contact, term] : said.zero) {
+        const auto& contacts = place.state->contacts;
+        const auto l =
+            static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), contact) - contacts.begin());
+        if (l == contacts.size() || !meets(place.first_force[l], term)) {
+            return Objection{true, fmt::format("the first-order force of {} is {} +- {}, found {}",
+                                               to_string<2>(contact), term.value, term.radius,
+                                               l == contacts.size() ? "no such contact" : shown(place.first_force[l]))};
+        }
+    }
+    return {};
+}
+
+/// The doubles of a stored state against the vertex that was reached. Where they are farther from it than doubles of a
+/// well conditioned packing, but its contacts are as closed as doubles allow, the vertex near the stored state tells.
+Objections check_coordinates(const Place& place, const State<2>& stored) {
+    const double size = stored.packing.max_radius();
+    Objections wrong;
+    for (std::size_t k = 0; k < stored.packing.q.size() && !wrong; ++k) {
+        wrong = compare("a coordinate of the stored state", stored.packing.q[k], place.coordinate(k), size);
+    }
+    const System system(stored.packing, stored.contacts);
+    const auto closed = [&](const Contact& contact) {
+        constexpr double rounding = 0x1p-40;
+        return contact.kind == ContactKind::held ||
+               std::abs(system.value(stored.packing.q, contact)) <= rounding * size;
+    };
+    if (!wrong || !wrong->wrong || !std::all_of(stored.contacts.begin(), stored.contacts.end(), closed)) {
+        return wrong;
+    }
+    Place own;
+    (void)make_place(stored, own, place.load);
+    if (!own.evidence || !own.evidence->vertex.found) {
+        return Objection{false, wrong->text};
+    }
+    for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {
+        const Range a = own.coordinate(k);
+        const Range b = place.coordinate(k);
+        if (a.upper < b.lower || b.upper < a.lower) {
+            return wrong;
+        }
+    }
+    return {};
+}
+
+} // namespace
+
 Objections check_stored(const Place& place, const State<2>& stored) {
     const auto as_set = [](const State<2>& state) {
         return std::set<Contact>(state.contacts.begin(), state.contacts.end());
@@ -328,46 +398,11 @@ Objections check_stored(const Place& place, const State<2>& stored) {
         return Objection{true, "the stored state has another direction of the radii"};
     }
     if (stored.perturbation) {
-        const RadiusPerturbation& said = *stored.perturbation;
-        const auto meets = [](const Range& range, const Enclosure& term) {
-            return term.radius >= 0 && range.lower <= Rational(term.value) + Rational(term.radius) &&
-                   range.upper >= Rational(term.value) - Rational(term.radius);
-        };
-        if (said.open.size() != place.touching.size() || said.zero.size() != place.ties.size()) {
-            return Objection{true,
-                             fmt::format("{} pairs that touch and {} forces that vanish, found {} and {}",
-                                         said.open.size(), said.zero.size(), place.touching.size(), place.ties.size())};
-        }
-        for (const auto& [pair, term] : said.open) {
-            const auto found = std::find_if(place.touching.begin(), place.touching.end(),
-                                            [&pair = pair](const Gap& gap) { return gap.pair == pair; });
-            if (found == place.touching.end() || !meets(found->value, term)) {
-                return Objection{true,
-                                 fmt::format("the first-order gap of {} is {} +- {}, found {}", to_string<2>(pair),
-                                             term.value, term.radius,
-                                             found == place.touching.end() ? "no such pair" : shown(found->value))};
-            }
-        }
-        for (const auto& [contact, term] : said.zero) {
-            const auto& contacts = place.state->contacts;
-            const auto l =
-                static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), contact) - contacts.begin());
-            if (l == contacts.size() || !meets(place.first_force[l], term)) {
-                return Objection{true,
-                                 fmt::format("the first-order force of {} is {} +- {}, found {}", to_string<2>(contact),
-                                             term.value, term.radius,
-                                             l == contacts.size() ? "no such contact" : shown(place.first_force[l]))};
-            }
-        }
-    }
-    const double size = stored.packing.max_radius();
-    for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {
-        if (Objections wrong =
-                compare("a coordinate of the stored state", stored.packing.q[k], place.coordinate(k), size)) {
+        if (Objections wrong = check_direction(place, *stored.perturbation)) {
             return wrong;
         }
     }
-    return {};
+    return check_coordinates(place, stored);
 }
 
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces) {

@@ -285,7 +285,9 @@ class Replay {
 
     /// Does the limit, or the rule, open what the record says? At a limit `change` gets its exact load.
     Objections check_opening(const EventRecord& event, Change& change) {
-        const double bound = before_->bound(event.stress > here_.stress() ? "sigma2_high" : "sigma2_low");
+        const double here = here_.stress();
+        const bool up = event.stress > here || (event.stress == here && before_->at("sigma2_high") == here);
+        const double bound = before_->bound(up ? "sigma2_high" : "sigma2_low");
         return event.kind == "limit" ? check_limit(here_, event, bound, change.position, change.load)
                                      : check_rule(here_, event, change.position, records_.rule);
     }

@@ -15,7 +15,8 @@ namespace {
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
 constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
-constexpr double end_tangent_accuracy = 1e-4;   ///< at an event, where only dips and the sign of the power are read off
+constexpr double no_power = 1e-6;             ///< of the largest force of the load: what may be left of the power where it turns
+constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
 
 } // namespace
 
@@ -299,6 +300,12 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::power_turn(double s, double p
             break;
         }
         bracket.found({tried, p});
+    }
+    if (!best || !(std::abs(smallest) <= no_power * power_.largest_force(best->at))) {
+        return failed(FailureKind::undecided,
+                      "the power of the load changes its sign without vanishing: {:.3g} is the least that was met, the "
+                      "motion is not the same on both sides",
+                      smallest);
     }
     here_.tangent = best->tangent;
     here_.choose_fastest();

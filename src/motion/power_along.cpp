@@ -1,6 +1,7 @@
 #include "motion/power_along.hpp"
 
 #include "contact/separation.hpp"
+#include "core/dot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,16 @@ template <int Dim> double third_approach(const CurveCourse<Dim>& course, const C
 } // namespace
 
 template <int Dim> double PowerAlong<Dim>::operator()(const Packing<Dim>& at, const std::vector<double>& t) const {
-    return product(load_.infinitesimal ? load_.load->infinitesimal : load_.load->external_force(at), t);
+    return product(force(at), t);
+}
+
+template <int Dim> double PowerAlong<Dim>::largest_force(const Packing<Dim>& at) const {
+    const std::vector<double> pushing = force(at);
+    return isostat::largest(pushing);
+}
+
+template <int Dim> std::vector<double> PowerAlong<Dim>::force(const Packing<Dim>& at) const {
+    return load_.infinitesimal ? load_.load->infinitesimal : load_.load->external_force(at);
 }
 
 /// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.

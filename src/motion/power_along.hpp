@@ -18,6 +18,8 @@ template <int Dim> class PowerAlong {
     [[nodiscard]] bool starts_at_zero() const { return load_.starts_at_zero; }
     /// F_ext . t at a configuration.
     [[nodiscard]] double operator()(const Packing<Dim>& at, const std::vector<double>& t) const;
+    /// Largest force of the load.
+    [[nodiscard]] double largest_force(const Packing<Dim>& at) const;
 
     /// The power at the two ends of a step of length s.
     struct Step {
@@ -28,6 +30,7 @@ template <int Dim> class PowerAlong {
     [[nodiscard]] std::optional<double> dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const;
 
   private:
+    [[nodiscard]] std::vector<double> force(const Packing<Dim>& at) const;
     [[nodiscard]] std::vector<double> change(const Packing<Dim>& at, const std::vector<double>& v) const;
 
     PowerLoad<Dim> load_;

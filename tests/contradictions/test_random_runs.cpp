@@ -164,6 +164,27 @@ long number_of(const char* name, long otherwise) {
     return text != nullptr ? std::atol(text) : otherwise;
 }
 
+/// To the next equilibrium from a state that an earlier run came to.
+RandomRun run_from(const char* name, int direction) {
+    RandomRun run;
+    run.start = read_state<2>(fs::path(ISOSTAT_TEST_DATA) / "contradictions" / name).state;
+    run.segments.emplace_back();
+    run.segments.back().direction = direction;
+    run.segments.back().equilibria = 1;
+    run.change = {0};
+    run.options.certify = CertifyLevel::states;
+    run.options.max_strain = 10;
+    return run;
+}
+
+RunVerification verified(const char* name, int direction, const fs::path& folder) {
+    RandomRun run = run_from(name, direction);
+    std::vector<Recorded> records;
+    BOOST_REQUIRE(play(run, folder / "run", 0, records));
+    BOOST_TEST_REQUIRE(records.size() == 2U);
+    return verify_run(folder / "run");
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(contradictions_of_runs)
@@ -197,21 +218,43 @@ BOOST_AUTO_TEST_CASE(no_run_is_refuted_and_no_recorded_number_is_outside_its_bou
 // Two vertices of one contact list, mirror images to 3e-4 of a radius and with the same box: the checker's steps lead
 // to the other one, in which a pair overlaps.
 BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refuted) {
-    RandomRun run;
-    run.start = read_state<2>(fs::path(ISOSTAT_TEST_DATA) / "contradictions" / "mirror_vertices.json").state;
-    run.segments.emplace_back();
-    run.segments.back().equilibria = 1;
-    run.change = {0};
-    run.options.certify = CertifyLevel::states;
     const scratch::Folder folder;
-    std::vector<Recorded> records;
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    BOOST_TEST_REQUIRE(records.size() == 2U);
-    const RunVerification answer = verify_run(folder.path() / "run");
+    const RunVerification answer = verified("mirror_vertices.json", +1, folder.path());
     BOOST_TEST(answer.wrong == "");
     BOOST_TEST(answer.arcs == 23);
     BOOST_TEST(answer.undecided.size() == 0U);
     BOOST_TEST(answer.arcs_proved == 23);
+}
+
+// An equilibrium at the very end of its interval: the first limit is at the load where it stands.
+BOOST_AUTO_TEST_CASE(an_arc_that_begins_at_the_load_of_its_equilibrium_is_not_refuted) {
+    const scratch::Folder folder;
+    const auto answer = verified("at_its_limit.json", +1, folder.path());
+    BOOST_TEST(answer.wrong == "");
+    BOOST_TEST(answer.arcs >= 1);
+}
+
+// The true vertex is 3e-9 away from the doubles of the stored state, whose gaps are closed to rounding.
+BOOST_AUTO_TEST_CASE(a_stored_state_far_from_its_vertex_is_not_refuted) {
+    const scratch::Folder folder;
+    RandomRun run = run_from("far_from_its_vertex.json", +1);
+    std::vector<Recorded> records;
+    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
+    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+}
+
+// The power of the load jumps where the motion of a nearly singular list turns round: no coordinate is held there, and
+// no equilibrium is reported.
+BOOST_AUTO_TEST_CASE(a_power_that_changes_its_sign_without_vanishing_is_no_turn) {
+    const scratch::Folder folder;
+    std::vector<Recorded> records;
+    RandomRun run = run_from("power_jump.json", -1);
+    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
+    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+    BOOST_TEST(scratch::read(folder.path() / "run" / "events.jsonl").find("\"power_turn\":true") == std::string::npos);
+    for (const Recorded& recorded : records) {
+        BOOST_TEST(recorded.record.held == 0);
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -3,7 +3,7 @@
 /// The ends of arcs, followed in double and then proved. With several threads the next arcs are followed before their
 /// turn, and other threads prove their ends.
 
-#include "checker/follow.hpp"
+#include "checker/recorded_arc.hpp"
 #include "checker/replay.hpp"
 
 #include <isostat/core/threads.hpp>
@@ -11,14 +11,6 @@
 #include <deque>
 
 namespace isostat::checker {
-
-/// How an arc leaves a vertex.
-struct Opening {
-    std::size_t contact = 0; ///< position in the contact list
-    int direction = +1;      ///< -1: a held coordinate that falls
-    bool rattles = false;    ///< under the infinitesimal loads
-    bool operator==(const Opening&) const = default;
-};
 
 /// Where an arc leads to.
 struct Arrival {
@@ -55,9 +47,7 @@ class Foresight {
         Future<Proved> proof;
     };
     struct Start {
-        const State<2>& state;
-        std::shared_ptr<const Solver> solver;
-        std::vector<Contact> touching{};
+        ArcStart at;
         ExactLoad load{};
     };
     static Start start_at(const Place& from, const ExactLoad& load);

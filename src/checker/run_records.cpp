@@ -146,10 +146,19 @@ double number_of(const std::string& text, const std::string& where, const std::s
     return value;
 }
 
-std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path) {
+/// The text of a file of records, without a line that was cut.
+std::string records_text(const std::filesystem::path& path, LastLine last) {
+    std::string text = read_text(path);
+    if (last == LastLine::may_be_cut) {
+        text.resize(text.rfind('\n') + 1); // npos + 1: no line at all
+    }
+    return text;
+}
+
+std::vector<EquilibriumLine> equilibria_of(const std::filesystem::path& path, LastLine last) {
     std::vector<std::string> names;
     std::vector<EquilibriumLine> lines;
-    for_each_line(read_text(path), [&](int number, const std::string& text) {
+    for_each_line(records_text(path, last), [&](int number, const std::string& text) {
         const std::string where = fmt::format("{}:{}", path.string(), number);
         if (names.empty() && text.starts_with('#')) {
             names = split(text.substr(std::min(text.find_first_not_of("# "), text.size())), ',');
@@ -193,7 +202,7 @@ std::optional<StateFile<2>> RunRecords::stored(int equilibrium) const {
     return read_state<2>(path);
 }
 
-RunRecords read_records(const std::filesystem::path& directory) {
+RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     RunRecords records;
     const std::string header = (directory / "run.json").string();
     const json::Json parsed = Field::parse(read_text(directory / "run.json"), header);
@@ -213,12 +222,12 @@ RunRecords read_records(const std::filesystem::path& directory) {
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
-        for_each_line(read_text(events), [&](int number, const std::string& line) {
+        for_each_line(records_text(events, last), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
             records.events.back().estimated = level == "plain";
         });
     }
-    records.equilibria = equilibria_of(directory / "equilibria.csv");
+    records.equilibria = equilibria_of(directory / "equilibria.csv", last);
     return records;
 }
 

@@ -59,8 +59,11 @@ struct RunRecords {
     [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
 };
 
+/// The last line of a file of a run that goes on, or was killed, need not be complete.
+enum class LastLine { complete, may_be_cut };
+
 /// Throws `Error(bad_input)`.
-RunRecords read_records(const std::filesystem::path& directory);
+RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);
 
 /// "12-40", "3-left", "held x of grain 4" (the walls are the grain after the last disk); nothing for anything else.
 std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing);

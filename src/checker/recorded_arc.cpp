@@ -1,0 +1,83 @@
+#include "checker/recorded_arc.hpp"
+
+#include "checker/replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::checker {
+
+namespace {
+
+std::vector<double> load_at(const Load<2>& load, const Packing<2>& packing, bool rattles) {
+    std::vector<double> pushing = rattles ? load.infinitesimal : load.external_force(packing);
+    pushing.resize(packing.q.size(), 0.0);
+    return pushing;
+}
+
+/// The multiplier of a contact in double.
+double multiplier(const State<2>& state, const Solver& solver, std::size_t contact, bool rattles, double& largest) {
+    const Structure structure(state.packing, state.contacts);
+    const std::vector<double> load = load_at(state.load, state.packing, rattles);
+    Eigen::MatrixXd b(static_cast<Eigen::Index>(structure.coordinate_of.size()), 1);
+    for (std::size_t j = 0; j < structure.coordinate_of.size(); ++j) {
+        b(static_cast<Eigen::Index>(j), 0) = -load[static_cast<std::size_t>(structure.coordinate_of[j])];
+    }
+    const Eigen::MatrixXd forces = solver.solve_transposed(b);
+    largest = forces.lpNorm<Eigen::Infinity>();
+    return forces(static_cast<Eigen::Index>(contact), 0);
+}
+
+} // namespace
+
+std::optional<Opening> opening_of(const ArcStart& start, const EventRecord& event) {
+    const State<2>& from = start.state;
+    const std::optional<Contact> opened = contact_named(event.opened, from.packing);
+    const std::optional<Contact> closed = contact_named(event.closed, from.packing);
+    const auto at = opened ? std::find(from.contacts.begin(), from.contacts.end(), *opened) : from.contacts.end();
+    if (at == from.contacts.end() || !closed || (event.power_turn && !event.held_at) ||
+        event.power_turn != (closed->kind == ContactKind::held) || !start.solver || !start.solver->usable() ||
+        (closed != opened && std::find(from.contacts.begin(), from.contacts.end(), *closed) != from.contacts.end())) {
+        return {};
+    }
+    Opening opening{static_cast<std::size_t>(at - from.contacts.begin()), +1, event.kind == "rattler"};
+    if (opened->kind == ContactKind::held) {
+        double largest = 0;
+        double force = multiplier(from, *start.solver, opening.contact, opening.rattles, largest);
+        if (!opening.rattles && std::abs(force) <= record_tolerance * largest) {
+            opening.rattles = true;
+            force = multiplier(from, *start.solver, opening.contact, true, largest);
+        }
+        opening.direction = force > 0 ? -1 : +1;
+    }
+    return opening;
+}
+
+Followed follow(const ArcStart& from, const EventRecord& event, const Opening& opening, bool slowly) {
+    Motion motion;
+    motion.opened = opening.contact;
+    motion.direction = opening.direction;
+    motion.closed = *contact_named(event.closed, from.state.packing);
+    motion.held_at = event.held_at.value_or(0);
+    motion.displacement = event.displacement;
+    motion.solver = from.solver;
+    motion.touching = from.touching;
+    Load<2> load = from.state.load;
+    load.stress[static_cast<std::size_t>(load.loaded_axis)] = event.stress;
+    motion.power_load = [&, at = from.state.packing](const std::vector<double>& q) mutable {
+        at.q = q;
+        return load_at(load, at, opening.rattles);
+    };
+    Followed followed;
+    if (!slowly) {
+        followed = follow(from.state, motion);
+    }
+    if (!followed.end) {
+        motion.step /= 16;
+        motion.zooms = slowly ? 3 : 0;
+        followed = follow(from.state, motion);
+    }
+    return followed;
+}
+
+} // namespace isostat::checker

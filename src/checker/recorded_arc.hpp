@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// An arc as its record tells it, followed in double: where to look, nothing more.
+
+#include "checker/follow.hpp"
+#include "checker/run_records.hpp"
+
+namespace isostat::checker {
+
+/// How an arc leaves a vertex.
+struct Opening {
+    std::size_t contact = 0; ///< position in the contact list
+    int direction = +1;      ///< -1: a held coordinate that falls
+    bool rattles = false;    ///< under the infinitesimal loads
+    bool operator==(const Opening&) const = default;
+};
+
+/// Where an arc starts. `solver`: factors there.
+struct ArcStart {
+    const State<2>& state;
+    std::shared_ptr<const Solver> solver;
+    std::vector<Contact> touching{}; ///< pairs that touch there without being contacts
+};
+
+/// How the record says that its arc begins, as far as doubles tell; nothing: something is unusual.
+std::optional<Opening> opening_of(const ArcStart& from, const EventRecord& event);
+
+/// From the opening to the end that the record names; once more with steps a sixteenth as long where that end was not
+/// found. `slowly`: only with those, and shorter ones near the end.
+/// \pre `event.closed` names a contact of the packing.
+Followed follow(const ArcStart& from, const EventRecord& event, const Opening& opening, bool slowly = false);
+
+} // namespace isostat::checker

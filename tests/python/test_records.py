@@ -2,6 +2,7 @@
 
 import json
 import unittest
+from pathlib import Path
 
 import numpy as np
 from common import Folder
@@ -44,6 +45,16 @@ class Records(Folder):
                     self.assertEqual(f"{i}-{walls.get(j, j)}", line[name])
         arcs = run.equilibria["arcs"]
         self.assertEqual(arcs.sum(), len(run.events))
+
+    def test_events_of_a_run_with_a_held_coordinate(self):
+        scene = Path(__file__).parents[2] / "examples" / "turns" / "power-turn.toml"
+        run = isostat.Run(scene, self.folder / "turn")
+        run.play()
+        events = run.records.events
+        self.assertEqual(events["power_turn"].tolist(), [True, False, False])
+        self.assertEqual(events["closed"][0].tolist(), [2, -9])  # x of disk 1
+        self.assertEqual(events["opened"][2].tolist(), [2, -9])  # let go again
+        self.assertFalse(np.isnan(events["held_at"][0]))
 
     def test_files_are_read_when_they_are_asked_for(self):
         run = isostat.load(self.run_scene())

@@ -64,7 +64,7 @@ from ._words import (
 
 __version__ = _core.version
 
-State.from_arrays = staticmethod(from_arrays)
+State.from_arrays = staticmethod(from_arrays)  # type: ignore[method-assign,assignment]
 
 
 def verify(what, progress=None):

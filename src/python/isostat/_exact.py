@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Iterable, Sequence
+from typing import Any, Iterable, Sequence
 
 from ._core import ExactPacking, Number
 
@@ -24,11 +24,11 @@ def fraction(text: str) -> Fraction:
     return Fraction(_integer(numerator), _integer(denominator or "1"))
 
 
-def _quoted(value: object) -> str:
+def _quoted(value: Any) -> str:
     return f'"{Number(value)}"'
 
 
-def _row(values: Iterable[object]) -> str:
+def _row(values: Iterable[Any]) -> str:
     return "[" + ", ".join(_quoted(value) for value in values) + "]"
 
 

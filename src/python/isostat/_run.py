@@ -9,7 +9,7 @@ import tempfile
 import threading
 import weakref
 from pathlib import Path
-from typing import Callable, Iterator, Mapping
+from typing import Any, Callable, Iterator, Mapping, cast
 
 import numpy as np
 
@@ -29,7 +29,7 @@ def _value(value: object) -> str:
     return repr(value.item() if isinstance(value, np.generic) else value)
 
 
-def scene_text(scene: Mapping[str, object]) -> str:
+def scene_text(scene: Mapping[str, Any]) -> str:
     """The scene file of a dictionary: ``{"packing": {...}, "programme": [{...}, ...], "run": {...}}``."""
     lines = []
     for name, content in scene.items():
@@ -69,7 +69,7 @@ class Run:
 
     def __init__(
         self,
-        scene: str | os.PathLike[str] | Mapping[str, object],
+        scene: str | os.PathLike[str] | Mapping[str, Any],
         output: str | os.PathLike[str] | None = None,
         *,
         start: State | None = None,
@@ -131,7 +131,7 @@ class Run:
 
     def __iter__(self) -> Iterator[Equilibrium]:
         """The equilibria, one at a time: nothing is computed while the loop has one."""
-        return self._steps("on_equilibrium")
+        return cast(Iterator[Equilibrium], self._steps("on_equilibrium"))
 
     def arcs(self) -> Iterator[Arc | Equilibrium]:
         """The arcs and the equilibria in their order, one at a time."""

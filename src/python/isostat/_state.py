@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Iterable, Sequence
+from typing import Any, Iterable, Sequence
 
 import numpy as np
 
@@ -12,14 +12,14 @@ from ._core import ExactPacking, Inspection, Packing, State, count
 _walls = {-1: "left", -2: "bottom", -3: "right", -4: "top"}
 
 
-def contact_pair(contact: Sequence[object]) -> tuple[int, int]:
+def contact_pair(contact: Sequence[Any]) -> tuple[int, int]:
     """(i, j) with the codes of walls, from ``(0, 1)``, ``(0, "left")`` or ``(0, -1)``."""
     i, j = contact
     codes = {name: code for code, name in _walls.items()}
     return int(i), codes[j] if isinstance(j, str) else int(j)
 
 
-def _json_contact(contact: Sequence[object]) -> list[object]:
+def _json_contact(contact: Sequence[Any]) -> list[object]:
     i, j = contact
     if isinstance(j, str):
         return [int(i), j]

@@ -11,6 +11,7 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from ._core import Packing, State
 from ._records import Records
 from ._state import disk_velocities
+from ._words import BadInput
 
 
 def _axes(ax: Optional[Axes]) -> Axes:
@@ -85,7 +86,11 @@ def packing(
     ax = _axes(ax)
     if forces is None and isinstance(state, State) and len(state.forces):
         forces = state.forces
-    holding = np.ones(len(state), dtype=bool) if forces is None else _draw_forces(state, forces, ax)
+    holding = np.ones(len(state), dtype=bool)
+    if forces is not None:
+        if not isinstance(state, State):
+            raise BadInput("forces: expected a State, whose contacts carry them")
+        holding = _draw_forces(state, forces, ax)
     diameters = 2 * state.radii
     for chosen, colour in ((holding, "#d9d9d9"), (~holding, "#deebf7")):
         size = diameters[chosen]
@@ -126,14 +131,14 @@ def _draw_walls(state: State | Packing, ax: Axes) -> None:
     low = (state.positions - state.radii[:, None]).min(axis=0)
     high = (state.positions + state.radii[:, None]).max(axis=0)
     places = {}
-    for side, place in (("lower", (0.0, 0.0)), ("upper", state.length)):
+    for side, place in {"lower": np.zeros(2), "upper": np.asarray(state.length)}.items():
         for axis, kind in enumerate(state.walls[side]):
             if kind != "absent":
                 places[side, axis] = place[axis], kind
                 (low if side == "lower" else high)[axis] = place[axis]
-    for (_, axis), (place, kind) in places.items():
+    for (_, axis), (at, kind) in places.items():
         ends = np.array([low, high])
-        ends[:, axis] = place
+        ends[:, axis] = at
         ax.plot(*ends.T, color="0.1" if kind == "fixed" else "0.5", linewidth=1.5, zorder=4)
     margin = 0.02 * (high - low).max()
     ax.set_xlim(low[0] - margin, high[0] + margin)
@@ -218,5 +223,5 @@ def increment_values(run: Records, quantity: str = "strain") -> np.ndarray:
         same = before["segment"] == row["segment"] and before["previous"] >= 0
         if quantity == "strain" or (same and before["arcs"] > 0):
             values.append(abs(row[column] - before[column]))
-    values = np.array(values)
-    return values[values > 0]
+    found = np.array(values)
+    return found[found > 0]

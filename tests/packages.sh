@@ -4,7 +4,7 @@
 
 isostat_packages=(
   g++ cmake ninja-build pkg-config
-  libcgal-dev libeigen3-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev libflint-dev nettle-dev
+  libcgal-dev libeigen3-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev libflint-dev nettle-dev zlib1g-dev
   libsuitesparse-dev libqd-dev coinor-libclp-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   gnuplot-nox python3
@@ -18,13 +18,17 @@ isostat_mpi_packages=(libopenmpi-dev openmpi-bin)
 isostat_python_packages=(pybind11-dev python3-dev python3-numpy python3-scipy python3-matplotlib)
 # For a wheel of it (src/python/pyproject.toml).
 isostat_wheel_packages=(python3-pip python3-setuptools python3-wheel)
+# For the type hints of it: optional, installed by continuous integration.
+isostat_types_packages=(mypy)
 # For counting instructions (tests/instructions/check.sh): optional, installed by continuous integration.
 isostat_count_packages=(valgrind)
+# For the page of `report --html` in a browser (tests/report/page.py): optional, installed by continuous integration.
+isostat_page_packages=(chromium)
 # For the style of the sources and the pages of the headers: optional, installed by continuous integration.
 isostat_lint_packages=(clang-format-16 doxygen)
 if [ "${CI:-}" = true ]; then
   isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_wheel_packages[@]}"
-    "${isostat_count_packages[@]}" "${isostat_lint_packages[@]}")
+    "${isostat_types_packages[@]}" "${isostat_count_packages[@]}" "${isostat_page_packages[@]}" "${isostat_lint_packages[@]}")
 fi
 if [ "${ISOSTAT_WITH_PYTHON:-}" = ON ]; then
   isostat_packages+=("${isostat_python_packages[@]}")

@@ -71,6 +71,8 @@ struct ReportArguments {
     Common common;
     std::string input, output;
     bool vtk = false;
+    bool pdf = false;
+    bool html = false;
     bool no_charts = false;
 };
 int report(const ReportArguments& arguments);

@@ -258,7 +258,11 @@ int deal_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& hea
             fmt::print(stderr, "isostat: seed {}: {}: {}\n", sample.seed, to_string(sample.status), sample.reason);
         }
     }
-    return exit_status(samples);
+    const int status = exit_status(samples);
+    if (status == interrupted) {
+        fmt::print(stderr, "isostat: to go on: the same command with --resume\n");
+    }
+    return status;
 }
 
 } // namespace

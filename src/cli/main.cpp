@@ -1,6 +1,8 @@
 // The command line: what is asked for goes into plain structures, one function per subcommand does it.
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/kinds.hpp"
+#include "cli/manual.hpp"
 #include "core/memory.hpp"
 
 #include <isostat/core/error.hpp>
@@ -81,6 +83,11 @@ struct Program {
     explicit Program(const std::string& line) {
         app.require_subcommand(1);
         app.set_version_flag("--version", program_name());
+        // For the build (src/CMakeLists.txt), which installs both; `--help` does not list them.
+        app.add_flag_callback("--man", [this] { throw CLI::CallForVersion(man_page(app, program_name()), 0); })
+            ->group("");
+        app.add_flag_callback("--completion", [this] { throw CLI::CallForVersion(bash_completion(app), 0); })
+            ->group("");
         app.footer("Exit status: 0 done or proved; 1 refuted, or failed with a result; 2 undecided; 64 usage; 65 bad "
                    "input; 70 internal failure (says\n"
                    "nothing of the input); 74 cannot write; 130 stopped by Ctrl-C or SIGTERM, with valid files.\n"
@@ -245,16 +252,24 @@ struct Program {
 
     void add_report(const std::string& line) {
         ReportArguments& a = report_arguments;
-        CLI::App& command =
-            add("report", "tables and figures of a run, or the force picture of a state",
-                "Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.\n"
-                "Examples: isostat report out\n          isostat report start.json -o pictures --vtk");
-        command.add_option("input", a.input, "folder of a run, or state file")->required()->type_name("DIR|STATE");
+        CLI::App& command = add(
+            "report", "tables and figures of a run, or the force picture of a state",
+            "Charts are drawn by gnuplot; without it, data and scripts are written and said to be so.\n"
+            "Examples: isostat report out\n          isostat report out --html\n          isostat report start.json -o "
+            "pictures --vtk");
+        command.add_option("input", a.input, "folder of a run or of an ensemble, or state file")
+            ->required()
+            ->type_name("DIR|STATE");
         command
             .add_option("-o,--output", a.output,
-                        "folder of the figures (default: DIR/figures, or the folder of the state)")
+                        "folder of the figures (default: DIR/figures, or the folder of the state); of an ensemble: a "
+                        "folder in it per seed")
             ->type_name("DIR");
         command.add_flag("--vtk", a.vtk, "also write ParaView files");
+        command.add_flag("--pdf", a.pdf, "charts as PDF too");
+        command.add_flag("--html", a.html,
+                         "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
+                         "network");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
@@ -289,9 +304,12 @@ struct Program {
                 "Of the folder of a run every arc and every equilibrium is replayed, power turns, held coordinates and "
                 "ties settled at\n"
                 "first order included; the first wrong record is named. Runs with\n"
-                "states_every = 1 can be taken up again after an arc that the replay cannot follow.\n"
+                "states_every = 1 can be taken up again after an arc that the replay cannot follow. Of an ensemble "
+                "every run "
+                "is: 1 when one is\n"
+                "refuted, else 65 when one cannot be read, else 2 when one is undecided, unfinished or missing.\n"
                 "Examples: isostat verify certificate.json --input state.json\n          isostat verify out");
-        command.add_option("certificate", a.certificate, "certificate (JSON), or folder of a run")
+        command.add_option("certificate", a.certificate, "certificate (JSON), or folder of a run or of an ensemble")
             ->required()
             ->type_name("CERT.json|DIR");
         command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
@@ -564,6 +582,14 @@ std::string wrong_command(const CLI::App& app, const std::string& word) {
            (far(near) <= 2 ? ": did you mean '" + near->get_name() + "'?" : "; isostat --help lists them");
 }
 
+/// Empty, or what else the first file on the command line is for.
+std::string use_of_input(const CLI::App& app) {
+    const CLI::App& command = *app.get_subcommands().front();
+    const std::vector<const CLI::Option*> files =
+        command.get_options([](const CLI::Option* o) { return o->get_positional() && !o->results().empty(); });
+    return files.empty() ? "" : other_use(command.get_name(), files.front()->results().front());
+}
+
 int complain(isostat::ErrorKind kind, const std::string& message) {
     std::cerr << "isostat: " << message << '\n';
     return isostat::Error(kind, "").exit_status();
@@ -582,7 +608,14 @@ int run_program(int argc, char** argv) {
     }
     isostat::require_floating_point();
     ignore_file_size_signals();
-    return program.todo();
+    try {
+        return program.todo();
+    } catch (const isostat::Error& error) {
+        if (error.kind() != isostat::ErrorKind::bad_input) {
+            throw;
+        }
+        throw isostat::Error(error.kind(), error.what() + use_of_input(program.app));
+    }
 }
 
 /// `work`, with what went wrong as words and an exit status. Whatever is not foreseen is 70, never a status that

@@ -1,36 +1,136 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/members.hpp"
+#include "cli/progress.hpp"
 #include "report/run_report.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
 namespace isostat::cli {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+ReportOptions options_of(const ReportArguments& arguments) {
+    ReportOptions options;
+    options.vtk = arguments.vtk;
+    options.charts = !arguments.no_charts;
+    options.html = arguments.html;
+    options.pdf = arguments.pdf;
+    return options;
+}
+
+Json json_of(const std::string& input, const ReportResult& result) {
+    Json object;
+    object["input"] = input;
+    object["files"] = Json::array();
+    for (const fs::path& file : result.files) {
+        object["files"].push_back(file.string());
+    }
+    object["notes"] = result.notes;
+    object["text"] = result.text;
+    return object;
+}
+
+void print_notes(const ReportResult& result) {
+    for (const std::string& note : result.notes) {
+        fmt::print(stderr, "isostat: {}\n", note);
+    }
+}
+
+/// A row of totals.
+std::string totals(const Member& member, const ReportResult& result) {
+    long arcs = 0;
+    const std::vector<EquilibriumRow> rows = read_equilibria(member.folder / "equilibria.csv");
+    for (const EquilibriumRow& row : rows) {
+        arcs += row.arcs;
+    }
+    const auto proved = std::count_if(rows.begin(), rows.end(), [](const EquilibriumRow& row) { return row.proved; });
+    const EquilibriumRow last = rows.empty() ? EquilibriumRow{} : rows.back();
+    return fmt::format("{:>8} {:>11} {:>7} {:>8} {:>12.8f} {:>12.5e} {:>6}", member.seed, rows.size(), proved, arcs,
+                       last.ratio, last.strain2, result.files.size());
+}
+
+/// One report after the other. 65 when a run cannot be read; the others are reported all the same.
+int report_ensemble(const ReportArguments& arguments) {
+    const std::vector<Member> members = members_of(arguments.input);
+    const bool quiet = arguments.common.json || arguments.common.quiet;
+    ReportOptions options = options_of(arguments);
+    StatusLine line(quiet);
+    Json list = Json::array();
+    int status = done;
+    const auto begin = std::chrono::steady_clock::now();
+    if (!quiet) {
+        fmt::print("{:>8} {:>11} {:>7} {:>8} {:>12} {:>12} {:>6}\n", "seed", "equilibria", "proved", "arcs",
+                   "ratio at end", "eps2", "files");
+    }
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        const Member& member = members[k];
+        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const double rest = k == 0 ? -1 : elapsed / static_cast<double>(k) * static_cast<double>(members.size() - k);
+        line.show(fmt::format("seed {}, {} of {}, {} left", member.seed, k + 1, members.size(), clock_text(rest)));
+        const fs::path output = arguments.output.empty() ? member.folder / "figures"
+                                                         : fs::path(arguments.output) / member.folder.filename();
+        try {
+            if (!member.begun) {
+                throw Error(ErrorKind::bad_input, "was not begun: `isostat ensemble --resume`");
+            }
+            const ReportResult result = report_run(member.folder, output, options);
+            line.clear();
+            if (!quiet) {
+                fmt::print("{}\n", totals(member, result));
+            }
+            print_notes(result);
+            list.push_back(json_of(member.folder.string(), result));
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::bad_input) {
+                throw;
+            }
+            line.clear();
+            fmt::print(stderr, "isostat: seed {}: {}\n", member.seed, error.what());
+            status = error.exit_status();
+        }
+    }
+    if (arguments.common.json) {
+        print_json(Json{{"input", arguments.input}, {"members", list}});
+    }
+    return status;
+}
+
+} // namespace
+
 int report(const ReportArguments& arguments) {
-    namespace fs = std::filesystem;
     const fs::path input = arguments.input;
+    if (is_ensemble(input)) {
+        return report_ensemble(arguments);
+    }
     const bool is_run = fs::is_directory(input);
+    if (arguments.html && !is_run) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--html belongs to the folder of a run: {} is none", arguments.input));
+    }
     fs::path output = arguments.output;
     if (output.empty()) {
         output = is_run ? input / "figures" : input.has_parent_path() ? input.parent_path() : fs::path(".");
     }
-    ReportOptions options;
-    options.vtk = arguments.vtk;
-    options.charts = !arguments.no_charts;
+    ReportOptions options = options_of(arguments);
+    StatusLine line(arguments.common.json || arguments.common.quiet);
+    options.progress = [&line](std::size_t done, std::size_t all) {
+        line.show(fmt::format("trajectory.html: arc {} of {}", done, all));
+    };
     const ReportResult result = is_run ? report_run(input, output, options) : report_state(input, output, options);
+    line.clear();
     if (arguments.common.json) {
-        Json object;
-        object["input"] = arguments.input;
-        object["files"] = Json::array();
-        for (const fs::path& file : result.files) {
-            object["files"].push_back(file.string());
-        }
-        object["notes"] = result.notes;
-        object["text"] = result.text;
-        print_json(object);
+        print_json(json_of(arguments.input, result));
         return done;
     }
     if (!arguments.common.quiet) {
@@ -39,9 +139,7 @@ int report(const ReportArguments& arguments) {
             fmt::print("{}\n", file.string());
         }
     }
-    for (const std::string& note : result.notes) {
-        fmt::print(stderr, "isostat: {}\n", note);
-    }
+    print_notes(result);
     return done;
 }
 

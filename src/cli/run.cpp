@@ -163,6 +163,9 @@ int run(const RunArguments& arguments) {
     if (ending.status != RunStatus::completed) {
         fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
     }
+    if (ending.status == RunStatus::interrupted) {
+        fmt::print(stderr, "isostat: to go on: isostat run {} -o {} --resume\n", arguments.scene, arguments.output);
+    }
     if ((scene.pictures || scene.vtk) && ending.status != RunStatus::interrupted && start.ok()) {
         draw(scene, directory, quiet);
     }

@@ -12,6 +12,12 @@ namespace isostat {
 
 namespace {
 
+/// Of curve k: colours alone do not survive a grey print. 1 is a full line.
+std::size_t dash(std::size_t k) {
+    constexpr std::size_t dashes = 5; // of gnuplot
+    return k % dashes + 1;
+}
+
 constexpr std::array<const char*, 6> colours{"#1f4e79", "#c55a11", "#548235", "#7b3f99", "#997300", "#a61c3c"};
 
 /// gnuplot strings in double quotes.
@@ -70,20 +76,21 @@ struct Curve {
     std::vector<EquilibriumRow> path;
 };
 
-Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves) {
+Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, bool pdf) {
     Chart chart;
     chart.name = name;
     std::string plot;
     for (std::size_t k = 0; k < curves.size(); ++k) {
         append_points(chart.data, "eps2 sigma2/sigma1: " + curves[k].title, stairs(curves[k].path));
-        plot +=
-            fmt::format("{} {} index {} with lines lw 1.5 lc rgb {} title {} noenhanced", k == 0 ? "plot" : ",\\\n    ",
-                        quoted(name + ".dat"), k, quoted(colours[k % colours.size()]), quoted(curves[k].title));
+        plot += fmt::format("{} {} index {} with lines lw 1.5 dt {} lc rgb {} title {} noenhanced",
+                            k == 0 ? "plot" : ",\\\n    ", quoted(name + ".dat"), k, dash(k),
+                            quoted(colours[k % colours.size()]), quoted(curves[k].title));
     }
     chart.script = chart_script(name, 800, 560,
                                 "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key top left reverse Left\n"
                                 "set format x \"%g\"\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
-                                    plot + "\n");
+                                    plot + "\n",
+                                pdf);
     return chart;
 }
 
@@ -95,7 +102,7 @@ bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<Equilib
 }
 
 void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& rows,
-                const std::vector<std::string>& names) {
+                const std::vector<std::string>& names, bool pdf) {
     std::vector<Curve> main_path;
     std::vector<Curve> cycles;
     int highest_branch = -1;
@@ -115,18 +122,18 @@ void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& r
         (branch ? cycles : main_path).push_back({title, std::move(path)});
     }
     if (!main_path.empty()) {
-        charts.push_back(stairs_chart("staircase", main_path));
+        charts.push_back(stairs_chart("staircase", main_path, pdf));
     }
     if (!cycles.empty()) {
         cycles.insert(cycles.begin(),
                       Curve{fmt::format("path to equilibrium {}", highest_branch), path_to(rows, highest_branch)});
-        charts.push_back(stairs_chart("cycles", cycles));
+        charts.push_back(stairs_chart("cycles", cycles, pdf));
     }
 }
 
 /// Two panels: histogram, and complementary distribution with logarithmic scales.
 void add_distribution(std::vector<Chart>& charts, const std::string& name, const std::string& label,
-                      const Increments& increments, bool power_law) {
+                      const Increments& increments, bool power_law, bool pdf) {
     constexpr std::size_t fewest = 3;
     Chart chart;
     chart.name = name;
@@ -159,8 +166,9 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
                       tail);
         const std::string title = fmt::format("{}: {} values, mean {:.3g}", kinds[k].first, values.size(), average);
         const auto curve = [&](std::string& plot, int block, const char* style) {
-            plot += fmt::format("{} {} index {} with {} lw 1.5 lc rgb {} title {}", plot.empty() ? "plot" : ",\\\n    ",
-                                quoted(name + ".dat"), block, style, quoted(colours[k]), quoted(title));
+            plot += fmt::format("{} {} index {} with {} lw 1.5 dt {} lc rgb {} title {}",
+                                plot.empty() ? "plot" : ",\\\n    ", quoted(name + ".dat"), block, style, 2 * k + 1,
+                                quoted(colours[k]), quoted(title));
         };
         curve(left, index, "histeps");
         curve(right, index + 1, "fsteps");
@@ -176,25 +184,30 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
     const std::string x = quoted(label);
     const std::string x_left = power_law ? quoted("log_{10} " + label) : x;
     std::string body =
-        "set multiplot layout 1,2\nset xtics rotate by -30\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
+        "set multiplot layout 1,2\nset xtics font \",11\"\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
         "\"#dddddd\"\nset yrange [0:*]\n";
     body += fmt::format("set xlabel {}\nset ylabel \"density\"\n{}\n", x_left, left);
     body += fmt::format("set xlabel {}\nset ylabel \"share of the values ≥ x\"\nset logscale y\nset "
                         "yrange [*:1.5]\nset format y "
                         "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
                         x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
-    chart.script = chart_script(name, 1100, 480, body);
+    chart.script = chart_script(name, 1100, 480, body, pdf);
     charts.push_back(std::move(chart));
 }
 
 } // namespace
 
-std::string chart_script(const std::string& name, int width, int height, const std::string& body) {
+std::string chart_script(const std::string& name, int width, int height, const std::string& body, bool pdf) {
     std::string script = "# gnuplot script; run it in this folder\n";
-    const std::array<std::pair<std::string, std::string>, 2> terminals{
-        {{"svg",
-          fmt::format("set terminal svg size {},{} dynamic font \"sans,14\" background \"#ffffff\"", width, height)},
-         {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}}};
+    std::vector<std::pair<std::string, std::string>> terminals{
+        {"svg",
+         fmt::format("set terminal svg size {},{} dynamic font \"sans,14\" background \"#ffffff\"", width, height)},
+        {"png", fmt::format("set terminal pngcairo size {},{} font \"sans,14\"", width, height)}};
+    if (pdf) {
+        constexpr double pixels = 96; // per inch
+        terminals.emplace_back("pdf", fmt::format("set terminal pdfcairo size {:.2f}in,{:.2f}in font \"sans,12\"",
+                                                  width / pixels, height / pixels));
+    }
     for (const auto& [suffix, terminal] : terminals) {
         script += fmt::format("reset\nset encoding utf8\n{}\nset output {}\n{}unset output\n", terminal,
                               quoted(fmt::format("{}.{}", name, suffix)), body);
@@ -202,11 +215,12 @@ std::string chart_script(const std::string& name, int width, int height, const s
     return script;
 }
 
-std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
+std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
+                               bool pdf) {
     std::vector<Chart> charts;
-    add_stairs(charts, rows, names);
-    add_distribution(charts, "stress_increments", "Δσ_2 / σ_1", stress_increments(rows), false);
-    add_distribution(charts, "strain_increments", "Δε_2", strain_increments(rows), true);
+    add_stairs(charts, rows, names, pdf);
+    add_distribution(charts, "stress_increments", "Δσ_2 / σ_1", stress_increments(rows), false, pdf);
+    add_distribution(charts, "strain_increments", "Δε_2", strain_increments(rows), true, pdf);
     return charts;
 }
 

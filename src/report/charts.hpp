@@ -14,10 +14,11 @@ struct Chart {
     std::string name, data, script;
 };
 
-/// The gnuplot script that draws `body` to NAME.svg and NAME.png, of that size in pixels.
-std::string chart_script(const std::string& name, int width, int height, const std::string& body);
+/// The gnuplot script that draws `body` to NAME.svg and NAME.png, of that size in pixels; with `pdf` to NAME.pdf too.
+std::string chart_script(const std::string& name, int width, int height, const std::string& body, bool pdf = false);
 
 /// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments.
-std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names);
+std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
+                               bool pdf = false);
 
 } // namespace isostat

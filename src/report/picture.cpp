@@ -55,6 +55,9 @@ class Canvas {
         add(R"(<line x1="{:.3f}" y1="{:.3f}" x2="{:.3f}" y2="{:.3f}" stroke-width="{:.3f}" class="{}"/>)", x(from),
             y(from), x(to), y(to), width, style);
     }
+    void text(Point at, const std::string& words) {
+        add(R"(<text x="{:.1f}" y="{:.1f}">{}</text>)", x(at), y(at), words);
+    }
     std::string take() { return std::move(text_); }
 
   private:
@@ -78,9 +81,11 @@ class Canvas {
     std::string text_;
 };
 
+constexpr double wall_width = 8; // picture units
+
 /// Outside the box, so that no disk and no force is hidden.
 void draw_walls(Canvas& canvas, const State<2>& state) {
-    constexpr double thickness = 8; // picture units
+    constexpr double thickness = wall_width;
     const double out = thickness / 2 / canvas.scale();
     const auto& walls = state.packing.walls;
     const double lx = state.packing.length(0);
@@ -96,14 +101,19 @@ void draw_walls(Canvas& canvas, const State<2>& state) {
     draw(walls.upper[1], {0, ly + out}, {lx, ly + out});
 }
 
-void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+/// Width of the line of a force 1.
+double width_of_force(const Canvas& canvas, const State<2>& state, std::span<const double> forces) {
     constexpr double width_at_mean = 0.2; // of the mean radius
-    constexpr double hairline = 0.4;
     double radius = 0;
     for (const double r : state.packing.radius) {
         radius += r / static_cast<double>(state.packing.radius.size());
     }
-    const double unit = width_at_mean * radius * canvas.scale() / mean_force(forces);
+    return width_at_mean * radius * canvas.scale() / mean_force(forces);
+}
+
+void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+    constexpr double hairline = 0.4;
+    const double unit = width_of_force(canvas, state, forces);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
         if (contact.kind == ContactKind::held) {
@@ -117,6 +127,50 @@ void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double
                     force > 0   ? style
                     : force < 0 ? "traction"
                                 : "contact");
+    }
+}
+
+/// Arrows that press on the walls that can move, with their stresses: outside the box.
+void draw_stresses(Canvas& canvas, const State<2>& state) {
+    constexpr double length = 34; // picture units
+    constexpr double head = 9;
+    const auto& walls = state.packing.walls;
+    const double unit = 1 / canvas.scale();
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto a = static_cast<std::size_t>(axis);
+        if (walls.upper[a] != WallKind::movable || state.load.stress[a] == 0) {
+            continue;
+        }
+        const double out = state.load.stress[a] > 0 ? 1 : -1; // traction pulls
+        const auto at = [&](double along, double beyond) {
+            const Point p{along, state.packing.length(axis) + beyond * unit};
+            return axis == 1 ? p : Point{p.y, p.x};
+        };
+        for (const double part : {0.2, 0.5, 0.8}) {
+            const double along = part * state.packing.length(1 - axis);
+            const double tip = out > 0 ? wall_width + 2 : wall_width + 2 + length;
+            canvas.line(at(along, wall_width + 2), at(along, wall_width + 2 + length), 2.5, "stress");
+            for (const double side : {-0.5, 0.5}) {
+                canvas.line(at(along, tip), at(along + side * head * unit, tip + out * head), 2.5, "stress");
+            }
+        }
+        canvas.text(at(0.5 * state.packing.length(1 - axis) + 14 * unit, wall_width + length / 2),
+                    fmt::format("\u03c3{} = {:.6g}", axis == 0 ? "\u2081" : "\u2082", state.load.stress[a]));
+    }
+}
+
+/// Lines of known forces below the box.
+void draw_scale(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
+    const double unit = width_of_force(canvas, state, forces);
+    const double mean = mean_force(forces);
+    double at = 0;
+    for (const double times : {1.0, 3.0}) {
+        const double low = -34 / canvas.scale();
+        canvas.line({at, low}, {at + 60 / canvas.scale(), low}, times * mean * unit, "force scale");
+        at += 70 / canvas.scale();
+        const std::string name = times == 1 ? "mean force" : "3 times";
+        canvas.text({at, low - 6 / canvas.scale()}, fmt::format("{}: {:.3g}", name, times * mean));
+        at += 190 / canvas.scale();
     }
 }
 
@@ -158,31 +212,38 @@ std::string force_picture(const State<2>& state, std::span<const double> forces,
     }
     draw_contacts(canvas, state, forces);
     draw_walls(canvas, state);
+    draw_stresses(canvas, state);
+    if (!forces.empty()) {
+        draw_scale(canvas, state, forces);
+    }
     constexpr double border = 20;
-    constexpr double caption_height = 40;
-    const double width = 1000 + 2 * border;
-    const double height = canvas.height() + 2 * border + caption_height;
+    constexpr double above = 56;   // of the box: arrows
+    constexpr double beside = 150; // to the right: arrows and their stress
+    constexpr double below = 84;   // scale and caption
+    const double width = 1000 + border + beside;
+    const double height = canvas.height() + above + below;
     std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" viewBox=\"{2:.0f} {2:.0f} {0:.0f} {1:.0f}\">\n",
-        width, height, -border);
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" "
+        "height=\"{:.0f}\" viewBox=\"{:.0f} {:.0f} {:.0f} {:.0f}\">\n",
+        width, height, -border, -above, width, height);
     text +=
         "<style>.disk{fill:#e9e6df;stroke:#a9a59b;stroke-width:0.5}.rattler{fill:#9fb8cf;stroke:#6f89a3;stroke-width:0."
         "5}"
-        ".force{stroke:#8c1c13;stroke-linecap:round}.wall{stroke-linecap:butt}.traction{stroke:#1b5fbf;stroke-linecap:"
-        "round}.contact{stroke:#777}"
+        ".force{stroke:#8c1c13;stroke-linecap:round}.wall,.scale{stroke-linecap:butt}"
+        ".traction{stroke:#1b5fbf;stroke-dasharray:6 3}.contact{stroke:#777}.stress{stroke:#222;stroke-linecap:round}"
         ".fixed{stroke:#222;stroke-linecap:square}.movable{stroke:#8f8f8f;stroke-linecap:square}"
         "text{font-family:sans-serif;font-size:20px;fill:#222}</style>\n";
     text += fmt::format(
         "<title>{}</title>\n<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#ffffff\"/>\n",
-        escaped(caption), -border, -border, width, height);
+        escaped(caption), -border, -above, width, height);
     text += canvas.take();
-    text += fmt::format("<text x=\"0\" y=\"{:.0f}\">{}</text>\n</svg>\n", canvas.height() + border + caption_height / 2,
-                        escaped(caption));
+    text +=
+        fmt::format("<text x=\"0\" y=\"{:.0f}\">{}</text>\n</svg>\n", canvas.height() + below - 16, escaped(caption));
     return text;
 }
 
-std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title) {
+std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title,
+                     std::span<const double> displacement) {
     const auto disks = state.packing.radius.size();
     std::vector<Point> points;
     for (std::size_t i = 0; i < disks; ++i) {
@@ -228,6 +289,13 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
     text += "SCALARS rattler int 1\nLOOKUP_TABLE default\n";
     for (const unsigned char flag : rattler) {
         text += fmt::format("{}\n", static_cast<int>(flag));
+    }
+    if (!displacement.empty()) {
+        text += "VECTORS displacement double\n";
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            text += i < disks ? fmt::format("{:.17g} {:.17g} 0\n", displacement[2 * i], displacement[2 * i + 1])
+                              : std::string("0 0 0\n");
+        }
     }
     // Cell data: vertices first, then lines, as VTK numbers the cells.
     text += fmt::format("CELL_DATA {}\nSCALARS force double 1\nLOOKUP_TABLE default\n", disks + line_count);

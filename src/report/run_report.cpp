@@ -5,6 +5,7 @@
 #include "io/record_digests.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
+#include "report/page.hpp"
 #include "report/tables.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace isostat {
 
@@ -56,8 +58,9 @@ class Writer {
         }
         if (options_.vtk) {
             count_work(Work::vtk_files);
-            write(name + ".vtk",
-                  vtk_text(state, file.forces, fmt::format("isostat: equilibrium {}", state.equilibrium)));
+            write(name + ".vtk", vtk_text(state, file.forces, fmt::format("isostat: equilibrium {}", state.equilibrium),
+                                          displacement(state)));
+            series_.emplace_back(state.equilibrium, name + ".vtk");
         }
     }
     void chart(const Chart& chart) {
@@ -72,8 +75,23 @@ class Writer {
             note(trouble);
             return;
         }
-        for (const char* suffix : {".svg", ".png"}) {
-            result_.files.push_back(output_ / (chart.name + suffix));
+        for (const char* suffix : {".svg", ".png", ".pdf"}) {
+            if (fs::exists(output_ / (chart.name + suffix))) {
+                result_.files.push_back(output_ / (chart.name + suffix));
+            }
+        }
+    }
+    /// The ParaView files in the order of their equilibria, as one series.
+    void vtk_series() {
+        std::sort(series_.begin(), series_.end());
+        json::Json files = json::Json::array();
+        for (const auto& [equilibrium, name] : series_) {
+            if (files.empty() || files.back()["time"] != equilibrium) { // the last one is stored twice
+                files.push_back({{"name", name}, {"time", equilibrium}});
+            }
+        }
+        if (!files.empty()) {
+            write("forces.vtk.series", json::dumped({{"file-series-version", "1.0"}, {"files", files}}, 2) + "\n");
         }
     }
     ReportResult take(std::string text) {
@@ -92,6 +110,18 @@ class Writer {
         forces.resize(state.contacts.size()); // multipliers of held coordinates come last
         return forces;
     }
+    /// From the first state written.
+    std::vector<double> displacement(const State<2>& state) {
+        const std::vector<double>& q = state.packing.q;
+        if (first_.size() != q.size()) {
+            first_ = q;
+        }
+        std::vector<double> moved(q.size());
+        std::transform(q.begin(), q.end(), first_.begin(), moved.begin(), std::minus<>());
+        return moved;
+    }
+    std::vector<double> first_;
+    std::vector<std::pair<int, std::string>> series_;
     fs::path output_;
     ReportOptions options_;
     ReportResult result_;
@@ -151,7 +181,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     const std::vector<EquilibriumRow> rows = read_equilibria(directory / "equilibria.csv");
     Writer writer(output, options);
     if (options.pictures) {
-        for (const Chart& chart : make_charts(rows, names)) {
+        for (const Chart& chart : make_charts(rows, names, options.pdf)) {
             writer.chart(chart);
         }
     }
@@ -168,6 +198,14 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         for (const fs::path& path : states) {
             writer.picture(path, "forces_" + path.stem().string());
         }
+        writer.vtk_series();
+    }
+    if (options.html) {
+        const Page page = run_page(directory, options.progress);
+        for (const std::string& left_out : page.left_out) {
+            writer.note(fmt::format("trajectory.html: left out: {}", left_out));
+        }
+        writer.write("trajectory.html", page.html);
     }
     std::string text = run_tables(rows, names, header.at("status").string());
     const fs::path summary = directory / "summary.json"; // of runs that ended

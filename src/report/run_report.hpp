@@ -3,6 +3,7 @@
 /// Tables and figures of a run or of a state.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,12 @@ namespace isostat {
 
 /// What to make.
 struct ReportOptions {
-    bool pictures = true; ///< force pictures (SVG), data and scripts of the charts
-    bool charts = true;   ///< call gnuplot on the scripts (SVG and PNG)
-    bool vtk = false;     ///< ParaView files
+    bool pictures = true;                                     ///< force pictures (SVG), data and scripts of the charts
+    bool charts = true;                                       ///< call gnuplot on the scripts (SVG and PNG)
+    bool vtk = false;                                         ///< ParaView files
+    bool pdf = false;                                         ///< charts as PDF too
+    bool html = false;                                        ///< of a run: trajectory.html
+    std::function<void(std::size_t, std::size_t)> progress{}; ///< of the page: arcs gone through, and of the run
 };
 
 /// What was made.
@@ -26,6 +30,7 @@ struct ReportResult {
 /// - staircase: sigma2/sigma1 against eps2 (paper, figure 2); cycles: the segments that start from an earlier
 /// equilibrium (figure 3);
 /// - stress_increments, strain_increments: their distributions, linear and logarithmic (figures 4 and 5);
+/// - trajectory.html, when asked for: `run_page`;
 /// - force pictures of the stored states: the first, the last, and those that segments start from.
 /// Each chart is a data file (.dat), a gnuplot script (.gp), and .svg and .png when gnuplot is there; otherwise a note
 /// says so. Throws `Error(bad_input)` when the folder holds no run, `Error(cannot_write)`.

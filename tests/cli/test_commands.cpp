@@ -251,16 +251,25 @@ BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_rema
         BOOST_TEST(fs::exists(out + "/figures/" + name + ".gp"), name);
         BOOST_TEST(!fs::exists(out + "/figures/" + name + ".svg"), name);
     }
-    const Outcome with = run({"report", out, "--vtk"});
+    const Outcome with = run({"report", out, "--vtk", "--pdf"});
     expect(with, 0);
     BOOST_TEST(with.err.empty(), with.err);
     for (const char* name : {"staircase", "cycles", "stress_increments", "strain_increments"}) {
         BOOST_TEST(contains(scratch::read(out + "/figures/" + name + ".svg"), "</svg>"), name);
         BOOST_TEST(scratch::read(out + "/figures/" + name + ".png").starts_with("\x89PNG"), name);
+        BOOST_TEST(scratch::read(out + "/figures/" + name + ".pdf").starts_with("%PDF"), name);
         BOOST_TEST(!fs::exists(out + "/figures/" + name + ".gp.log"), name);
     }
     BOOST_TEST(contains(scratch::read(out + "/figures/forces_last.svg"), "class=\"force\""));
     BOOST_TEST(scratch::read(out + "/figures/forces_last.vtk").starts_with("# vtk DataFile"));
+    const json series = json::parse(scratch::read(out + "/figures/forces.vtk.series"));
+    double before = -1;
+    for (const json& file : series["files"]) {
+        BOOST_TEST(fs::exists(out + "/figures/" + file["name"].get<std::string>()));
+        BOOST_TEST(file["time"].get<double>() > before);
+        before = file["time"].get<double>();
+    }
+    BOOST_TEST(series["files"].size() >= 3U); // the first, the one that the last segment starts from, the last
     BOOST_TEST(contains(with.out, "left of peak strain"));
     BOOST_TEST(contains(scratch::read(out + "/figures/report.txt"), "equilibria proved"));
 }

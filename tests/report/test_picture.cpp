@@ -73,6 +73,30 @@ BOOST_AUTO_TEST_CASE(disks_without_force_are_rattlers_and_traction_is_marked) {
     BOOST_TEST(count(force_picture(state, {}, ""), "class=\"rattler\"") == 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_picture_has_a_scale_of_its_forces_and_the_stresses_on_movable_walls) {
+    const std::string svg = force_picture(state, std::vector<double>{1, 2, 3, 4, 5, 6}, "");
+    const double unit = widths(svg, "force")[0] / 3;
+    const std::vector<double> scale = widths(svg, "force scale");
+    BOOST_TEST_REQUIRE(scale.size() == 2U);
+    BOOST_TEST(std::abs(scale[0] - 3.5 * unit) < 2e-3);
+    BOOST_TEST(std::abs(scale[1] - 10.5 * unit) < 2e-3);
+    BOOST_TEST(count(svg, "mean force: 3.5<") == 1);
+    BOOST_TEST(count(svg, "class=\"stress\"") == 2 * 3 * 3); // two walls, three arrows of three lines each
+    BOOST_TEST(count(svg, "\u03c3\u2081 = 1<") == 1);
+    BOOST_TEST(count(svg, "\u03c3\u2082 = 1<") == 1);
+    State<2> fixed = state;
+    fixed.packing.walls.upper = {WallKind::fixed, WallKind::fixed};
+    BOOST_TEST(count(force_picture(fixed, {}, ""), "class=\"stress\"") == 0);
+    BOOST_TEST(count(force_picture(fixed, {}, ""), "class=\"force scale\"") == 0);
+}
+
+BOOST_AUTO_TEST_CASE(displacements_are_vectors_of_the_disks) {
+    const std::vector<double> moved{0.5, -0.25, 1, 2, 0, 0};
+    const std::string vtk = vtk_text(state, {}, "title", moved);
+    BOOST_TEST(vtk.find("VECTORS displacement double\n0.5 -0.25 0\n1 2 0\n0 0 0\n") != std::string::npos);
+    BOOST_TEST(vtk_text(state, {}, "title").find("VECTORS") == std::string::npos);
+}
+
 BOOST_AUTO_TEST_CASE(vtk_counts_agree_with_its_lists) {
     const std::string vtk = vtk_text(state, std::vector<double>{0, 0, 0, 4, 5, 6}, "title");
     std::istringstream in(vtk);

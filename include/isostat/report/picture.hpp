@@ -12,13 +12,16 @@ namespace isostat {
 /// SVG text: disks (rattlers in another shade), walls (fixed ones dark, movable ones light) and a line per contact from
 /// centre to centre, or to the wall, of width proportional to the force (a quarter of the mean radius at the mean
 /// force). Traction, which no equilibrium has, is drawn in another colour; contacts without force are hairlines.
-/// `forces`: one per contact, or empty (contacts are then hairlines, no disk is marked as a rattler). `caption` is a
-/// line below. The text depends on nothing but the arguments.
+/// Arrows on the walls that can move carry their stresses; below the box are lines of the mean force and of three times
+/// it. `forces`: one per contact, or empty (contacts are then hairlines, no disk is marked as a rattler). `caption` is
+/// a line below. The text depends on nothing but the arguments.
 std::string force_picture(const State<2>& state, std::span<const double> forces, const std::string& caption);
 
 /// VTK legacy file (ASCII POLYDATA): a point and a vertex per disk with `radius` and `rattler`, a line per contact with
 /// `force`; contacts with walls end in extra points of radius 0 on the wall. 17 digits.
-std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title);
+/// `displacement`: empty, or two per disk: `displacement`, 0 on the walls.
+std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title,
+                     std::span<const double> displacement = {});
 
 /// 1 for disks without a contact of non-zero force. \pre forces.size() == state.contacts.size()
 std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const double> forces);

@@ -1,0 +1,85 @@
+#include "cli/kinds.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <regex>
+#include <string_view>
+#include <vector>
+
+namespace isostat::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Kind {
+    const char* words;
+    std::vector<std::string_view> commands; ///< that take it
+};
+
+const Kind scene{"a scene, which says what to compute", {"run", "plan", "prepare", "ensemble"}};
+const Kind packing{"a crafted packing", {"inspect", "import", "genericity", "plateau", "snap"}};
+const Kind series{"the manifest of a series", {"compare"}};
+const Kind state{"a state",
+                 {"inspect", "certify", "report", "export", "convert", "snap", "plateau", "genericity", "import"}};
+const Kind certificate{"a certificate", {"verify"}};
+const Kind record{"a file of a run; its folder is meant", {"report", "verify", "export"}};
+const Kind run_folder{"the folder of a run", {"report", "verify", "export"}};
+const Kind ensemble_folder{"the folder of an ensemble", {"report", "verify"}};
+
+const Kind* kind_of_text(const std::string& text) {
+    constexpr std::size_t enough = 4096; // a format stands at the beginning
+    const std::string begin = text.substr(0, enough);
+    static const std::regex format(R"re("?format"?\s*[:=]\s*"isostat-([a-z]+))re");
+    std::smatch found;
+    if (std::regex_search(begin, found, format)) {
+        const std::string name = found[1];
+        return name == "state"         ? &state
+               : name == "certificate" ? &certificate
+               : name == "packing"     ? &packing
+               : name == "series"      ? &series
+                                       : &record;
+    }
+    static const std::regex section(R"((^|\n)\s*\[(packing|\[programme\])\])");
+    if (std::regex_search(begin, section)) {
+        return &scene;
+    }
+    static const std::regex arc(R"(^\{"step":)");
+    return std::regex_search(begin, arc) || begin.starts_with("# number,previous,") ? &record : nullptr;
+}
+
+const Kind* kind_of(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) {
+        return fs::exists(file / "run.json", ignored)        ? &run_folder
+               : fs::exists(file / "ensemble.json", ignored) ? &ensemble_folder
+                                                             : nullptr;
+    }
+    if (!fs::is_regular_file(file, ignored)) {
+        return nullptr;
+    }
+    try {
+        return kind_of_text(read_text(file));
+    } catch (const Error&) {
+        return nullptr;
+    }
+}
+
+} // namespace
+
+std::string other_use(const std::string& command, const fs::path& file) {
+    const Kind* const kind = kind_of(file);
+    if (kind == nullptr || std::find(kind->commands.begin(), kind->commands.end(), command) != kind->commands.end()) {
+        return "";
+    }
+    return fmt::format("\n{} is {}: for isostat {}, not for {}", file.string(), kind->words,
+                       fmt::join(kind->commands, ", "), command);
+}
+
+} // namespace isostat::cli

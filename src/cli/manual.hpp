@@ -1,0 +1,17 @@
+#pragma once
+/// \file
+/// What `--help` says, for `man` and for the shell.
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace isostat::cli {
+
+/// isostat(1), in the macros of man(7): every command with its options. `version`: name and version of the program.
+std::string man_page(const CLI::App& app, const std::string& version);
+
+/// Completion of commands, of their options and of file names, for bash.
+std::string bash_completion(const CLI::App& app);
+
+} // namespace isostat::cli

@@ -1,0 +1,41 @@
+#include "cli/members.hpp"
+
+#include "ensemble/ensemble.hpp"
+#include "io/json.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/files.hpp>
+
+#include <charconv>
+#include <limits>
+
+namespace isostat::cli {
+
+namespace fs = std::filesystem;
+
+bool is_ensemble(const fs::path& directory) {
+    return fs::exists(directory / "ensemble.json") && !fs::exists(directory / "run.json");
+}
+
+std::vector<Member> members_of(const fs::path& directory) {
+    const std::string path = (directory / "ensemble.json").string();
+    const json::Json parsed = json::Field::parse(read_text(path), path);
+    const json::Field file(parsed, path);
+    EnsembleHeader header;
+    constexpr int most = std::numeric_limits<int>::max();
+    header.samples = file.at("samples").integer(1, most);
+    const std::string& seed = file.at("first_seed").string();
+    const auto [stop, error] = std::from_chars(seed.data(), seed.data() + seed.size(), header.first_seed);
+    if (error != std::errc() || stop != seed.data() + seed.size()) {
+        file.at("first_seed").fail("a seed");
+    }
+    const SampleFolders folders(directory, header);
+    std::vector<Member> members;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(header.samples); ++k) {
+        const fs::path folder = folders.folder(k);
+        members.push_back({folders.seed(k), folder, fs::exists(folder / "run.json")});
+    }
+    return members;
+}
+
+} // namespace isostat::cli

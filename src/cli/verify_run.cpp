@@ -1,0 +1,99 @@
+#include "cli/verify_run.hpp"
+
+#include "cli/progress.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace isostat::cli {
+
+namespace {
+
+/// One row per equilibrium, as `run` prints them, and a line for the arcs on the way.
+class VerifyTable {
+  public:
+    explicit VerifyTable(bool quiet) : quiet_(quiet), line_(quiet) {}
+    void show(const VerificationProgress& at) {
+        if (quiet_) {
+            return;
+        }
+        const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+        const int done = at.arcs + at.equilibria;
+        const double rest = done == 0 ? NAN : elapsed / done * (at.all_arcs + at.all_equilibria - done);
+        if (!at.closed) {
+            line_.show(fmt::format("equilibrium {} of {}: arc {} of {}, {} left", at.equilibrium, at.all_equilibria - 1,
+                                   at.arcs, at.all_arcs, clock_text(rest)));
+            return;
+        }
+        line_.clear();
+        if (at.equilibria == 1) {
+            fmt::print("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", "equil", "arcs", "all arcs", "undecided", "elapsed",
+                       "rest");
+        }
+        fmt::print("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", at.equilibrium, at.arcs_here,
+                   fmt::format("{}/{}", at.arcs, at.all_arcs), at.undecided, clock_text(elapsed), clock_text(rest));
+        std::fflush(stdout);
+    }
+    void end() { line_.clear(); }
+
+  private:
+    bool quiet_;
+    StatusLine line_;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+} // namespace
+
+Json json_of(const RunVerification& run, const std::string& folder) {
+    Json object;
+    object["folder"] = folder;
+    object["arcs"] = run.arcs;
+    object["ends_proved"] = run.arcs_proved;
+    object["ways_proved"] = run.ways_proved;
+    object["power_turns_checked"] = run.turns_checked;
+    object["ties_checked"] = run.ties_checked;
+    object["equilibria"] = run.equilibria;
+    object["equilibria_proved"] = run.equilibria_proved;
+    object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
+    object["undecided"] = run.undecided;
+    object["finished"] = run.finished;
+    object["verdict"] = words(run);
+    return object;
+}
+
+void print_totals(const RunVerification& run) {
+    fmt::print("arcs           ends of {} of {} proved, ways of {}\n", run.arcs_proved, run.arcs, run.ways_proved);
+    if (run.turns_checked > 0 || run.ties_checked > 0) {
+        fmt::print("power turns    {} checked\nties           {} first-order decisions checked\n", run.turns_checked,
+                   run.ties_checked);
+    }
+    fmt::print("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
+    for (const std::string& open : run.undecided) {
+        fmt::print("undecided      {}\n", open);
+    }
+    if (!run.wrong.empty()) {
+        fmt::print("first wrong    {}\n", run.wrong);
+    }
+    fmt::print("verdict        {}\n", words(run));
+}
+
+int verify_folder(const VerifyArguments& arguments) {
+    VerifyTable table(arguments.common.json || arguments.common.quiet);
+    const RunVerification run =
+        verify_run(arguments.certificate, [&table](const VerificationProgress& at) { table.show(at); });
+    table.end();
+    if (arguments.common.json) {
+        print_json(json_of(run, arguments.certificate));
+    } else if (!run.finished) {
+        fmt::print(
+            "run            not finished: run.json says that it goes on, or was killed (`isostat run --resume`)\n");
+    } else {
+        print_totals(run);
+    }
+    return status_of(run.verdict);
+}
+
+} // namespace isostat::cli

@@ -1,0 +1,26 @@
+#pragma once
+/// \file
+/// `verify` of runs: its words, of one and of many.
+
+#include "cli/commands.hpp"
+#include "cli/common.hpp"
+
+#include <isostat/checker/verify_run.hpp>
+
+#include <string>
+
+namespace isostat::cli {
+
+/// The finished run of a folder from its records alone.
+int verify_folder(const VerifyArguments& arguments);
+/// Each run of an ensemble, one after the other. 1: a record is wrong; else 65: a run cannot be read; else 2: something
+/// is undecided, unfinished or missing; else 0.
+int verify_ensemble(const VerifyArguments& arguments);
+
+/// What `--json` says of a run.
+Json json_of(const RunVerification& run, const std::string& folder);
+
+/// Arcs, equilibria, and the verdict.
+void print_totals(const RunVerification& run);
+
+} // namespace isostat::cli

@@ -1,0 +1,10 @@
+# PARTS (html, css, js) as one string in OUTPUT.
+list(GET PARTS 0 html)
+list(GET PARTS 1 css)
+list(GET PARTS 2 js)
+file(READ ${html} page)
+file(READ ${css} style)
+file(READ ${js} script)
+string(REPLACE "@STYLE@" "${style}" page "${page}")
+string(REPLACE "@SCRIPT@" "${script}" page "${page}")
+file(WRITE ${OUTPUT} "#include \"report/page.hpp\"\n\nconst char* const isostat::page_template = R\"page(${page})page\";\n")

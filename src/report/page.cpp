@@ -1,0 +1,289 @@
+#include "report/page.hpp"
+
+#include "io/json.hpp"
+#include "linear/factorisation.hpp"
+#include "report/page_bytes.hpp"
+#include "report/run_walk.hpp"
+
+#include <isostat/io/files.hpp>
+#include <isostat/rigidity/isostatic.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace isostat {
+
+namespace {
+
+using checker::EquilibriumLine;
+using checker::EventRecord;
+using checker::RunRecords;
+using json::Json;
+
+constexpr int parts_of_radius = 256;          ///< positions are rounded to this part of the mean radius
+constexpr int parts_of_longest = 31;          ///< arrows, of the longest one
+constexpr int parts_of_force = 16;            ///< forces, of the mean one
+constexpr std::size_t most_coordinates = 6e6; ///< of all frames: some MB of file
+
+/// Columns of equilibria.csv that the page shows.
+constexpr std::array columns{"number",    "previous",   "segment",     "sigma2",         "ratio",
+                             "eps1",      "eps2",       "arcs",        "rattlers",       "backbone",
+                             "contacts",  "h",          "held",        "margin",         "proved",
+                             "certified", "sigma2_low", "sigma2_high", "solid_fraction", "decided_by"};
+
+/// A contact as in equilibria.csv: two numbers, walls -1 to -4; a held coordinate is (its index, -9).
+void append_contact(Json& list, const Contact& contact) {
+    list.push_back(contact.i);
+    switch (contact.kind) {
+    case ContactKind::disk_disk: list.push_back(contact.j); break;
+    case ContactKind::lower_wall: list.push_back(-1 - contact.j); break;
+    case ContactKind::upper_wall: list.push_back(-3 - contact.j); break;
+    case ContactKind::held: list.push_back(-9); break;
+    }
+}
+
+/// Forces of an equilibrium in double, or nothing.
+std::vector<double> forces_of(const State<2>& state) {
+    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+    if (!structure.ok()) {
+        return {};
+    }
+    std::vector<double> forces = on_dofs(state.load.external_force(state.packing), structure.value().dofs());
+    Factorisation(structure.value()).solve_forces(forces);
+    return forces;
+}
+
+std::vector<double> difference(const State<2>& to, const State<2>& from) {
+    std::vector<double> moved(to.packing.q.size());
+    std::transform(to.packing.q.begin(), to.packing.q.end(), from.packing.q.begin(), moved.begin(), std::minus<>());
+    return moved;
+}
+
+/// Which vertices get a frame.
+struct Thinning {
+    std::size_t arcs = 1;       ///< every so many of them
+    std::size_t equilibria = 1; ///< every so many of them, by number
+    Thinning(const RunRecords& records, std::size_t coordinates) {
+        const std::size_t most = std::max<std::size_t>(1, most_coordinates / coordinates);
+        const std::size_t rows = records.equilibria.size();
+        equilibria = rows / most + 1;
+        arcs = records.events.size() / std::max<std::size_t>(1, most - std::min(most, rows)) + 1;
+    }
+    [[nodiscard]] bool keeps(const WalkedVertex& vertex, const RunRecords& records) const {
+        if (vertex.equilibrium != nullptr) {
+            return vertex.relisted || static_cast<std::size_t>(vertex.state.equilibrium) % equilibria == 0;
+        }
+        return static_cast<std::size_t>(vertex.arc - records.events.data()) % arcs == 0;
+    }
+    [[nodiscard]] std::string words() const {
+        const auto some = [](std::size_t every, const char* what) {
+            return every == 1 ? "" : fmt::format(" {} of {} {}", every - 1, every, what);
+        };
+        const std::string left = some(arcs, "ends of arcs") + some(equilibria, "equilibria");
+        return left.empty() ? "" : "the packing at" + left + ": the page would be too large";
+    }
+};
+
+/// Writes the frames one after the other.
+class Frames {
+  public:
+    explicit Frames(const Packing<2>& packing) {
+        const std::vector<double>& radius = packing.radius;
+        resolution_ =
+            std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size()) / parts_of_radius;
+        last_.resize(packing.q.size(), 0);
+    }
+
+    void add(const WalkedVertex& vertex, const RunRecords& records) {
+        const State<2>& state = vertex.state;
+        for (std::size_t k = 0; k < last_.size(); ++k) {
+            const std::int64_t now = std::llround(state.packing.q[k] / resolution_);
+            append_varint(moves_, now - last_[k]);
+            last_[k] = now;
+        }
+        event_.push_back(vertex.arc != nullptr ? vertex.arc - records.events.data() : -1);
+        equilibrium_.push_back(vertex.equilibrium != nullptr ? state.equilibrium : -1);
+        list_.push_back(vertex.relisted ? static_cast<int>(lists_.size()) : -1);
+        if (vertex.relisted) {
+            Json& list = lists_.emplace_back(Json::array());
+            for (const Contact& contact : state.contacts) {
+                append_contact(list, contact);
+            }
+        }
+        arrow_.push_back(add_arrows(vertex.from, state));
+        const bool one_arc = vertex.arc != nullptr && vertex.arc->arc == 1;
+        whole_.push_back(vertex.equilibrium == nullptr ? -1
+                         : one_arc                     ? arrow_.back()
+                                                       : add_arrows(vertex.start, state));
+        force_.push_back(vertex.equilibrium != nullptr ? add_forces(state) : -1);
+    }
+
+    [[nodiscard]] Json json() const {
+        Json object;
+        object["resolution"] = resolution_;
+        object["event"] = event_;
+        object["equilibrium"] = equilibrium_;
+        object["list"] = list_;
+        object["arrow"] = arrow_;
+        object["whole"] = whole_;
+        object["force"] = force_;
+        object["longest"] = longest_;
+        object["force_count"] = force_count_;
+        object["lists"] = lists_;
+        object["parts"] = parts_of_force;
+        object["moves"] = packed(moves_);
+        object["arrows"] = packed(arrows_);
+        object["forces"] = packed(forces_);
+        return object;
+    }
+
+  private:
+    /// Its number; -1: nothing moved, or it is not known what.
+    int add_arrows(const State<2>* from, const State<2>& to) {
+        if (from == nullptr) {
+            return -1;
+        }
+        const std::vector<double> moved = difference(to, *from);
+        double longest = 0;
+        for (const double m : moved) {
+            longest = std::max(longest, std::abs(m));
+        }
+        if (longest == 0) {
+            return -1;
+        }
+        for (const double m : moved) {
+            append_varint(arrows_, std::llround(m / longest * parts_of_longest));
+        }
+        longest_.push_back(longest);
+        return static_cast<int>(longest_.size()) - 1;
+    }
+
+    int add_forces(const State<2>& state) {
+        const std::vector<double> forces = forces_of(state);
+        double sum = 0;
+        int carrying = 0;
+        for (std::size_t l = 0; l < forces.size(); ++l) {
+            const bool drawn = state.contacts[l].kind != ContactKind::held && forces[l] != 0;
+            sum += drawn ? std::abs(forces[l]) : 0;
+            carrying += drawn ? 1 : 0;
+        }
+        if (carrying == 0) {
+            return -1;
+        }
+        for (std::size_t l = 0; l < forces.size(); ++l) {
+            const double part = std::abs(forces[l]) * carrying / sum * parts_of_force;
+            const bool drawn = state.contacts[l].kind != ContactKind::held && forces[l] != 0;
+            forces_ += drawn ? static_cast<char>(std::clamp(std::llround(part), 1LL, 255LL)) : '\0';
+        }
+        force_count_.push_back(static_cast<int>(forces.size()));
+        return static_cast<int>(force_count_.size()) - 1;
+    }
+
+    double resolution_;
+    std::vector<std::int64_t> last_;
+    std::string moves_, arrows_, forces_;
+    std::vector<long> event_;
+    std::vector<int> equilibrium_, list_, arrow_, whole_, force_, force_count_;
+    std::vector<double> longest_;
+    Json lists_ = Json::array();
+};
+
+Json equilibria_json(const RunRecords& records) {
+    Json object;
+    for (const char* name : columns) {
+        Json& column = object[name] = Json::array();
+        for (const EquilibriumLine& line : records.equilibria) {
+            column.push_back(json::or_null(line.value.contains(name) ? line.at(name) : NAN));
+        }
+    }
+    return object;
+}
+
+Json events_json(const RunRecords& records, const Packing<2>& packing) {
+    Json object;
+    for (const char* name : {"equilibrium", "arc", "kind", "opened", "closed", "sigma2", "eps2", "displacement"}) {
+        object[name] = Json::array();
+    }
+    for (const EventRecord& event : records.events) {
+        object["equilibrium"].push_back(event.equilibrium);
+        object["arc"].push_back(event.arc);
+        object["kind"].push_back(event.kind);
+        const Contact nothing{ContactKind::held, -1, 0};
+        append_contact(object["opened"], checker::contact_named(event.opened, packing).value_or(nothing));
+        append_contact(object["closed"], checker::contact_named(event.closed, packing).value_or(nothing));
+        object["sigma2"].push_back(event.stress);
+        object["eps2"].push_back(event.strain);
+        object["displacement"].push_back(event.displacement);
+    }
+    return object;
+}
+
+Json packing_json(const State<2>& state) {
+    constexpr std::array<const char*, 3> kinds{"absent", "fixed", "movable"};
+    const Packing<2>& packing = state.packing;
+    Json object;
+    object["radii"] = std::vector<float>(packing.radius.begin(), packing.radius.end());
+    object["fixed"] = packing.fixed;
+    object["loaded_axis"] = state.load.loaded_axis;
+    for (std::size_t a = 0; a < 2; ++a) {
+        object["lower"].push_back(kinds.at(static_cast<std::size_t>(packing.walls.lower[a])));
+        object["upper"].push_back(kinds.at(static_cast<std::size_t>(packing.walls.upper[a])));
+    }
+    return object;
+}
+
+Json header_json(const std::filesystem::path& directory) {
+    const std::string path = (directory / "run.json").string();
+    const Json parsed = json::Field::parse(read_text(path), path);
+    const json::Field run(parsed, path);
+    Json object;
+    for (const char* name : {"scene_file", "program", "status"}) {
+        object[name] = run.at(name).string();
+    }
+    object["segments"] = run.at("programme").value();
+    const json::Field settings = run.at("settings").at("run");
+    object["level"] = settings.has("certify") ? settings.at("certify").string() : "decisions";
+    return object;
+}
+
+} // namespace
+
+Page run_page(const std::filesystem::path& directory, const std::function<void(std::size_t, std::size_t)>& progress) {
+    const RunRecords records = checker::read_records(directory, checker::LastLine::may_be_cut);
+    Page page;
+    Json data = header_json(directory);
+    std::optional<Frames> frames;
+    if (const std::optional<StateFile<2>> first = records.stored(0)) {
+        const Packing<2>& packing = first->state.packing;
+        data["packing"] = packing_json(first->state);
+        data["events"] = events_json(records, packing);
+        frames.emplace(packing);
+        const Thinning thinning(records, packing.q.size());
+        page.left_out = walk_run(records, [&](const WalkedVertex& vertex) {
+            if (thinning.keeps(vertex, records)) {
+                frames->add(vertex, records);
+            }
+            if (progress && vertex.arc != nullptr) {
+                progress(static_cast<std::size_t>(vertex.arc - records.events.data()) + 1, records.events.size());
+            }
+            return true;
+        });
+        if (!thinning.words().empty()) {
+            page.left_out.push_back(thinning.words());
+        }
+        data["frames"] = frames->json();
+    }
+    data["equilibria"] = equilibria_json(records);
+    data["left_out"] = page.left_out;
+    page.html = page_template;
+    const std::string place = "@DATA@";
+    page.html.replace(page.html.find(place), place.size(), in_script(json::dumped(data)));
+    return page;
+}
+
+} // namespace isostat

@@ -1,0 +1,605 @@
+"use strict";
+const byId = (id) => document.getElementById(id);
+const trouble = (text) => { byId("trouble").hidden = false; byId("trouble").textContent = text; };
+window.addEventListener("error", (event) => trouble(event.message));
+window.addEventListener("unhandledrejection", (event) => trouble(String(event.reason)));
+
+const run = JSON.parse(byId("run").textContent);
+const rows = run.equilibria, events = run.events, recorded = run.frames;
+const rowCount = rows.number.length;
+const colour = { disk: "#e9e6df", rim: "#a9a59b", rattler: "#9fb8cf", force: "#8c1c13", contact: "#777", opened: "#d97a00", closed: "#0b4f94", motion: "#111" };
+const segmentColours = ["#1f4e79", "#c55a11", "#548235", "#7b3f99", "#997300", "#a61c3c"];
+const sci = (value, digits) => value === null ? "–" : Number(value).toExponential(digits);
+const short = (value, digits = 6) => value === null ? "–" : String(Number(Number(value).toPrecision(digits)));
+
+// --- the numbers of the frames ---------------------------------------------------------------------------------------
+
+async function unpack(text) {
+  const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+function* integers(bytes) {
+  let value = 0, factor = 1;
+  for (const byte of bytes) {
+    value += (byte & 127) * factor;
+    factor *= 128;
+    if (byte < 128) {
+      yield value % 2 === 0 ? value / 2 : -(value + 1) / 2;
+      value = 0;
+      factor = 1;
+    }
+  }
+}
+
+/// Everything that is drawn, frame by frame.
+const film = { count: 0, positions: [], arrows: [], forces: [], frameOf: new Map() };
+
+async function decode() {
+  const n = run.packing.radii.length, size = 2 * n + 2;
+  const next = integers(await unpack(recorded.moves));
+  const here = new Float64Array(size);
+  for (let f = 0; f < recorded.event.length; ++f) {
+    for (let k = 0; k < size; ++k) here[k] += next.next().value;
+    film.positions.push(Float32Array.from(here, (x) => x * recorded.resolution));
+    if (recorded.equilibrium[f] >= 0) film.frameOf.set(recorded.equilibrium[f], f);
+  }
+  const arrows = await unpack(recorded.arrows); // one byte each: they are small
+  for (let k = 0; k < recorded.longest.length; ++k) {
+    film.arrows.push(Int8Array.from(arrows.subarray(k * size, (k + 1) * size), (b) => (b & 1 ? -(b + 1) / 2 : b / 2)));
+  }
+  const forces = await unpack(recorded.forces);
+  let at = 0;
+  for (const count of recorded.force_count) {
+    film.forces.push(forces.subarray(at, at + count));
+    at += count;
+  }
+  film.count = recorded.event.length;
+}
+
+// --- which contacts there are ----------------------------------------------------------------------------------------
+
+const eventsOf = new Map(); // of an equilibrium: its first arc, and the one after its last
+for (let e = 0; e < events?.equilibrium.length; ++e) {
+  const range = eventsOf.get(events.equilibrium[e]) ?? [e, e];
+  eventsOf.set(events.equilibrium[e], [range[0], e + 1]);
+}
+const relisted = new Map(); // of an equilibrium: the list in the order of its state
+const listCache = new Map();
+
+function exchange(list, event) {
+  const [i, j] = [events.opened[2 * event], events.opened[2 * event + 1]];
+  for (let l = 0; l < list.length; l += 2) {
+    if (list[l] === i && list[l + 1] === j) {
+      list[l] = events.closed[2 * event];
+      list[l + 1] = events.closed[2 * event + 1];
+      return;
+    }
+  }
+}
+
+/// Contacts of an equilibrium, two numbers each.
+function contactsOf(equilibrium) {
+  const way = [];
+  let from = equilibrium;
+  while (from >= 0 && !listCache.has(from) && !relisted.has(from)) {
+    way.push(from);
+    from = rows.previous[from] ?? -1;
+  }
+  if (from < 0) return null;
+  let list = listCache.get(from) ?? Int32Array.from(relisted.get(from));
+  listCache.set(from, list);
+  for (const to of way.reverse()) {
+    list = list.slice();
+    const [first, end] = eventsOf.get(to) ?? [0, 0];
+    for (let e = first; e < end; ++e) exchange(list, e);
+    listCache.set(to, list);
+  }
+  return list;
+}
+
+/// The equilibrium that a frame is, or that its arc left.
+function baseOf(frame) {
+  if (recorded.equilibrium[frame] >= 0) return recorded.equilibrium[frame];
+  const goal = events.equilibrium[recorded.event[frame]];
+  return goal < rowCount ? rows.previous[goal] : rowCount - 1;
+}
+
+function contactsAt(frame) {
+  if (recorded.equilibrium[frame] >= 0) return contactsOf(recorded.equilibrium[frame]);
+  const start = contactsOf(baseOf(frame));
+  if (!start) return null;
+  const list = start.slice(), last = recorded.event[frame];
+  for (let e = eventsOf.get(events.equilibrium[last])[0]; e <= last; ++e) exchange(list, e);
+  return list;
+}
+
+const most = 1 << 24; // more than there are disks; j is from -9
+const pairs = (list) => { const all = []; for (let l = 0; l < list.length; l += 2) all.push(list[l] * most + list[l + 1] + 9); return all; };
+const pairOf = (number) => [Math.floor(number / most), number % most - 9];
+
+/// What opened and closed to come here: in the arc, or in the whole rearrangement.
+function changesAt(frame) {
+  const number = recorded.equilibrium[frame], event = recorded.event[frame];
+  if (number < 0) return { opened: [[events.opened[2 * event], events.opened[2 * event + 1]]], closed: [[events.closed[2 * event], events.closed[2 * event + 1]]] };
+  const before = rows.previous[number] >= 0 ? contactsOf(rows.previous[number]) : null, after = contactsOf(number);
+  if (!before || !after || relisted.has(number)) return { opened: [], closed: [] };
+  const was = new Set(pairs(before)), is = new Set(pairs(after));
+  return { opened: [...was].filter((p) => !is.has(p)).map(pairOf), closed: [...is].filter((p) => !was.has(p)).map(pairOf) };
+}
+
+function rattlersOf(equilibrium) {
+  const frame = film.frameOf.get(equilibrium), flags = new Uint8Array(run.packing.radii.length);
+  const forces = frame === undefined ? undefined : film.forces[recorded.force[frame]], list = forces && contactsOf(equilibrium);
+  if (!list) return flags;
+  flags.fill(1);
+  for (let l = 0; l < forces.length; ++l) {
+    if (forces[l] === 0) continue;
+    flags[list[2 * l]] = 0;
+    if (list[2 * l + 1] >= 0) flags[list[2 * l + 1]] = 0;
+  }
+  return flags;
+}
+
+const wallNames = { "-1": "left", "-2": "bottom", "-3": "right", "-4": "top" };
+function contactName([i, j]) {
+  if (j === -9) return i < 0 ? "?" : `held ${"xy"[i % 2]} of grain ${Math.floor(i / 2)}`;
+  return `${i}-${wallNames[j] ?? j}`;
+}
+
+// --- canvases --------------------------------------------------------------------------------------------------------
+
+/// The drawing area in CSS pixels, sharp on every screen.
+function prepared(canvas) {
+  const scale = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  if (canvas.width !== Math.round(width * scale)) canvas.width = Math.round(width * scale);
+  if (canvas.height !== Math.round(height * scale)) canvas.height = Math.round(height * scale);
+  const pen = canvas.getContext("2d");
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  return { pen, width, height };
+}
+
+const view = { zoom: 1, x: 0, y: 0 }; // x, y: centre, in parts of the box
+let current = 0;
+
+function boxOf(q) {
+  const radii = run.packing.radii, n = radii.length, size = [q[2 * n], q[2 * n + 1]];
+  for (let a = 0; a < 2; ++a) {
+    if (run.packing.upper[a] !== "absent") continue;
+    size[a] = 0;
+    for (let i = 0; i < n; ++i) size[a] = Math.max(size[a], q[2 * i + a] + radii[i]);
+  }
+  return size;
+}
+
+function placed(canvas, q) {
+  const { pen, width, height } = prepared(canvas), box = boxOf(q), border = 12;
+  const scale = view.zoom * Math.min((width - 2 * border) / box[0], (height - 2 * border) / box[1]);
+  const left = width / 2 - scale * box[0] * (0.5 + view.x), low = height / 2 + scale * box[1] * (0.5 + view.y);
+  return { pen, box, scale, x: (u) => left + scale * u, y: (v) => low - scale * v, width, height };
+}
+
+/// Draws many small shapes, some at a time: long paths are slow.
+function inParts(count, pen, add, finish) {
+  const part = 100;
+  for (let begin = 0; begin < count; begin += part) {
+    pen.beginPath();
+    for (let k = begin; k < Math.min(count, begin + part); ++k) add(k);
+    finish();
+  }
+}
+
+function drawDisks(at, q, flags) {
+  const radii = run.packing.radii;
+  for (const rattler of [0, 1]) {
+    at.pen.fillStyle = rattler ? colour.rattler : colour.disk;
+    at.pen.strokeStyle = rattler ? "#5f7f9d" : colour.rim;
+    at.pen.lineWidth = 0.6;
+    const add = (i) => {
+      const x = at.x(q[2 * i]), y = at.y(q[2 * i + 1]), r = radii[i] * at.scale;
+      if (flags[i] !== rattler || x < -r || y < -r || x > at.width + r || y > at.height + r) return;
+      at.pen.moveTo(x + r, y);
+      at.pen.arc(x, y, r, 0, 2 * Math.PI);
+    };
+    const large = at.scale * radii[0] > 5; // the rim of smaller ones is not worth its time
+    inParts(radii.length, at.pen, add, () => { at.pen.fill(); if (large || rattler) at.pen.stroke(); });
+  }
+}
+
+/// From the centre of the disk to that of the other, or to the wall.
+function segment(at, q, i, j) {
+  const x = at.x(q[2 * i]), y = at.y(q[2 * i + 1]), n = run.packing.radii.length;
+  if (j >= 0) return [x, y, at.x(q[2 * j]), at.y(q[2 * j + 1])];
+  const axis = (-1 - j) % 2, wall = j >= -2 ? 0 : q[2 * n + axis];
+  return axis === 0 ? [x, y, at.x(wall), y] : [x, y, x, at.y(wall)];
+}
+
+function drawContacts(at, q, list, forces) {
+  const mean = 0.2 * at.scale * run.packing.radii.reduce((a, b) => a + b, 0) / run.packing.radii.length;
+  const groups = new Map(); // lines of one width together
+  for (let l = 0; l < list.length / 2; ++l) {
+    if (list[2 * l + 1] === -9) continue;
+    const width = forces && byId("forces").checked ? forces[l] : 0;
+    if (!groups.has(width)) groups.set(width, []);
+    groups.get(width).push(l);
+  }
+  at.pen.lineCap = "round";
+  for (const [width, members] of groups) {
+    at.pen.strokeStyle = width > 0 ? colour.force : colour.contact;
+    at.pen.lineWidth = width > 0 ? Math.max(0.3, mean * width / recorded.parts) : 0.4;
+    const add = (k) => {
+      const l = members[k], [a, b, c, d] = segment(at, q, list[2 * l], list[2 * l + 1]);
+      at.pen.moveTo(a, b);
+      at.pen.lineTo(c, d);
+    };
+    inParts(members.length, at.pen, add, () => at.pen.stroke());
+  }
+}
+
+function drawChange(at, q, [i, j], style, dash) {
+  if (i < 0 || j === -9) return;
+  const [a, b, c, d] = segment(at, q, i, j);
+  for (const [ink, width] of [["#fff", 7], [style, 4]]) {
+    at.pen.beginPath();
+    at.pen.moveTo(a, b);
+    at.pen.lineTo(c, d);
+    at.pen.setLineDash(ink === "#fff" ? [] : dash);
+    at.pen.lineCap = "butt";
+    at.pen.strokeStyle = ink;
+    at.pen.lineWidth = width;
+    at.pen.stroke();
+  }
+  at.pen.setLineDash([]);
+}
+
+/// The longest arrow has three mean radii.
+function drawMotion(at, q, arrows) {
+  const radii = run.packing.radii, unit = 3 / 31 * at.scale * radii.reduce((a, b) => a + b, 0) / radii.length;
+  at.pen.strokeStyle = colour.motion;
+  at.pen.lineWidth = 1.1;
+  at.pen.lineCap = "butt";
+  const every = Math.ceil(radii.length / 1500 / view.zoom ** 2); // more arrows than these are not seen, but wait for
+  const add = (k) => {
+    const i = k * every;
+    const dx = arrows[2 * i] * unit, dy = -arrows[2 * i + 1] * unit, length = Math.hypot(dx, dy);
+    if (length < 3) return;
+    const x = at.x(q[2 * i]), y = at.y(q[2 * i + 1]), head = Math.min(6, length / 2) / length;
+    at.pen.moveTo(x, y);
+    at.pen.lineTo(x + dx, y + dy);
+    at.pen.lineTo(x + dx - head * (dx + dy / 2), y + dy - head * (dy - dx / 2));
+    at.pen.moveTo(x + dx, y + dy);
+    at.pen.lineTo(x + dx - head * (dx - dy / 2), y + dy - head * (dy + dx / 2));
+  };
+  inParts(Math.floor(radii.length / every), at.pen, add, () => at.pen.stroke());
+}
+
+function drawWalls(at, q) {
+  const [w, h] = at.box, { lower, upper } = run.packing;
+  const sides = [[lower[0], 0, 0, 0, h], [lower[1], 0, 0, w, 0], [upper[0], w, 0, w, h], [upper[1], 0, h, w, h]];
+  for (const [kind, a, b, c, d] of sides) {
+    if (kind === "absent") continue;
+    at.pen.beginPath();
+    at.pen.moveTo(at.x(a), at.y(b));
+    at.pen.lineTo(at.x(c), at.y(d));
+    at.pen.strokeStyle = kind === "fixed" ? "#222" : "#8f8f8f";
+    at.pen.lineWidth = 3;
+    at.pen.stroke();
+  }
+}
+
+function drawPacking() {
+  const canvas = byId("packing");
+  if (film.count === 0) {
+    const { pen } = prepared(canvas);
+    pen.font = "14px sans-serif";
+    pen.fillText("no packing is known: see What is drawn", 12, 24);
+    return;
+  }
+  const q = film.positions[current], list = contactsAt(current), isEquilibrium = recorded.equilibrium[current] >= 0;
+  const at = placed(canvas, q);
+  drawDisks(at, q, byId("rattlers").checked ? rattlersOf(baseOf(current)) : new Uint8Array(run.packing.radii.length));
+  if (list) drawContacts(at, q, list, isEquilibrium ? film.forces[recorded.force[current]] : undefined);
+  drawWalls(at, q);
+  if (byId("changes").checked) {
+    const changes = changesAt(current);
+    for (const pair of changes.opened) drawChange(at, q, pair, colour.opened, [7, 5]);
+    for (const pair of changes.closed) drawChange(at, q, pair, colour.closed, []);
+  }
+  const arrows = film.arrows[isEquilibrium ? recorded.whole[current] : recorded.arrow[current]];
+  if (byId("motion").checked && arrows) drawMotion(at, q, arrows);
+}
+
+// --- the staircase ---------------------------------------------------------------------------------------------------
+
+const ratioOf = (event) => { // events have the stress only
+  const k = Math.min(events.equilibrium[event], rowCount - 1);
+  return events.sigma2[event] * rows.ratio[k] / rows.sigma2[k];
+};
+const placeOf = (frame) => recorded.equilibrium[frame] >= 0
+  ? [rows.eps2[recorded.equilibrium[frame]], rows.ratio[recorded.equilibrium[frame]]]
+  : [events.eps2[recorded.event[frame]], ratioOf(recorded.event[frame])];
+
+function niceTicks(low, high, most) {
+  const raw = (high - low) / most, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= raw), ticks = [];
+  for (let k = Math.ceil(low / step); k * step <= high; ++k) ticks.push(k * step);
+  return { ticks, digits: Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) };
+}
+
+let chart = null;
+function scaleChart(width, height) {
+  const x = rows.eps2, y = rows.ratio, span = (v) => { let a = Infinity, b = -Infinity; for (const u of v) { a = Math.min(a, u); b = Math.max(b, u); } const c = b > a ? b - a : Math.abs(b) || 1; return [a - 0.04 * c, b + 0.04 * c]; };
+  const [x0, x1] = span(x), [y0, y1] = span(y), left = 64, low = 34, top = 26, right = 14;
+  chart = { x: (u) => left + (u - x0) / (x1 - x0) * (width - left - right), y: (v) => height - low - (v - y0) / (y1 - y0) * (height - low - top), x0, x1, y0, y1, left, low, top, right };
+}
+
+function drawAxes(pen, width, height) {
+  pen.font = "12px sans-serif";
+  pen.strokeStyle = "#e2ded5";
+  pen.fillStyle = "#1c1b19";
+  pen.lineWidth = 1;
+  const power = Math.floor(Math.log10(Math.max(Math.abs(chart.x0), Math.abs(chart.x1)))), unit = power < -2 ? 10 ** power : 1;
+  const across = niceTicks(chart.x0 / unit, chart.x1 / unit, Math.max(2, width / 110)), up = niceTicks(chart.y0, chart.y1, Math.max(2, height / 60));
+  pen.textAlign = "center";
+  for (const t of across.ticks) {
+    pen.beginPath(); pen.moveTo(chart.x(t * unit), chart.top); pen.lineTo(chart.x(t * unit), height - chart.low); pen.stroke();
+    pen.fillText(t.toFixed(across.digits), chart.x(t * unit), height - chart.low + 15);
+  }
+  pen.textAlign = "right";
+  for (const t of up.ticks) {
+    pen.beginPath(); pen.moveTo(chart.left, chart.y(t)); pen.lineTo(width - chart.right, chart.y(t)); pen.stroke();
+    pen.fillText(t.toFixed(up.digits), chart.left - 6, chart.y(t) + 4);
+  }
+  pen.fillText("axial strain ε₂" + (unit === 1 ? "" : ` (10${[...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")})`), width - chart.right, height - 5);
+  pen.textAlign = "left";
+  pen.fillText("stress ratio σ₂/σ₁", 6, 15);
+}
+
+function drawStairs() {
+  const { pen, width, height } = prepared(byId("stairs"));
+  if (rowCount === 0) return;
+  scaleChart(width, height);
+  drawAxes(pen, width, height);
+  pen.lineWidth = 1.5;
+  for (let k = 0; k < rowCount; ++k) {
+    const p = rows.previous[k];
+    if (p < 0) continue;
+    pen.beginPath();
+    pen.moveTo(chart.x(rows.eps2[p]), chart.y(rows.ratio[p]));
+    pen.lineTo(chart.x(rows.eps2[p]), chart.y(rows.ratio[k]));
+    pen.lineTo(chart.x(rows.eps2[k]), chart.y(rows.ratio[k]));
+    pen.strokeStyle = segmentColours[rows.segment[k] % segmentColours.length];
+    pen.stroke();
+  }
+  if (film.count === 0) return;
+  const [x, y] = placeOf(current);
+  pen.beginPath();
+  pen.arc(chart.x(x), chart.y(y), 6, 0, 2 * Math.PI);
+  pen.fillStyle = recorded.equilibrium[current] >= 0 ? "#111" : "#fff";
+  pen.strokeStyle = "#111";
+  pen.lineWidth = 2;
+  pen.fill();
+  pen.stroke();
+}
+
+function nearest(px, py) {
+  let best = current, least = Infinity;
+  for (let f = 0; f < film.count; ++f) {
+    const [x, y] = placeOf(f);
+    const d = Math.hypot(chart.x(x) - px, chart.y(y) - py) - (recorded.equilibrium[f] >= 0 ? 1 : 0); // equilibria first
+    if (d < least) [best, least] = [f, d];
+  }
+  return best;
+}
+
+// --- words and tables ------------------------------------------------------------------------------------------------
+
+function row(cells, words = []) {
+  const line = document.createElement("tr");
+  cells.forEach((text, k) => {
+    const cell = document.createElement("td");
+    cell.textContent = text;
+    if (words.includes(k)) cell.className = "words";
+    line.append(cell);
+  });
+  return line;
+}
+
+const provedWords = (k) => rows.proved[k] === 1 ? (rows.certified[k] === 1 ? "yes, with a certificate" : "yes") : "no";
+
+function fillEquilibria() {
+  const body = byId("equilibria").tBodies[0];
+  for (let k = 0; k < rowCount; ++k) {
+    const line = row([rows.number[k], run.segments[rows.segment[k]] ?? rows.segment[k], short(rows.ratio[k], 9), sci(rows.eps2[k], 4), rows.arcs[k], rows.h[k], rows.rattlers[k], sci(rows.margin[k], 1), provedWords(k)], [1, 8]);
+    line.addEventListener("click", () => film.frameOf.has(k) && show(film.frameOf.get(k)));
+    body.append(line);
+  }
+}
+
+function fillNumbers(k) {
+  const body = byId("numbers").tBodies[0];
+  const stress = (value) => value === null ? "unbounded" : short(value, 9);
+  const list = [["number", rows.number[k]], ["segment", run.segments[rows.segment[k]] ?? rows.segment[k]], ["σ₂/σ₁", short(rows.ratio[k], 12)], ["ε₂", short(rows.eps2[k], 9)], ["ε₁", short(rows.eps1[k], 9)],
+    ["supported interval of σ₂", `${stress(rows.sigma2_low[k])} to ${stress(rows.sigma2_high[k])}`], ["solid fraction", short(rows.solid_fraction[k], 8)], ["contacts, with a force", `${rows.contacts[k]}, ${rows.backbone[k]}`],
+    ["rattlers", rows.rattlers[k]], ["self-stresses h", rows.h[k]], ["held coordinates", rows.held[k]], ["smallest margin", sci(rows.margin[k], 2)], ["decided by", ["signs and counts", "double", "double-double", "MPFR", "exact numbers"][rows.decided_by[k]] ?? "–"], ["proved", provedWords(k)]];
+  body.replaceChildren(...list.map(([name, value]) => row([name, value], [0])));
+}
+
+/// Scrolls its table to a row, and nothing else.
+function reveal(line) {
+  const frame = line?.closest(".scroll");
+  if (!frame) return;
+  const above = line.offsetTop - frame.querySelector("thead").offsetHeight, below = line.offsetTop + line.offsetHeight - frame.clientHeight;
+  if (frame.scrollTop > above) frame.scrollTop = above;
+  if (frame.scrollTop < below) frame.scrollTop = below;
+}
+
+const mostArcs = 400; // rows of the table
+function fillArcs(k) {
+  const body = byId("arcs").tBodies[0], [first, end] = eventsOf.get(k) ?? [0, 0];
+  const chosen = film.count ? recorded.event[current] : -1;
+  const begin = end - first > mostArcs ? Math.max(first, Math.min(chosen - mostArcs / 2, end - mostArcs)) : first, stop = Math.min(end, begin + mostArcs);
+  const lines = [];
+  for (let e = begin; e < stop; ++e) {
+    const line = row([events.arc[e], events.kind[e], contactName([events.opened[2 * e], events.opened[2 * e + 1]]), contactName([events.closed[2 * e], events.closed[2 * e + 1]]), sci(events.eps2[e], 6), short(events.displacement[e], 3)], [1]);
+    if (e === chosen) line.className = "here";
+    const frame = recorded.event.indexOf(e);
+    line.addEventListener("click", () => frame >= 0 && show(frame));
+    lines.push(line);
+  }
+  body.replaceChildren(...lines);
+  byId("more_arcs").textContent = stop - begin < end - first ? `${stop - begin} of ${end - first} arcs` : end === first ? "none" : "";
+  reveal(body.querySelector(".here"));
+}
+
+function describe() {
+  const number = recorded.equilibrium[current], event = recorded.event[current];
+  const arrows = number >= 0 ? recorded.whole[current] : recorded.arrow[current];
+  const longest = arrows >= 0 ? ` Longest arrow: ${short(recorded.longest[arrows], 3)}.` : "";
+  if (number >= 0) return `Equilibrium ${number}: σ₂/σ₁ = ${short(rows.ratio[number], 9)}, ε₂ = ${short(rows.eps2[number], 6)}, ${rows.arcs[number] === 1 ? "1 arc" : rows.arcs[number] + " arcs"} led here.` + longest;
+  const [first, end] = eventsOf.get(events.equilibrium[event]);
+  return `Towards equilibrium ${events.equilibrium[event]}, end of arc ${events.arc[event]} of ${end - first}: ${contactName([events.opened[2 * event], events.opened[2 * event + 1]])} opened, ${contactName([events.closed[2 * event], events.closed[2 * event + 1]])} closed, ε₂ = ${short(events.eps2[event], 6)}.` + longest;
+}
+
+// --- going about -----------------------------------------------------------------------------------------------------
+
+let shownRow = -1;
+function show(frame) {
+  if (film.count === 0) return;
+  current = Math.max(0, Math.min(film.count - 1, frame));
+  const number = recorded.equilibrium[current] >= 0 ? recorded.equilibrium[current] : events.equilibrium[recorded.event[current]];
+  byId("slide").value = current;
+  byId("where").textContent = describe();
+  document.body.dataset.frame = current;
+  document.body.dataset.equilibrium = number;
+  if (number < rowCount) fillNumbers(number);
+  fillArcs(number);
+  if (number !== shownRow) {
+    const lines = byId("equilibria").tBodies[0].rows;
+    lines[shownRow]?.classList.remove("here");
+    lines[number]?.classList.add("here");
+    reveal(lines[number]);
+    shownRow = number;
+  }
+  draw();
+}
+
+let waiting = false;
+function draw() {
+  if (waiting) return;
+  waiting = true;
+  requestAnimationFrame(() => { waiting = false; drawStairs(); drawPacking(); });
+}
+
+function otherEquilibrium(step) {
+  for (let f = current + step; f >= 0 && f < film.count; f += step) if (recorded.equilibrium[f] >= 0) return show(f);
+}
+
+let playing = null;
+function play(on) {
+  if (on === (playing !== null)) return;
+  if (!on) {
+    playing = null;
+  } else {
+    if (current === film.count - 1) show(0);
+    const begin = playing = { time: performance.now(), frame: current, speed: Number(byId("speed").value) };
+    const step = (now) => {
+      if (playing !== begin) return;
+      const frame = begin.frame + Math.floor((now - begin.time) / 1000 * begin.speed);
+      if (frame !== current) show(frame);
+      if (current === film.count - 1) play(false); else requestAnimationFrame(step);
+    };
+    requestAnimationFrame(step);
+  }
+  byId("play").textContent = playing ? "stop" : "play";
+  byId("play").setAttribute("aria-pressed", String(playing !== null));
+}
+
+function zoom(factor) {
+  view.zoom = Math.max(1, Math.min(60, view.zoom * factor));
+  if (view.zoom === 1) view.x = view.y = 0;
+  draw();
+}
+
+const toggle = (id) => { byId(id).checked = !byId(id).checked; draw(); };
+const keys = {
+  ArrowRight: () => show(current + 1), ArrowLeft: () => show(current - 1), ArrowUp: () => otherEquilibrium(1), ArrowDown: () => otherEquilibrium(-1),
+  PageDown: () => otherEquilibrium(1), PageUp: () => otherEquilibrium(-1), Home: () => show(0), End: () => show(film.count - 1), " ": () => play(playing === null),
+  f: () => toggle("forces"), r: () => toggle("rattlers"), c: () => toggle("changes"), m: () => toggle("motion"),
+  "+": () => zoom(1.5), "-": () => zoom(1 / 1.5), 0: () => zoom(0),
+};
+
+function listen() {
+  document.addEventListener("keydown", (event) => {
+    const onControl = event.target.closest("select, button, input[type=checkbox]") && [" ", "Enter", "ArrowUp", "ArrowDown"].includes(event.key);
+    if (event.ctrlKey || event.altKey || event.metaKey || onControl || event.target.tagName === "SELECT" || !keys[event.key]) return;
+    event.preventDefault();
+    if (event.key !== " ") play(false);
+    keys[event.key]();
+  });
+  const press = { first: () => show(0), back_far: () => otherEquilibrium(-1), back: () => show(current - 1), on: () => show(current + 1), on_far: () => otherEquilibrium(1), last: () => show(film.count - 1) };
+  for (const [id, act] of Object.entries(press)) byId(id).addEventListener("click", () => { play(false); act(); });
+  byId("play").addEventListener("click", () => play(playing === null));
+  byId("speed").addEventListener("change", () => { if (playing) { play(false); play(true); } });
+  byId("slide").addEventListener("input", (event) => { play(false); show(Number(event.target.value)); });
+  for (const id of ["forces", "rattlers", "changes", "motion"]) byId(id).addEventListener("change", draw);
+  byId("in").addEventListener("click", () => zoom(1.5));
+  byId("out").addEventListener("click", () => zoom(1 / 1.5));
+  byId("whole").addEventListener("click", () => zoom(0));
+  byId("stairs").addEventListener("click", (event) => { play(false); if (chart) show(nearest(event.offsetX, event.offsetY)); });
+  const canvas = byId("packing");
+  let held = null;
+  canvas.addEventListener("pointerdown", (event) => { held = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!held || view.zoom === 1) return;
+    const size = view.zoom * Math.min(canvas.clientWidth, canvas.clientHeight);
+    view.x -= (event.clientX - held[0]) / size;
+    view.y += (event.clientY - held[1]) / size;
+    held = [event.clientX, event.clientY];
+    draw();
+  });
+  canvas.addEventListener("pointerup", () => { held = null; });
+  canvas.addEventListener("pointercancel", () => { held = null; });
+  window.addEventListener("resize", fit);
+}
+
+/// The canvas of the packing has the shape of the box.
+function fit() {
+  const canvas = byId("packing"), box = film.count ? boxOf(film.positions[0]) : [2, 1], most = 0.82 * window.innerHeight;
+  canvas.style.height = Math.round(Math.max(160, Math.min(most, canvas.clientWidth * box[1] / box[0]))) + "px";
+  draw();
+}
+
+function introduce() {
+  const name = run.scene_file.split("/").pop();
+  document.title = `${name} – Isostat`;
+  byId("name").textContent = name;
+  const arcs = events?.arc.length ?? 0, disks = run.packing ? `${run.packing.radii.length} disks, ` : "";
+  byId("summary").textContent = `${run.program}: ${disks}${rowCount} equilibria, ${arcs} arcs; the run is: ${run.status}`;
+  const proved = rows.proved.filter((p) => p === 1).length;
+  byId("proved").textContent = `${proved} of ${rowCount} equilibria were proved when the run was made, at the level certify = "${run.level}":`;
+  byId("levels").querySelector(`tr[data-level="${CSS.escape(run.level)}"]`)?.classList.add("here");
+  for (const text of run.left_out) {
+    const item = document.createElement("li");
+    item.textContent = `Left out: ${text}`;
+    byId("left_out").append(item);
+  }
+}
+
+async function begin() {
+  introduce();
+  fillEquilibria();
+  if (recorded) {
+    recorded.list.forEach((list, f) => { if (list >= 0) relisted.set(recorded.equilibrium[f], recorded.lists[list]); });
+    await decode();
+  }
+  byId("slide").max = Math.max(0, film.count - 1);
+  listen();
+  fit();
+  show(0);
+  document.body.dataset.ready = film.count;
+}
+
+begin();

@@ -1,0 +1,176 @@
+#include "report/run_walk.hpp"
+
+#include "checker/recorded_arc.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace isostat {
+
+namespace {
+
+using namespace checker;
+
+class Walk {
+  public:
+    Walk(const RunRecords& records, const WalkVisitor& visit) : records_(records), visit_(visit) {
+        for (const EquilibriumLine& line : records.equilibria) {
+            if (line.integer("previous") != line.integer("number") - 1) {
+                branches_.insert(line.integer("previous"));
+            }
+        }
+    }
+
+    std::vector<std::string> go() {
+        while (next_ < records_.events.size() && records_.events[next_].equilibrium == 0) {
+            ++next_; // they led to the start
+        }
+        for (const EquilibriumLine& line : records_.equilibria) {
+            const int number = line.integer("number");
+            if (number > 0) {
+                begin(line.integer("previous"));
+            }
+            const std::size_t first = next_;
+            while (next_ < records_.events.size() && records_.events[next_].equilibrium == number) {
+                ++next_;
+            }
+            if (!rearrange({first, next_}, &line)) {
+                return notes_;
+            }
+        }
+        if (next_ < records_.events.size() && continues()) {
+            (void)rearrange({next_, records_.events.size()}, nullptr);
+        } else if (next_ < records_.events.size()) {
+            notes_.push_back("the arcs after the last equilibrium");
+        }
+        return notes_;
+    }
+
+  private:
+    struct Events {
+        std::size_t first, end;
+    };
+
+    /// Goes to where a rearrangement starts.
+    void begin(int previous) {
+        if (here_ && here_->equilibrium == previous) {
+            return;
+        }
+        forget();
+        if (const auto kept = kept_.find(previous); kept != kept_.end()) {
+            here_ = kept->second;
+            return;
+        }
+        if (std::optional<StateFile<2>> file = records_.stored(previous)) {
+            here_ = std::move(file->state);
+        }
+    }
+
+    void forget() {
+        here_.reset();
+        solver_.reset();
+    }
+
+    /// The arcs after the last equilibrium leave from it.
+    [[nodiscard]] bool continues() const {
+        const EventRecord& event = records_.events[next_];
+        if (!here_ || records_.equilibria.empty() || event.arc != 1) {
+            return false;
+        }
+        const EquilibriumLine& last = records_.equilibria.back();
+        return event.stress == last.at("sigma2_low") || event.stress == last.at("sigma2_high");
+    }
+
+    /// Goes through the arcs of one rearrangement; `line`: the equilibrium that it leads to. False: stop.
+    bool rearrange(Events events, const EquilibriumLine* line) {
+        const std::optional<State<2>> from = here_;
+        for (std::size_t k = events.first; k < events.end && here_; ++k) {
+            const EventRecord& event = records_.events[k];
+            const State<2> before = *here_;
+            if (!step(event)) {
+                notes_.push_back(fmt::format("equilibrium {} from its arc {} on", event.equilibrium, event.arc));
+                forget();
+                break;
+            }
+            const bool last = k + 1 == events.end && line != nullptr;
+            if (last) {
+                arrive(*line);
+            }
+            if (!visit_({*here_, &event, last ? line : nullptr, &before, &*from, false})) {
+                return false;
+            }
+        }
+        const bool visited = here_ && events.first < events.end;
+        return line == nullptr || visited || stand(*line, from);
+    }
+
+    /// An equilibrium without arcs, or one that the arcs were not followed to.
+    bool stand(const EquilibriumLine& line, const std::optional<State<2>>& from) {
+        const int number = line.integer("number");
+        bool relisted = false;
+        if (!here_ || number == 0) {
+            std::optional<StateFile<2>> file = records_.stored(number);
+            if (!file) {
+                notes_.push_back(fmt::format("equilibrium {}", number));
+                return true;
+            }
+            here_ = std::move(file->state);
+            relisted = true;
+        }
+        arrive(line);
+        return visit_({*here_, nullptr, &line, nullptr, from ? &*from : nullptr, relisted});
+    }
+
+    void arrive(const EquilibriumLine& line) {
+        here_->equilibrium = line.integer("number");
+        here_->load.stress[static_cast<std::size_t>(here_->load.loaded_axis)] = line.at("sigma2");
+        if (branches_.contains(here_->equilibrium)) {
+            kept_[here_->equilibrium] = *here_;
+        }
+    }
+
+    bool step(const EventRecord& event) {
+        if (!solver_) {
+            solver_ = std::make_shared<Solver>(Structure(here_->packing, here_->contacts), here_->packing.q);
+        }
+        here_->load.stress[static_cast<std::size_t>(here_->load.loaded_axis)] = event.stress;
+        const ArcStart start{*here_, solver_};
+        const std::optional<Opening> opening = opening_of(start, event);
+        if (!opening) {
+            return false;
+        }
+        const bool stays = // the arc has length O(eps): another contact, the same place
+            std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+        Followed followed;
+        if (!stays) {
+            followed = follow(start, event, *opening);
+            if (!followed.end) {
+                return false;
+            }
+            here_->packing.q = *followed.end;
+        }
+        here_->contacts[opening->contact] = *contact_named(event.closed, here_->packing);
+        solver_ = followed.solver;
+        return true;
+    }
+
+    const RunRecords& records_;
+    const WalkVisitor& visit_;
+    std::set<int> branches_; ///< equilibria that later segments start from
+    std::map<int, State<2>> kept_;
+    std::size_t next_ = 0;
+    std::optional<State<2>> here_; ///< nothing: lost
+    std::shared_ptr<const Solver> solver_;
+    std::vector<std::string> notes_;
+};
+
+} // namespace
+
+std::vector<std::string> walk_run(const RunRecords& records, const WalkVisitor& visit) {
+    return Walk(records, visit).go();
+}
+
+} // namespace isostat

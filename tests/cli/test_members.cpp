@@ -1,0 +1,95 @@
+// Commands that take the folder of an ensemble in place of a run.
+#include "cli/program.hpp"
+#include "support/forger.hpp"
+
+#include <nlohmann/json.hpp>
+
+using namespace program;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Three samples of 30 disks.
+fs::path ensemble(const scratch::Folder& folder) {
+    scratch::write(folder / "s.toml", "[packing]\ndisks = 30\n[[programme]]\ndo = \"up\"\nequilibria = 3\n[output]\n"
+                                      "pictures = false\n");
+    expect(run({"ensemble", (folder / "s.toml").string(), "--samples", "3", "-o", (folder / "many").string(), "-q"}),
+           0);
+    return folder / "many";
+}
+
+std::string seed(int number) {
+    return "samples/seed_00000" + std::to_string(number);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
+    const scratch::Folder folder;
+    const fs::path many = ensemble(folder);
+    const Outcome good = run({"verify", many.string(), "--json"});
+    expect(good, 0);
+    const json answer = json::parse(good.out);
+    BOOST_TEST_REQUIRE(answer["members"].size() == 3U);
+    int arcs = 0;
+    for (const json& member : answer["members"]) {
+        const json one = json::parse(run({"verify", member["folder"].get<std::string>(), "--json"}).out);
+        BOOST_TEST(one["verdict"] == member["verdict"]);
+        BOOST_TEST(one["arcs"] == member["arcs"]);
+        arcs += one["arcs"].get<int>();
+    }
+    BOOST_TEST(answer["arcs"] == arcs);
+    BOOST_TEST(answer["equilibria_proved"] == 12);
+    BOOST_TEST(answer["verdict"] == "ends proved, way looked at");
+    const Outcome words = run({"verify", many.string()});
+    BOOST_TEST(contains(words.out, "equilibria     12 of 12 proved"));
+    BOOST_TEST(contains(words.out, "rest"));
+}
+
+BOOST_AUTO_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble) {
+    const scratch::Folder folder;
+    const fs::path many = ensemble(folder);
+    const fs::path header = many / seed(2) / "run.json";
+    const std::string text = scratch::read(header);
+    scratch::write(header, scratch::replaced(text, "\"completed\"", "\"running\""));
+    const Outcome going = run({"verify", many.string()});
+    expect(going, 2);
+    BOOST_TEST(contains(going.out, "not finished"));
+    scratch::write(header, "nothing");
+    const Outcome unreadable = run({"verify", many.string()});
+    expect(unreadable, 65);
+    BOOST_TEST(contains(unreadable.out, "cannot be read"));
+    BOOST_TEST(contains(unreadable.out, "equilibria     8 of 8 proved")); // the others were checked
+    scratch::write(header, text);
+
+    const fs::path events = many / seed(3) / "events.jsonl";
+    scratch::write(events, scratch::replaced(scratch::read(events), "\"opened\":\"", "\"opened\":\"1"));
+    forger::seal(many / seed(3));
+    fs::remove_all(many / seed(1));
+    const Outcome wrong = run({"verify", many.string()});
+    expect(wrong, 1);
+    for (const char* word : {"missing", "refuted", "events.jsonl:1"}) {
+        BOOST_TEST(contains(wrong.out, word), word);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(report_takes_an_ensemble) {
+    const scratch::Folder folder;
+    const fs::path many = ensemble(folder);
+    const Outcome all = run({"report", many.string(), "--no-charts", "--html"});
+    expect(all, 0);
+    BOOST_TEST(contains(all.out, "proved"));
+    for (int number = 1; number <= 3; ++number) {
+        BOOST_TEST(fs::exists(many / seed(number) / "figures/report.txt"));
+        BOOST_TEST(fs::exists(many / seed(number) / "figures/trajectory.html"));
+    }
+    fs::remove(many / seed(2) / "run.json");
+    expect(run({"report", many.string(), "--no-charts", "-o", (folder / "out").string()}), 65, {"seed 2", "not begun"});
+    BOOST_TEST(fs::exists(folder / "out/seed_000003/report.txt")); // the others are reported
+    BOOST_TEST(!fs::exists(folder / "out/seed_000002"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,45 @@
+// What the program says when the wrong file is given, and when it is stopped.
+#include "cli/program.hpp"
+
+using namespace program;
+namespace fs = std::filesystem;
+
+BOOST_AUTO_TEST_SUITE(cli)
+
+BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
+    const scratch::Folder folder;
+    const auto path = [&folder](const char* name) { return (folder / name).string(); };
+    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    expect(run({"convert", scratch::data("vertex100.txt"), "-o", path("state.json")}), 0);
+    expect(run({"run", path("s.toml"), "-o", path("run"), "-q"}), 0);
+    expect(run({"certify", path("state.json"), "-o", path("cert.json")}), 0);
+    const std::string packing = std::string(ISOSTAT_EXAMPLES) + "/packings/square_lattice_3.toml";
+    expect(run({"certify", path("s.toml"), "-o", path("c")}), 65,
+           {"a scene, which says what to compute: for isostat run, plan, prepare, ensemble, not for certify"});
+    expect(run({"inspect", path("s.toml")}), 65, {"a scene"});
+    expect(run({"run", path("state.json"), "-o", path("o")}), 65, {"a state: for isostat inspect, certify"});
+    expect(run({"verify", path("state.json")}), 65, {"a state: for isostat inspect, certify"});
+    expect(run({"inspect", path("cert.json")}), 65, {"a certificate: for isostat verify, not for inspect"});
+    expect(run({"run", packing, "-o", path("o")}), 65, {"a crafted packing: for isostat inspect"});
+    expect(run({"inspect", path("run")}), 65, {"the folder of a run: for isostat report, verify"});
+    for (const char* name : {"run.json", "events.jsonl", "equilibria.csv"}) {
+        expect(run({"inspect", path("run") + "/" + name}), 65, {"a file of a run; its folder is meant"});
+    }
+    // The right kind with something wrong in it gets no such advice.
+    scratch::write(folder / "bad.toml", "[packing]\ndisks = 4\nsede = 1\n");
+    const Outcome bad = run({"plan", path("bad.toml")});
+    expect(bad, 65, {"sede"});
+    BOOST_TEST(!contains(bad.err, "not for"));
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex1936.txt"), // longer than anyone waits
+                                                 "[[programme]]\ndo = \"up\"\nequilibria = 100000\n"));
+    const std::string scene = (folder / "s.toml").string();
+    const std::string out = (folder / "run").string();
+    const Outcome stopped = run({"run", scene, "-o", out, "-q"}, "timeout --preserve-status -s INT 1 ");
+    expect(stopped, 130, {"to go on: isostat run " + scene + " -o " + out + " --resume"});
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,227 @@
+"""The page of `isostat report --html` in headless Chromium. Exit status 77: there is none, nothing was tested.
+
+Usage: page.py PROGRAM DATA [PICTURES]: the program, the folder tests/data, where screenshots go (default: nowhere).
+"""
+
+import base64
+import csv
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import browser
+
+PROGRAM, DATA = sys.argv[1], Path(sys.argv[2])
+PICTURES = Path(sys.argv[3]) if len(sys.argv) > 3 else None
+
+SCENE = """[packing]
+file = "{start}"
+[[programme]]
+do = "up"
+equilibria = 4
+[[programme]]
+do = "down"
+from = 2
+equilibria = 2
+[output]
+pictures = false
+"""
+
+
+def isostat(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        folder = Path(cls.scratch.name)
+        # A name that would change what the browser takes for a script, were it not written with care.
+        scene = folder / "<!--<script><img src=x onerror=stop()>.toml"
+        scene.write_text(SCENE.format(start=DATA / "vertex100.txt"))
+        cls.out = folder / "run"
+        done = isostat("run", scene, "-o", cls.out, "-q")
+        assert done.returncode == 0, done.stderr
+        done = isostat("report", cls.out, "--html", "--no-charts", "-q")
+        assert done.returncode == 0, done.stderr
+        with open(cls.out / "equilibria.csv") as file:
+            lines = [line.lstrip("# ") for line in file]
+        cls.rows = list(csv.DictReader(lines))
+        cls.events = [json.loads(line) for line in (cls.out / "events.jsonl").read_text().splitlines()]
+        cls.page = cls.out / "figures" / "trajectory.html"
+        cls.browser = browser.Browser()
+        cls.browser.open(cls.page)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.scratch.cleanup()
+
+    def setUp(self):
+        self.browser.size(1280, 900)
+        self.browser.press("Home")
+
+    def tearDown(self):
+        self.assertEqual(self.browser.errors, [])
+        self.assertTrue(self.browser.value("document.getElementById('trouble').hidden"))
+
+    def at(self, name):
+        return int(self.browser.value(f"document.body.dataset.{name}"))
+
+    def words(self):
+        return self.browser.value("document.getElementById('where').textContent")
+
+    def test_has_every_equilibrium_and_every_arc_of_the_records(self):
+        shown = "document.querySelectorAll('#equilibria tbody tr').length"
+        self.assertEqual(self.browser.value(shown), len(self.rows))
+        self.assertEqual(self.at("ready"), 1 + len(self.events))
+        self.assertEqual(self.browser.value("document.querySelectorAll('#left_out li').length"), 0)
+
+    def test_asks_for_nothing_but_itself(self):
+        self.assertEqual({a for a in self.browser.addresses if not a.startswith("about:")},
+                         {"file://" + str(self.page)})
+        self.assertNotRegex(self.page.read_text(), r"https?://")
+
+    def test_names_from_files_are_text(self):
+        self.assertTrue(self.browser.value("document.title").startswith("<!--<script><img"))
+        self.assertIn("<img", self.browser.value("document.getElementById('name').textContent"))
+        self.assertEqual(self.browser.value("document.images.length"), 0)
+
+    def test_shows_the_load_ratio_of_the_records(self):
+        for number, row in enumerate(self.rows):
+            self.browser.value(f"show(film.frameOf.get({number}))")
+            text = self.words()
+            self.assertIn(f"Equilibrium {number}:", text)
+            ratio = float(text.split("σ₂/σ₁ = ")[1].split(",")[0])
+            self.assertLess(abs(ratio - float(row["ratio"])), 1e-8 * float(row["ratio"]))
+
+    def test_says_what_opens_and_closes_at_an_arc(self):
+        for k, event in enumerate(self.events):
+            self.browser.value(f"show(recorded.event.indexOf({k}))")
+            here = self.browser.value("document.querySelector('#arcs tr.here').textContent")
+            for contact in (event["opened"], event["closed"]):
+                self.assertIn(contact, here)
+
+    def test_packing_is_that_of_the_stored_states(self):
+        for path in sorted((self.out / "states").glob("eq_*.json")):
+            state = json.loads(path.read_text())
+            q = self.browser.value(f"[...film.positions[film.frameOf.get({state['equilibrium']})]]")
+            mean = sum(disk[0] for disk in state["disks"]) / len(state["disks"])
+            for i, (_, x, y) in enumerate(state["disks"]):
+                self.assertLess(abs(q[2 * i] - x), mean / 500)
+                self.assertLess(abs(q[2 * i + 1] - y), mean / 500)
+
+    def test_contacts_forces_and_rattlers_are_those_of_the_stored_states(self):
+        walls = {"left": -1, "bottom": -2, "right": -3, "top": -4}
+        for path in sorted((self.out / "states").glob("eq_*.json")):
+            state = json.loads(path.read_text())
+            number = state["equilibrium"]
+            flat = self.browser.value(f"[...contactsOf({number})]")
+            shown = set(zip(flat[::2], flat[1::2]))
+            self.assertEqual(shown, {(i, walls.get(j, j)) for i, j in state["contacts"]})
+            forces = self.browser.value(f"[...film.forces[recorded.force[film.frameOf.get({number})]]]")
+            known = {(i, walls.get(j, j)): f for (i, j), f in zip(state["contacts"], state["forces"])}
+            carrying = [abs(f) for f in known.values() if f != 0]
+            mean = sum(carrying) / len(carrying)
+            for pair, force in zip(zip(flat[::2], flat[1::2]), forces):
+                self.assertEqual(force == 0, known[pair] == 0, pair)
+                self.assertLess(abs(force / 16 - known[pair] / mean), 1 / 16 + 1e-9)
+            rattlers = self.browser.value(f"rattlersOf({number}).reduce((a, b) => a + b, 0)")
+            self.assertEqual(rattlers, int(self.rows[number]["rattlers"]))
+
+    def test_kept_contacts_touch_at_every_arc(self):
+        gap = """Math.max(...Array.from({length: film.count}, (_, f) => {
+            const q = film.positions[f], list = contactsAt(f), r = run.packing.radii, n = r.length;
+            let most = 0;
+            for (let l = 0; l < list.length; l += 2) {
+                const [i, j] = [list[l], list[l + 1]];
+                const gap = j >= 0 ? Math.hypot(q[2*i] - q[2*j], q[2*i+1] - q[2*j+1]) - r[i] - r[j]
+                    : j >= -2 ? q[2*i - 1 - j] - r[i] : q[2*n - 3 - j] - q[2*i - 3 - j] - r[i];
+                most = Math.max(most, Math.abs(gap));
+            }
+            return most / r.reduce((a, b) => a + b, 0) * n;
+        }))"""
+        self.assertLess(self.browser.value(gap), 4 / 256)
+
+    def test_lines_of_contacts_end_at_centres_and_on_walls(self):
+        ends = self.browser.value("""[1, -1, -2].map((j) =>
+            segment({x: (u) => u, y: (v) => v}, [1, 2, 5, 6, 30, 40].concat(Array(200).fill(0)), 0, j))""")
+        length = self.browser.value("[film.positions[0].at(-2), film.positions[0].at(-1)]")
+        self.assertEqual(ends, [[1, 2, 5, 6], [1, 2, 0, 2], [1, 2, 1, 0]])
+        right, top = self.browser.value("""[-3, -4].map((j) =>
+            segment({x: (u) => u, y: (v) => v}, film.positions[0], 0, j))""")
+        self.assertEqual(right[2], length[0])
+        self.assertEqual(right[3], right[1])
+        self.assertEqual(top[3], length[1])
+        self.assertEqual(top[2], top[0])
+
+    def test_keys_go_through_the_run(self):
+        self.assertEqual(self.at("frame"), 0)
+        self.browser.press("ArrowRight")
+        self.assertEqual(self.at("frame"), 1)
+        self.browser.press("ArrowLeft")
+        self.assertEqual(self.at("frame"), 0)
+        self.browser.press("PageDown")
+        self.assertIn("Equilibrium 1:", self.words())
+        self.browser.press("PageUp")
+        self.assertIn("Equilibrium 0:", self.words())
+        self.browser.press("End")
+        self.assertEqual(self.at("frame"), len(self.events))
+        self.browser.press("f")
+        self.assertFalse(self.browser.value("document.getElementById('forces').checked"))
+        self.browser.press("f")
+        self.assertTrue(self.browser.value("document.getElementById('forces').checked"))
+
+    def test_space_plays_to_the_end_and_stops(self):
+        self.browser.value("document.getElementById('speed').value = 120")
+        self.browser.press(" ")
+        self.browser.wait(f"document.body.dataset.frame == {len(self.events)}")
+        self.browser.wait("document.getElementById('play').textContent === 'play'")
+
+    def test_a_click_goes_to_the_nearest_equilibrium(self):
+        x, y = self.browser.value("""(() => { const box = byId('stairs').getBoundingClientRect();
+            return [box.left + chart.x(rows.eps2[3]) + 1, box.top + chart.y(rows.ratio[3]) + 1]; })()""")
+        self.browser.click(x, y)
+        self.assertIn("Equilibrium 3:", self.words())
+
+    def test_forces_rattlers_and_changes_are_drawn(self):
+        self.browser.press("PageDown")
+        count = """(ids) => { for (const id of ['forces', 'rattlers', 'changes', 'motion'])
+                byId(id).checked = ids.includes(id);
+            drawPacking();
+            const c = byId('packing'), data = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+            let n = 0;
+            for (let k = 0; k < data.length; k += 4)
+                n += Math.abs(data[k] - COLOUR[0]) + Math.abs(data[k+1] - COLOUR[1]) + Math.abs(data[k+2] - COLOUR[2]) < 24;
+            return n; }"""
+        for what, colour in (("forces", [140, 28, 19]), ("rattlers", [159, 184, 207]), ("changes", [217, 122, 0]),
+                             ("motion", [17, 17, 17])):
+            function = count.replace("COLOUR", json.dumps(colour))
+            without = self.browser.value(f"({function})([])")
+            drawn = self.browser.value(f"({function})(['{what}'])")
+            self.assertGreater(drawn, without + 20, what)
+        self.browser.value("for (const id of ['forces', 'rattlers', 'changes', 'motion']) byId(id).checked = true; draw()")
+
+    def test_fits_windows_of_400_to_1600_pixels(self):
+        self.browser.press("PageDown")
+        for width in (400, 800, 1600):
+            self.browser.size(width, 900)
+            self.assertEqual(self.browser.value("innerWidth"), width)
+            self.assertLessEqual(self.browser.value("document.documentElement.scrollWidth"), width)
+            for canvas in ("stairs", "packing"):
+                right = self.browser.value(f"byId('{canvas}').getBoundingClientRect().right")
+                self.assertLessEqual(right, width)
+                self.assertGreater(self.browser.value(f"byId('{canvas}').clientHeight"), 150)
+            if PICTURES:
+                (PICTURES / f"page-{width}.png").write_bytes(base64.b64decode(self.browser.picture()))
+
+
+if __name__ == "__main__":
+    if browser.program() is None:
+        print("chromium is not there: the page was not opened (Debian package chromium)")
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1])

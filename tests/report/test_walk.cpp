@@ -1,0 +1,153 @@
+// Vertices found again from the records of a run, and the page made of them.
+#include "cli/program.hpp"
+#include "report/page.hpp"
+#include "report/page_bytes.hpp"
+#include "report/run_walk.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <algorithm>
+
+using namespace program;
+using namespace isostat;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A run with every state stored, a branch included.
+void make_run(const scratch::Folder& folder, const std::string& start) {
+    scratch::write(folder / "s.toml", scene_from(start,
+                                                 "[[programme]]\ndo = \"up\"\nequilibria = 5\n"
+                                                 "[[programme]]\ndo = \"down\"\nfrom = 2\nequilibria = 3\n",
+                                                 "states_every = 1\n"));
+    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+}
+
+checker::RunRecords records_of(const fs::path& run) {
+    return checker::read_records(run, checker::LastLine::may_be_cut);
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(report)
+
+BOOST_AUTO_TEST_CASE(a_walk_along_the_records_passes_through_every_stored_state) {
+    const scratch::Folder folder;
+    make_run(folder, scratch::data("vertex100.txt"));
+    const checker::RunRecords records = records_of(folder / "run");
+    int equilibria = 0;
+    std::size_t arcs = 0;
+    int relisted = 0;
+    const std::vector<std::string> left_out = walk_run(records, [&](const WalkedVertex& vertex) {
+        arcs += vertex.arc != nullptr ? 1 : 0;
+        relisted += vertex.relisted ? 1 : 0;
+        if (vertex.equilibrium != nullptr) {
+            ++equilibria;
+            const State<2> stored = records.stored(vertex.state.equilibrium)->state;
+            double most = 0;
+            for (std::size_t k = 0; k < stored.packing.q.size(); ++k) {
+                most = std::max(most, std::abs(stored.packing.q[k] - vertex.state.packing.q[k]));
+            }
+            BOOST_TEST(most < 1e-10, "equilibrium " << vertex.state.equilibrium << ": " << most);
+            BOOST_TEST((stored.contacts == vertex.state.contacts));
+            BOOST_TEST((stored.load.stress == vertex.state.load.stress));
+        }
+        return true;
+    });
+    BOOST_TEST(left_out.empty());
+    BOOST_TEST(equilibria == 9);
+    BOOST_TEST(arcs == records.events.size());
+    BOOST_TEST(relisted == 1); // the others were reached along arcs
+}
+
+BOOST_AUTO_TEST_CASE(what_cannot_be_followed_is_left_out_up_to_the_next_stored_state) {
+    const scratch::Folder folder;
+    make_run(folder, scratch::data("vertex100.txt"));
+    checker::RunRecords records = records_of(folder / "run");
+    const auto broken = std::find_if(records.events.begin(), records.events.end(),
+                                     [](const checker::EventRecord& event) { return event.equilibrium == 2; });
+    broken->opened = "0-99"; // no contact there
+    std::vector<int> relisted;
+    const std::vector<std::string> left_out = walk_run(records, [&](const WalkedVertex& vertex) {
+        BOOST_TEST((vertex.arc == nullptr || vertex.arc->equilibrium != 2));
+        if (vertex.relisted) {
+            relisted.push_back(vertex.state.equilibrium);
+        }
+        return true;
+    });
+    BOOST_TEST(left_out == std::vector<std::string>{"equilibrium 2 from its arc 1 on"},
+               boost::test_tools::per_element());
+    BOOST_TEST((relisted == std::vector<int>{0, 2}));
+}
+
+BOOST_AUTO_TEST_CASE(a_walk_holds_and_releases_coordinates) {
+    const scratch::Folder folder;
+    const fs::path out = folder / "run";
+    expect(run({"run", scratch::data("../../examples/turns/power-turn.toml"), "-o", out.string(), "-q"}), 0);
+    const checker::RunRecords records = records_of(out);
+    int held = 0;
+    const auto left_out = walk_run(records, [&](const WalkedVertex& vertex) {
+        held += std::any_of(vertex.state.contacts.begin(), vertex.state.contacts.end(),
+                            [](const Contact& contact) { return contact.kind == ContactKind::held; })
+                    ? 1
+                    : 0;
+        return true;
+    });
+    BOOST_TEST(left_out.empty());
+    BOOST_TEST(held == 2); // after the turn, and after the arc between turn and release
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_a_run_that_was_killed_has_what_was_recorded) {
+    const scratch::Folder folder;
+    make_run(folder, scratch::data("vertex100.txt"));
+    const std::string whole = run_page(folder / "run", {}).html;
+    BOOST_TEST(contains(whole, "completed"));
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    scratch::write(folder / "run/events.jsonl", events + "{\"step\":99,\"equil"); // in the middle of a line
+    const std::string header = scratch::read(folder / "run/run.json");
+    scratch::write(folder / "run/run.json", scratch::replaced(header, "\"completed\"", "\"running\""));
+    const Page page = run_page(folder / "run", {});
+    BOOST_TEST(page.left_out.empty());
+    BOOST_TEST(page.html == scratch::replaced(whole, "\"status\":\"completed\"", "\"status\":\"running\""));
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_a_run_without_an_equilibrium_says_so) {
+    const scratch::Folder folder;
+    make_run(folder, scratch::data("vertex100.txt"));
+    scratch::write(folder / "run/events.jsonl", "");
+    const std::string rows = scratch::read(folder / "run/equilibria.csv");
+    scratch::write(folder / "run/equilibria.csv", rows.substr(0, rows.find('\n') + 1));
+    fs::remove_all(folder / "run/states");
+    BOOST_TEST(contains(run_page(folder / "run", {}).html, "\"number\":[]"));
+}
+
+BOOST_AUTO_TEST_CASE(no_name_can_end_the_script_that_holds_the_data) {
+    const std::string safe = in_script(R"({"a": "</script><!--<script>&"})");
+    BOOST_TEST(safe.find_first_of("<>&") == std::string::npos);
+    BOOST_TEST(contains(safe, "\\u003c/script\\u003e\\u003c!--"));
+    const scratch::Folder folder;
+    make_run(folder, scratch::data("vertex100.txt"));
+    const std::string header = scratch::read(folder / "run/run.json");
+    scratch::write(folder / "run/run.json",
+                   scratch::replaced(header, "\"scene_file\": \"", "\"scene_file\": \"</script><script>alert(1)//"));
+    const std::string page = run_page(folder / "run", {}).html;
+    BOOST_TEST(!contains(page, "</script><script>alert"));
+    BOOST_TEST(contains(page, "\\u003c/script\\u003e\\u003cscript\\u003ealert(1)"));
+}
+
+BOOST_AUTO_TEST_CASE(integers_take_a_byte_when_they_are_small) {
+    const auto bytes = [](std::int64_t value) {
+        std::string text;
+        append_varint(text, value);
+        return text;
+    };
+    BOOST_TEST((bytes(0) == std::string(1, '\0')));
+    BOOST_TEST((bytes(-1) == "\x01"));
+    BOOST_TEST((bytes(1) == "\x02"));
+    BOOST_TEST((bytes(63) == "\x7e"));
+    BOOST_TEST((bytes(-64) == "\x7f"));
+    BOOST_TEST((bytes(64) == "\x80\x01"));
+    BOOST_TEST((bytes(-1000000) == "\xff\x88\x7a"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -78,14 +78,16 @@ Foresight::Arc Foresight::arc_of(const Start& from, std::size_t event, const Ope
     arc.end.packing.q = *arc.followed.end;
     arc.end.contacts[opening.contact] = *contact_named(record.closed, arc.end.packing);
     const int fresh = record.power_turn ? static_cast<int>(opening.contact) : -1;
-    arc.proof = Future<Proved>([end = arc.end, exact = from.load, fresh, factors = arc.followed.solver] {
-        Proved proved;
-        proved.open = make_place(end, proved.place, exact, fresh, factors);
-        if (!proved.open) {
-            (void)proved.place.gaps();
-        }
-        return proved;
-    });
+    arc.proof = Future<Proved>(
+        [end = arc.end, exact = from.load, fresh, factors = arc.followed.solver, chooses = records_.chooses] {
+            Proved proved;
+            proved.place.chooses = chooses;
+            proved.open = make_place(end, proved.place, exact, fresh, factors);
+            if (!proved.open) {
+                (void)proved.place.gaps();
+            }
+            return proved;
+        });
     return arc;
 }
 

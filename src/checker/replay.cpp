@@ -2,7 +2,9 @@
 #include "checker/replay.hpp"
 
 #include "checker/bounds.hpp"
+#include "checker/choice.hpp"
 #include "checker/gaps.hpp"
+#include "checker/structural_zeros.hpp"
 #include "checker/strut.hpp"
 
 #include <fmt/format.h>
@@ -29,6 +31,9 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
         if (finite && place.fresh >= 0 && place.silent[l]) {
             silent = true;
             continue;
+        }
+        if (finite && contains(place.ties, l) && place.chooses && !place.is_held(l)) {
+            continue; // left at 0: it opens nothing
         }
         const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
                              : finite                          ? e.forces[l]
@@ -105,9 +110,11 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
         for (std::size_t l = 0; l < e.forces.size(); ++l) {
             place.first_force[l] = place.first_force[l] + load.rate * e.slopes()[l];
         }
-        // What changes with the radii is no structural zero.
+        // What changes with the radii is no structural zero; nor is what the pattern does not make vanish.
+        const auto structural = place.chooses ? structural_zeros(e.problem, e.finite_load) : std::nullopt;
         for (const int l : place.zeros) {
-            if (!place.first_force[static_cast<std::size_t>(l)].has_zero()) {
+            const auto index = static_cast<std::size_t>(l);
+            if (!place.first_force[index].has_zero() || (structural && !contains(*structural, index))) {
                 place.ties.push_back(l);
             }
         }
@@ -126,6 +133,7 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
 
 Objections sharpen(Place& place, int digits) {
     Place sharper;
+    sharper.chooses = place.chooses;
     Objections open =
         make_place(State<2>(*place.state), sharper, place.load, place.fresh, place.evidence->solver, digits);
     if (sharper.evidence->vertex.found) {
@@ -215,7 +223,18 @@ Objections check_load_end(const Place& place, const Bounded& stress, std::size_t
     return compare("the stress", stress, found, loosest_end(place, stress));
 }
 
-Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit) {
+namespace {
+
+/// What the infinitesimal loads compare where forces vanish together: how soon each does.
+Range soon(const Place& place, std::size_t l) {
+    const Range& slope = place.evidence->slopes()[l];
+    return place.evidence->infinitesimal()[l] / (slope.negative() ? Range(Rational(0)) - slope : slope);
+}
+
+} // namespace
+
+Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit,
+                          const std::vector<TieRecord>* said) {
     const Evidence& e = *place.evidence;
     const Range& slope = e.slopes()[opened];
     if (slope.has_zero()) {
@@ -238,9 +257,19 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     const std::vector<Range> first = place.first->forces(there);
     at_limit.shift = found - Range(Rational(stress.value));
     at_limit.rate = limit_rate(first[opened], slope);
+    const ChoiceRule choice{"limit", [&](std::size_t l) { return there[l].has_zero() && !e.slopes()[l].has_zero(); },
+                            [&](std::size_t l) { return soon(place, l); }};
+    if (said != nullptr) {
+        if (Objections wrong = check_choice(place, *said, opened, choice)) {
+            return wrong;
+        }
+    }
     std::vector<int> together{static_cast<int>(opened)};
     for (std::size_t l = 0; l < there.size(); ++l) {
         if (l == opened || contains(place.zeros, l) || place.is_held(l) || there[l].positive()) {
+            continue;
+        }
+        if (said != nullptr && recorded_choice(*said, "limit", e.name(opened), e.name(l)) != nullptr) {
             continue;
         }
         if (there[l].negative()) {
@@ -248,7 +277,7 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
                              fmt::format("the force of {} vanishes before that of {}", e.name(l), e.name(opened))};
         }
         if (e.slopes()[l].has_zero()) {
-            if (!first[l].positive()) {
+            if (!first[l].positive() && !place.chooses) {
                 return Objection{false, fmt::format("the force of {} may vanish all along, and its first-order term at "
                                                     "the limit is in {}",
                                                     e.name(l), shown(first[l]))};
@@ -265,7 +294,8 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
                                          "first: by {} at first order",
                                          e.name(l), e.name(opened), e.name(l), shown(later))};
         }
-        if (!later.positive()) {
+        const bool chosen = place.chooses && said == nullptr && comes_first(place, opened, l, choice);
+        if (!later.positive() && !chosen) {
             together.push_back(static_cast<int>(l));
         }
     }
@@ -277,17 +307,18 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     for (std::size_t j = 0; j < loaded.size(); ++j) {
         loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
     }
-    const auto order = [&e](std::size_t l) {
-        const Range size = e.slopes()[l].negative() ? Range(Rational(0)) - e.slopes()[l] : e.slopes()[l];
-        return e.infinitesimal()[l] / size;
-    };
     for (const int l : together) {
         const auto other = static_cast<std::size_t>(l);
         if (other == opened) {
             continue;
         }
-        if (!vary_together(e.problem, together, loaded) || !(order(opened).upper < order(other).lower)) {
-            const bool earlier = vary_together(e.problem, together, loaded) && order(other).upper < order(opened).lower;
+        const Range mine = soon(place, opened);
+        const Range its = soon(place, other);
+        if (place.chooses && mine.upper < its.lower) {
+            continue; // any of them may open, and the rule takes this one (C1)
+        }
+        if (!vary_together(e.problem, together, loaded) || !(mine.upper < its.lower)) {
+            const bool earlier = vary_together(e.problem, together, loaded) && its.upper < mine.lower;
             return Objection{earlier,
                              fmt::format("{} and {} vanish together{}", e.name(opened), e.name(other),
                                          earlier ? ", and under the infinitesimal loads the second first" : "")};
@@ -295,6 +326,16 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     }
     return {};
 }
+
+namespace {
+
+/// One pair was chosen by name to close before another, after ways that are equal as far as the run knew.
+bool chosen_step(const EventRecord& event, const Contact& chosen, const Contact& other) {
+    const TieRecord* tie = recorded_choice(event.ties, "step", to_string<2>(chosen), to_string<2>(other));
+    return tie != nullptr && tie->choice == "names" && chosen < other && tied_at_first_order(*tie);
+}
+
+} // namespace
 
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction) {
     const bool said =
@@ -304,20 +345,23 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
     }
     const Velocities& velocities = place.first->velocities();
     const Velocities::Solution motion = velocities.opening(opened, direction);
-    std::optional<Range> shortest;
-    std::optional<Contact> first;
+    std::vector<Gap> ways; // the one that is said to close first
     for (const Gap& gap : place.touching) {
         const Range rate = velocities.gap_rate(gap.pair, motion);
-        if (!rate.negative()) {
-            continue; // it opens, or stays as far as is seen
+        if (rate.negative()) { // else it opens, or stays as far as is seen
+            const auto at = event.closed == to_string<2>(gap.pair) ? ways.begin() : ways.end();
+            ways.insert(at, {gap.pair, gap.value / (Range(Rational(0)) - rate)});
         }
-        const Range way = gap.value / (Range(Rational(0)) - rate);
-        if (!shortest || way.upper < shortest->lower) {
-            shortest = way;
-            first = gap.pair;
-        } else if (!(shortest->upper < way.lower)) {
+    }
+    std::optional<Range> shortest;
+    std::optional<Contact> first;
+    for (const Gap& way : ways) {
+        if (!shortest || way.value.upper < shortest->lower) {
+            shortest = way.value;
+            first = way.pair;
+        } else if (!(shortest->upper < way.value.lower) && !chosen_step(event, *first, way.pair)) {
             return Objection{false, fmt::format("{} and {} close after ways that are equal at first order",
-                                                to_string<2>(*first), to_string<2>(gap.pair))};
+                                                to_string<2>(*first), to_string<2>(way.pair))};
         }
     }
     if (said != first.has_value()) {
@@ -385,7 +429,29 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
         }
         return e.slopes()[*l].has_zero() ? std::nullopt : std::optional<Range>(limit_rate(first, e.slopes()[*l]));
     };
+    // Left at 0: not refuted to vanish in the base; a gap is not told from 0 at first order either, as far as the run
+    // knew.
+    const auto stays_zero = [&](const TieRecord& tie) {
+        if (tie.what == "gap") { // `found` asks of pairs that touch
+            return std::abs(tie.other) <= tie.other_bound;
+        }
+        const bool all_along = tie.what == "zero all along";
+        const Evidence& e = *(all_along ? from : to).evidence;
+        for (std::size_t l = 0; l < e.forces.size(); ++l) {
+            if (e.name(l) == tie.contact) {
+                return (all_along ? e.slopes() : e.forces)[l].has_zero();
+            }
+        }
+        return false;
+    };
     for (const TieRecord& tie : event.ties) {
+        if (!tie.choice.empty() && !to.chooses) {
+            return Objection{true,
+                             fmt::format("'{}' of {} is chosen, in a run that chooses nothing", tie.what, tie.contact)};
+        }
+        if (tie.choice == "zero" && !stays_zero(tie)) {
+            return Objection{true, fmt::format("'{}' of {} is left at 0, but does not vanish", tie.what, tie.contact)};
+        }
         const auto check = [&](const std::string& name, double value, double bound) -> Objections {
             const std::optional<Range> range = found(tie.what, name);
             if (!range) {
@@ -454,7 +520,7 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
     const double size = std::abs(event.stress) + std::abs(place.stress());
     const Bounded limit{event.stress, bound + limit_rounding * size};
     if (place.first) {
-        return check_limit_at(place, limit, opened, at_limit);
+        return check_limit_at(place, limit, opened, at_limit, &event.ties);
     }
     // An equilibrium that stands at the end of its interval leaves it on the side on which the force falls.
     const bool up = event.stress == place.stress() ? e.slopes()[opened].negative() : event.stress > place.stress();
@@ -467,10 +533,6 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
     }
     // Forces that vanish together: the infinitesimal loads decide which one comes first.
     const Range step = Range(Rational(0)) - e.forces[opened] / e.slopes()[opened];
-    const auto order = [&e](std::size_t l) {
-        const Range slope = e.slopes()[l].negative() ? Range(Rational(0)) - e.slopes()[l] : e.slopes()[l];
-        return e.infinitesimal()[l] / slope;
-    };
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         const bool other = l != opened && !contains(place.zeros, l);
         if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
@@ -479,11 +541,11 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         if (e.slopes()[l].has_zero()) {
             return Objection{false, fmt::format("the force of {} may vanish at the limit too", e.name(l))};
         }
-        if (order(l).upper < order(opened).lower) {
+        if (soon(place, l).upper < soon(place, opened).lower) {
             return Objection{
                 true, fmt::format("{} vanishes at the same load, and first under the infinitesimal loads", e.name(l))};
         }
-        if (!(order(opened).upper < order(l).lower)) {
+        if (!(soon(place, opened).upper < soon(place, l).lower)) {
             return Objection{false, fmt::format("{} and {} vanish together", e.name(opened), e.name(l))};
         }
     }
@@ -512,6 +574,23 @@ int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b, 
 
 } // namespace
 
+namespace {
+
+ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::string& rule) {
+    const auto tied = [&place, opened](std::size_t l) {
+        bool at_first_order = false;
+        (void)compare_keys(place, true, l, opened, at_first_order);
+        return at_first_order;
+    };
+    const auto load = [&place, least = rule == "least_negative"](std::size_t l) {
+        const Range& f = place.evidence->infinitesimal()[l];
+        return least ? Range(Rational(0)) - f : f;
+    };
+    return {"opening", tied, load};
+}
+
+} // namespace
+
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule) {
     if (event.stress != place.stress()) {
         return Objection{
@@ -532,13 +611,17 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     }
     const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
     const Range& chosen = forces[opened];
+    const ChoiceRule choice = opening_choice(place, opened, rule);
+    if (Objections wrong = check_choice(place, place.said, opened, choice)) {
+        return wrong;
+    }
     if (!contains(decision.candidates, opened)) {
         return Objection{true, fmt::format("{} opens, but its force is in {}", e.name(opened), shown(chosen))};
     }
     for (const int l : decision.candidates) {
         const auto other = static_cast<std::size_t>(l);
         const Range& force = forces[other];
-        if (other == opened) {
+        if (other == opened || recorded_choice(place.said, "opening", e.name(opened), e.name(other)) != nullptr) {
             continue;
         }
         const bool most = rule == "most_negative";

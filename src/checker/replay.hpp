@@ -63,10 +63,12 @@ struct Place {
     std::vector<bool> silent; ///< with `fresh`: contacts whose force is 0 at the turn itself
     int fresh = -1; ///< the row of a coordinate held just now: its multiplier is 0 up to the place of the turn
     // Runs that settle ties at first order only:
+    bool chooses = false; ///< what these terms do not tell is chosen by the rule: set before `make_place`
     std::unique_ptr<FirstOrder> first;
     std::vector<int> ties;          ///< forces that cannot be told from 0 and are no structural zeros
     std::vector<Range> first_force; ///< first-order terms of all forces at the load
     std::vector<Gap> touching;      ///< pairs whose gaps cannot be told from 0, with their first-order gaps
+    std::vector<TieRecord> said;    ///< of ties, by the record of the arc that ended here
 
     [[nodiscard]] bool is_held(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::held; }
 
@@ -102,8 +104,9 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
                        ExactLoad& at_limit);
 /// An end of the supported interval, at which that contact opens.
 Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction);
-/// The same in a run that settles ties at first order.
-Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit);
+/// The same in a run that settles ties at first order. `said`: of ties, by a record; null: there is none.
+Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit,
+                          const std::vector<TieRecord>* said);
 Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule);
 
 /// No overlap at the end of an arc, the potential fell along it, and the record's strain, work and power are those.

@@ -144,8 +144,8 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
     }
     const auto opened = static_cast<std::size_t>(at - contacts.begin());
     ExactLoad unused;
-    Objections wrong =
-        place.first ? check_limit_at(place, stress, opened, unused) : check_load_end(place, stress, opened, direction);
+    Objections wrong = place.first ? check_limit_at(place, stress, opened, unused, nullptr)
+                                   : check_load_end(place, stress, opened, direction);
     if (wrong) {
         wrong->text = fmt::format("{}: {}", name, wrong->text);
     }
@@ -164,7 +164,7 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     for (const Gap& gap : to.gaps()) {
         if (gap.value.has_zero() && to.first) {
             const Range first = to.first->gap(gap.pair);
-            if (!first.positive()) {
+            if (!first.positive() && !(first.has_zero() && to.chooses)) {
                 return Objection{first.negative(), fmt::format("{} touch at the end of the arc, first-order gap in {}",
                                                                to_string<2>(gap.pair), shown(first))};
             }

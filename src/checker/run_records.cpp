@@ -131,6 +131,7 @@ EventRecord event_of(const std::string& line, const std::string& where) {
                 tie.against = entry.at("against").string();
                 term(entry.at("against_first_order"), tie.other, tie.other_bound);
             }
+            tie.choice = entry.has("choice") ? entry.at("choice").string() : "";
             event.ties.push_back(tie);
         }
     }
@@ -215,6 +216,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.status = status.substr(0, status.find(':'));
     const Field settings = run.at("settings").at("run");
     records.rule = settings.at("rule").string();
+    records.chooses = settings.has("ties") && settings.at("ties").string() == "choose";
     const std::string level = settings.has("certify") ? settings.at("certify").string() : "decisions";
     records.certified_arcs = level == "arcs";
     records.certified_states = level == "states" || records.certified_arcs;

@@ -12,10 +12,11 @@
 
 namespace isostat::checker {
 
-/// One decision that a run settled at first order in the radii, as its record tells it.
+/// One decision that a run settled at first order in the radii, or by its rule, as its record tells it.
 struct TieRecord {
     std::string what;             ///< "force", "opening", "limit", "zero all along", "gap", "step"
     std::string contact, against; ///< `against` may be empty
+    std::string choice;           ///< "infinitesimal loads", "names", "zero"; empty: nothing was chosen
     double first = 0, first_bound = 0;
     double other = 0, other_bound = 0;
 };
@@ -50,6 +51,7 @@ struct EquilibriumLine {
 struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
+    bool chooses = false;                                  ///< ties = "choose"
     std::string status;                                    ///< the word without the reason
     bool certified_states = false, certified_arcs = false; ///< files that its level must have left
     std::vector<EventRecord> events;

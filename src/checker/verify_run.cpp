@@ -100,6 +100,7 @@ class Replay {
     /// `here_` becomes the vertex near a state; empty when none is proved.
     void go_to(State<2> state, const std::string& where, const ExactLoad& load) {
         Place place;
+        place.chooses = records_.chooses;
         here_ = {};
         foresight_.forget();
         if (judged(make_place(std::move(state), place, load), where)) {
@@ -244,6 +245,7 @@ class Replay {
             return false;
         }
         Place next;
+        next.chooses = records_.chooses;
         const bool stays =
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
         const bool proved = !stays && records_.certified_arcs && prove_way_to(next, event, *change);
@@ -255,6 +257,9 @@ class Replay {
             return false;
         }
         result_.ties_checked += static_cast<int>(event.ties.size());
+        result_.choices_checked += static_cast<int>(
+            std::count_if(event.ties.begin(), event.ties.end(), [](const TieRecord& t) { return !t.choice.empty(); }));
+        next.said = event.ties;
         result_.turns_checked += event.power_turn ? 1 : 0;
         here_ = std::move(next);
         result_.arcs_proved += opening ? 1 : 0;

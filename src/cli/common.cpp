@@ -111,6 +111,12 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
     PreparationReport<2> report;
     Result<State<2>> prepared = isostat::prepare<2>(options, report);
     line.clear();
+    std::string tied; // what the run has to settle, as far as doubles know
+    const bool settles = scene.run.ties != TiePolicy::stop && !scene.programme.empty();
+    if (!prepared.ok() && prepared.failure().kind == FailureKind::tie && report.candidate && settles) {
+        tied = prepared.failure().message();
+        prepared = std::move(*report.candidate);
+    }
     if (!quiet) {
         fmt::print("{:<22} {:>9} {:>10} {:>9} {:>10} {:>10}\n", "stage", "seconds", "iterations", "contacts", "phi",
                    "residual");
@@ -131,7 +137,11 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         }
         return Failure{prepared.failure().kind, message};
     }
-    prepared.value().provenance = provenance_of(scene, program_name(), command, report);
+    Json provenance = Json::parse(provenance_of(scene, program_name(), command, report));
+    if (!tied.empty()) {
+        provenance["ties_left_to_the_run"] = tied;
+    }
+    prepared.value().provenance = provenance.dump();
     return prepared;
 }
 

@@ -66,6 +66,7 @@ void add(RunVerification& total, const MemberVerification& member) {
     total.arcs_proved += run.arcs_proved;
     total.ways_proved += run.ways_proved;
     total.ties_checked += run.ties_checked;
+    total.choices_checked += run.choices_checked;
     total.turns_checked += run.turns_checked;
     total.equilibria += run.equilibria;
     total.equilibria_proved += run.equilibria_proved;

@@ -55,6 +55,7 @@ Json json_of(const RunVerification& run, const std::string& folder) {
     object["ways_proved"] = run.ways_proved;
     object["power_turns_checked"] = run.turns_checked;
     object["ties_checked"] = run.ties_checked;
+    object["choices_checked"] = run.choices_checked;
     object["equilibria"] = run.equilibria;
     object["equilibria_proved"] = run.equilibria_proved;
     object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
@@ -69,6 +70,11 @@ void print_totals(const RunVerification& run) {
     if (run.turns_checked > 0 || run.ties_checked > 0) {
         fmt::print("power turns    {} checked\nties           {} first-order decisions checked\n", run.turns_checked,
                    run.ties_checked);
+    }
+    if (run.choices_checked > 0) {
+        fmt::print(
+            "choices        {} checked: what they are between is not refuted to be tied, which is not \"equal\"\n",
+            run.choices_checked);
     }
     fmt::print("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
     for (const std::string& open : run.undecided) {

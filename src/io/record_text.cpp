@@ -38,6 +38,9 @@ Json tie_json(const TieDecision& tie) {
         object["against"] = to_string<2>(tie.against);
         object["against_first_order"] = term(tie.other);
     }
+    if (tie.choice != TieChoice::none) {
+        object["choice"] = to_string(tie.choice);
+    }
     if (tie.what != "step") {
         object["log2_zero"] = json::exponent_json(tie.exponent);
         object["bits"] = tie.bits;
@@ -227,6 +230,9 @@ Json tally_json(const Tally& tally) {
     for (std::size_t k = 0; k < decision_kinds; ++k) {
         object["ties"]["perturbed"][std::string(to_string(static_cast<DecisionKind>(k)))] = tally.perturbed[k];
     }
+    if (tally.choices > 0) {
+        object["ties"]["choices"] = tally.choices;
+    }
     return object;
 }
 
@@ -286,6 +292,7 @@ RunCounters counters_from(const json::Field& field) {
     }
     counters.tally.structural_ties = tally.at("ties").at("structural").integer();
     counters.tally.ties = tally.at("ties").at("other").integer();
+    counters.tally.choices = tally.at("ties").has("choices") ? tally.at("ties").at("choices").integer() : 0;
     for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
         counters.tally.perturbed[k] =
             tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()).integer();

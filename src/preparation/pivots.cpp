@@ -173,7 +173,9 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         const auto pulling = basis.pulling();
         if (!basis.known() || (!overlapping && !pulling)) {
             auto polished = polish(packing, contacts, load, iterations);
-            if (!polished.ok() && polished.failure().kind == FailureKind::undecided) {
+            const bool open = !polished.ok() && (polished.failure().kind == FailureKind::undecided ||
+                                                 polished.failure().kind == FailureKind::tie);
+            if (open) {
                 candidate.emplace();
                 candidate->load = load;
                 for (int a = 0; a < Dim; ++a) {

@@ -158,6 +158,8 @@ std::string decision_table(const json::Field& decisions) {
             kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, count);
         }
         text += all == 0 ? "" : fmt::format("settled by first order in the radii {} ({})\n", all, kinds);
+        const json::Field ties = decisions.at("ties");
+        text += ties.has("choices") ? fmt::format("chosen by the rule   {}\n", ties.at("choices").integer()) : "";
     }
     return text;
 }

@@ -171,18 +171,19 @@ void read_run(Section& section, Scene& scene) {
     run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);
     run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
     run.certify = static_cast<CertifyLevel>(section.word("certify", 1, {"plain", "decisions", "states", "arcs"}));
-    run.ties = static_cast<TiePolicy>(section.word("ties", 0, {"stop", "perturb"}));
+    run.ties = static_cast<TiePolicy>(section.word("ties", 0, {tie_policy_words.begin(), tie_policy_words.end()}));
+    const std::string policy = tie_policy_words[static_cast<std::size_t>(run.ties)];
     const auto ties_seed = section.integer("ties_seed");
-    if (run.ties == TiePolicy::perturb && run.certify == CertifyLevel::plain) {
-        section.refuse("ties",
-                       "ties = \"perturb\" in [run] settles ties that were proved: certify = \"plain\" proves none "
-                       "between equilibria");
+    if (run.ties != TiePolicy::stop && run.certify == CertifyLevel::plain) {
+        section.refuse("ties", "ties = \"" + policy +
+                                   "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
+                                   "equilibria");
     }
-    if (run.ties == TiePolicy::perturb) {
+    if (run.ties != TiePolicy::stop) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
     } else if (ties_seed) {
         section.refuse("ties_seed", "'ties_seed' in [run] is the seed of the direction in which ties = \"perturb\" "
-                                    "changes the radii: with ties = \"stop\" it has no meaning");
+                                    "or \"choose\" changes the radii: with ties = \"stop\" it has no meaning");
     }
     run.step_fraction = section.number("step_fraction", run.step_fraction, 1e-6, 10, "a number from 1e-6 to 10");
 }

@@ -120,13 +120,15 @@ void add_solvers(Plan& plan, const Scene& scene) {
                                          "factorisations per arc, more for long ones");
     plan.add("solver", "multiprecision (MPFR), exact numbers", true,
              "only where double-double does not decide a sign or an order");
-    const bool perturbs = runs && scene.run.ties == TiePolicy::perturb;
+    const bool perturbs = runs && scene.run.ties != TiePolicy::stop;
+    const bool chooses = runs && scene.run.ties == TiePolicy::choose;
     plan.add("solver", "first order in the radii", perturbs,
              !runs ? std::string("no trajectory")
              : perturbs
-                 ? fmt::format("ties = \"perturb\": ties are settled for radii R_i + eps rho_i, rho from seed {}; "
+                 ? fmt::format("ties = \"{}\": ties are settled for radii R_i + eps rho_i, rho from seed {}{}; "
                                "hyperstatic starts are followed",
-                               scene.run.ties_seed)
+                               chooses ? "choose" : "perturb", scene.run.ties_seed,
+                               chooses ? ", and what they leave tied by the infinitesimal loads and the names" : "")
                  : std::string("ties = \"stop\": a tie ends the run"));
     plan.add("solver", "fixed disks, external forces on disks", false,
              "a scene has none; a start file in the state format may");

@@ -64,7 +64,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
                                                           source, a, state.load.stress[a]));
         }
     }
-    check_start(state, source, scene.run.ties == TiePolicy::perturb);
+    check_start(state, source, scene.run.ties != TiePolicy::stop);
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
     check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
     if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
@@ -117,13 +117,16 @@ std::string advice(const Scene& scene, const Failure& failure, std::vector<doubl
         return "";
     }
     if (!scene.start.empty()) {
-        return equal ? fmt::format("; equal radii: try isostat import {} --jitter 1e-9 --contacts nearest",
-                                   scene.start.string())
+        return equal ? fmt::format("; equal radii: try isostat import {} --jitter 1e-9 --contacts nearest{}",
+                                   scene.start.string(),
+                                   scene.run.ties == TiePolicy::choose ? "" : ", or ties = \"choose\" in [run]")
                      : "";
     }
     constexpr double ample = 1e-6;
     const double jitter = scene.preparation.jitter;
-    return equal && jitter == 0           ? "; equal radii: try [packing] jitter = 1e-9"
+    const bool choose = scene.run.ties != TiePolicy::choose && !scene.programme.empty();
+    return equal && jitter == 0           ? fmt::format("; equal radii: try [packing] jitter = 1e-9{}",
+                                              choose ? ", or ties = \"choose\" in [run]" : "")
            : jitter > 0 && jitter < ample ? fmt::format("; nearly equal radii: try a larger jitter than {}", jitter)
                                           : "";
 }

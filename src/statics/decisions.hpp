@@ -32,8 +32,9 @@ struct OpeningDecision {
     std::optional<Opening> opening; ///< none: every force is proved positive, lexicographically in (f0, f1)
     double margin = 0;
     Rung rung = Rung::none;
-    bool perturbed = false;       ///< a first-order comparison was needed
-    std::vector<ContactId> zeros; ///< finite forces that vanish in the base, and are positive at first order
+    bool perturbed = false; ///< a first-order comparison was needed
+    /// Finite forces that vanish in the base, and are positive at first order; where ties are chosen, not negative.
+    std::vector<ContactId> zeros;
 };
 
 /// Held coordinates that carry no finite force: they do not compete.
@@ -56,7 +57,9 @@ struct ZeroHolds {
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 /// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that
 /// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
-/// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`.
+/// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`. Where ties
+/// are chosen (C1) a force whose first-order term is not told from 0 opens nothing, and equal keys are ordered by the
+/// infinitesimal loads, then by the names of the contacts.
 template <int Dim>
 Result<OpeningDecision> decide_opening(Statics<Dim>& statics, double sigma, OpeningRule rule, const ZeroHolds& zero,
                                        std::uint64_t random_bits, PerturbedStatics<Dim>* perturbed = nullptr);
@@ -84,7 +87,8 @@ struct LoadLimit {
 
 /// \pre every finite force positive at `sigma`. `direction` +1 or -1. Held coordinates do not limit. May climb.
 /// Failure: `tie` when two forces vanish at loads that cannot be ordered, and that no structural argument ties
-/// together. With `perturbed`: the first-order terms of the loads tell which is first; `undecided` when they do not.
+/// together. With `perturbed`: the first-order terms of the loads tell which is first; `undecided` when they do not,
+/// or, where ties are chosen, the infinitesimal loads tell, then the names.
 template <int Dim>
 Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
                              PerturbedStatics<Dim>* perturbed = nullptr);

@@ -36,6 +36,10 @@ template <int Dim> class LimitContest final : public Contest {
 
     /// Whom to begin with: as far as rounded numbers tell, then as far as rates are proved. None: no force decreases.
     Result<std::optional<std::size_t>> guess();
+    /// The force stays at 0 on the whole way in the base, where ties are chosen: it opens nothing.
+    bool stays_zero(ContactId l) {
+        return perturbed_ != nullptr && perturbed_->chooses() && is_tie(rate_sign(l), slope_size());
+    }
     /// Where the force of the last one that stood vanishes, and what vanishes with it.
     [[nodiscard]] const LoadLimit& limit() const { return limit_; }
 
@@ -107,7 +111,9 @@ template <int Dim> Result<std::optional<std::size_t>> LimitContest<Dim>::guess()
         const Order rate = rate_sign(l);
         if (perturbed_ != nullptr && (!rate.decided || rate.sign == 0)) {
             const Order zero = statics_.sign(statics_.force_expression(l, sigma_));
-            if (is_tie(rate, slope_size()) && zero.decided && zero.sign > 0) {
+            const bool stays_positive = zero.decided && zero.sign > 0;
+            const bool stays_zero = perturbed_->chooses() && is_tie(zero, perturbed_->size());
+            if (is_tie(rate, slope_size()) && (stays_positive || stays_zero)) {
                 continue; // it changes by O(eps) over any finite way
             }
         }
@@ -202,15 +208,17 @@ template <int Dim> Result<Comparison> LimitContest<Dim>::with_a_rate_of_order_ep
         return Comparison{};
     }
     const Enclosure f1 = perturbed_->force_at(l, limit_.stress, limit_.stress_error);
-    if (!is_tie(rate, slope_size()) || !is_tie(zero, perturbed_->size()) || !f1.positive()) {
+    const bool vanishes = is_tie(rate, slope_size()) && is_tie(zero, perturbed_->size());
+    if (!vanishes || !(f1.positive() || perturbed_->chooses())) {
         return failed(FailureKind::undecided,
                       "the force in {} and its slope vanish in the base; its first-order term at "
                       "sigma = {:.17g} is {}: where on the way it changes sign is not followed",
                       name_of(l), limit_.stress, shown(f1));
     }
-    Comparison result = proved_larger(f1.margin());
+    Comparison result = proved_larger(f1.positive() ? f1.margin() : infinity);
     result.settled = TieDecision{
         "zero all along", contacts_[l.index()], f1, {ContactKind::disk_disk, -1, -1}, {}, zero.exponent, zero.bits};
+    result.settled->choice = f1.positive() ? TieChoice::none : TieChoice::zero;
     return result;
 }
 
@@ -218,8 +226,8 @@ template <int Dim>
 Result<Comparison> LimitContest<Dim>::at_first_order(ContactId l, ContactId first, const Order& order) {
     const Enclosure mine = perturbed_->limit_rate(first, limit_.stress, limit_.stress_error);
     const Enclosure other = perturbed_->limit_rate(l, limit_.stress, limit_.stress_error);
-    return by_first_order({"limit", contacts_[first.index()], mine, contacts_[l.index()], other}, order, direction_ < 0,
-                          statics_.rung(),
+    return by_first_order({"limit", contacts_[first.index()], mine, contacts_[l.index()], other}, order,
+                          {direction_ < 0, perturbed_->chooses(), statics_.rung()},
                           words("the forces in {} and {} vanish at one load, sigma = {:.17g} ({}), and the "
                                 "first-order terms of the two loads",
                                 name_of(first), name_of(l), limit_.stress, reach(order)));
@@ -247,6 +255,36 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
     return pick(statics, std::move(contenders), choice);
 }
 
+/// Which of several forces that vanish at one load, as far as first-order terms tell, ends the interval: the
+/// infinitesimal loads say, or the names. The contest then stands with that one.
+template <int Dim> std::optional<Failure> choose(Statics<Dim>& statics, LimitContest<Dim>& contest, Minimum& minimum) {
+    const auto found = choosable(contest, minimum);
+    if (!found.ok()) {
+        return found.failure();
+    }
+    std::vector<ContactId> members;
+    for (const std::size_t l : found.value()) {
+        members.emplace_back(l);
+    }
+    if (members.empty()) {
+        return failed(FailureKind::tie, "the forces in the contacts {}{} vanish at one load, sigma = {:.17g}",
+                      name(statics, ContactId(*minimum.index)), minimum.tied, contest.limit().stress);
+    }
+    const auto& contacts = statics.structure().contacts();
+    const Result<Opening> by_loads = first_of_class(statics, members);
+    const ContactId chosen = by_loads.ok()
+                                 ? by_loads.value().contact
+                                 : *std::min_element(members.begin(), members.end(), [&](ContactId a, ContactId b) {
+                                       return contacts[a.index()] < contacts[b.index()];
+                                   });
+    const auto record =
+        recorded_choice(minimum, found.value(), chosen.index(), by_loads.ok() ? TieChoice::loads : TieChoice::names);
+    minimum.settled.insert(minimum.settled.end(), record.begin(), record.end());
+    minimum.index = chosen.index();
+    const auto stands = contest.stand(chosen.index());
+    return stands.ok() ? std::nullopt : std::optional<Failure>(stands.failure());
+}
+
 LoadLimit unbounded(int direction, Rung rung) {
     return {true, direction * infinity, 0, ContactId(), {}, infinity, rung};
 }
@@ -263,20 +301,21 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
     if (!guess.value()) {
         return unbounded(direction, statics.rung());
     }
-    const auto found =
-        proved_minimum(contest, *guess.value(), "the comparisons of the limit loads contradict each other");
+    auto found = proved_minimum(contest, *guess.value(), "the comparisons of the limit loads contradict each other");
     if (!found.ok()) {
         return found.failure();
     }
-    const Minimum& minimum = found.value();
+    Minimum& minimum = found.value();
     if (!minimum.index) {
         return unbounded(direction, statics.rung());
     }
-    LoadLimit limit = contest.limit();
     if (!minimum.tied.empty()) {
-        return failed(FailureKind::tie, "the forces in the contacts {}{} vanish at one load, sigma = {:.17g}",
-                      name(statics, ContactId(*minimum.index)), minimum.tied, limit.stress);
+        if (auto failure = choose(statics, contest, minimum)) {
+            return *failure;
+        }
     }
+    LoadLimit limit = contest.limit();
+    std::erase_if(limit.tie_class, [&](ContactId l) { return l.index() != *minimum.index && contest.stays_zero(l); });
     const Result<Opening> chosen = first_of_class(statics, limit.tie_class);
     if (!chosen.ok()) {
         return failed(chosen.failure().kind, "structural tie class of {} contacts: {}", limit.tie_class.size(),

@@ -163,20 +163,27 @@ template <int Dim> std::optional<Failure> Stage<Dim>::settle(const Contender& do
 template <int Dim> std::optional<Failure> Stage<Dim>::settle_at_first_order(ContactId l, const Order& order) {
     const Enclosure f1 = choice_.perturbed->force(l);
     const bool held = is_held(statics_, l);
-    if (held || !f1.decided()) {
+    const bool stays_zero = !held && !f1.positive() && choice_.perturbed->chooses(); // it opens nothing (C1 d)
+    if (held || (!f1.decided() && !stays_zero)) {
         return failed(FailureKind::undecided, "the force in {} vanishes ({}), {}", name_of(l), reach(order),
                       held ? std::string("and held coordinates are not followed at first order")
                            : fmt::format("and its first-order term does not tell its sign: {}; a "
                                          "higher order may",
                                          shown(f1)));
     }
-    choice_.perturbed->log.push_back(
-        {"force", contacts_[l.index()], f1, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
+    choice_.perturbed->log.push_back({"force",
+                                      contacts_[l.index()],
+                                      f1,
+                                      {ContactKind::disk_disk, -1, -1},
+                                      {},
+                                      order.exponent,
+                                      order.bits,
+                                      stays_zero ? TieChoice::zero : TieChoice::none});
     decision_.perturbed = true;
-    if (f1.negative()) {
+    if (f1.negative() && !stays_zero) {
         add_negative(l, f1.margin());
     } else {
-        margin_ = std::min(margin_, f1.margin());
+        margin_ = stays_zero ? margin_ : std::min(margin_, f1.margin());
         decision_.zeros.push_back(l);
     }
     return std::nullopt;

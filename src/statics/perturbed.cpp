@@ -24,8 +24,8 @@ Enclosure sum(const Enclosure& a, const Enclosure& b) {
 
 template <int Dim>
 PerturbedStatics<Dim>::PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load,
-                                        Enclosure stress_rate)
-    : first_(&first), statics_(&statics), load_(load), stress_rate_(stress_rate) {}
+                                        Enclosure stress_rate, bool choose)
+    : first_(&first), statics_(&statics), load_(load), stress_rate_(stress_rate), choose_(choose) {}
 
 template <int Dim> std::vector<Enclosure> PerturbedStatics<Dim>::terms(double sigma, double sigma_error) const {
     const auto n = static_cast<std::size_t>(statics_->structure().size());

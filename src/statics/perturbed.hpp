@@ -15,8 +15,9 @@ namespace isostat {
 /// must outlive the object.
 template <int Dim> class PerturbedStatics {
   public:
-    /// `stress_rate`: sigma1 (0, radius 0, for a load that was given).
-    PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load, Enclosure stress_rate);
+    /// `stress_rate`: sigma1 (0, radius 0, for a load that was given). `choose`: see `chooses`.
+    PerturbedStatics(const FirstOrder<Dim>& first, Statics<Dim>& statics, const Load<Dim>& load, Enclosure stress_rate,
+                     bool choose);
 
     /// f1 at the present load; {0, 0} for structural zeros. Cost: one solve, once per rung of `statics`.
     [[nodiscard]] Enclosure force(ContactId contact);
@@ -27,6 +28,9 @@ template <int Dim> class PerturbedStatics {
     /// Largest finite force: what a zero is compared with.
     [[nodiscard]] double size();
 
+    /// Under `ties = "choose"`: what first-order terms do not tell is a matter of the rule (C1).
+    [[nodiscard]] bool chooses() const { return choose_; }
+
     std::vector<TieDecision> log; ///< what was settled, in order; whoever writes records takes it
 
   private:
@@ -36,6 +40,7 @@ template <int Dim> class PerturbedStatics {
     Statics<Dim>* statics_;
     Load<Dim> load_;
     Enclosure stress_rate_;
+    bool choose_;
     std::vector<Enclosure> present_;
     Rung present_rung_ = Rung::none;
     std::vector<Enclosure> elsewhere_;

@@ -108,7 +108,7 @@ template <int Dim> class OpeningContest final : public Contest {
         const Enclosure mine = first_order_key(one);
         const Enclosure its = first_order_key(other);
         return by_first_order({"opening", contacts[one.contact.index()], mine, contacts[other.contact.index()], its},
-                              order, false, statics_.rung(),
+                              order, {false, choice_.perturbed->chooses(), statics_.rung()},
                               words("the opening rule cannot order {} and {} ({}), and the first-order terms of "
                                     "what it compares",
                                     name(statics_, one.contact), name(statics_, other.contact), reach(order)));
@@ -152,6 +152,37 @@ Opening pick_by_name(const Statics<Dim>& statics, std::vector<Contender>& conten
     return {chosen.contact, false, chosen.force, +1, chosen.margin, statics.rung()};
 }
 
+/// One of those that first-order terms do not order: by the infinitesimal loads, or by name.
+template <int Dim>
+std::optional<Failure> choose(Statics<Dim>& statics, const std::vector<Contender>& contenders,
+                              OpeningContest<Dim>& contest, OpeningRule rule, Minimum& minimum) {
+    const auto members = choosable(contest, minimum);
+    if (!members.ok()) {
+        return members.failure();
+    }
+    const Contender& best = contenders[*minimum.index];
+    if (members.value().empty()) {
+        return failed(FailureKind::tie, "the opening rule cannot order the contacts {} (f = {:.17g}){}",
+                      name(statics, best.contact), best.force.value, minimum.tied);
+    }
+    std::vector<Contender> again;
+    for (const std::size_t k : members.value()) {
+        const Enclosure f = statics.infinitesimal(contenders[k].contact);
+        again.push_back({contenders[k].contact, f, f, infinity, 0});
+    }
+    const auto infinitesimal = [&](ContactId l) { return statics.infinitesimal_expression(l); };
+    const Result<Opening> by_loads = pick(statics, again, Choice<Dim>{rule, 0, infinitesimal, nullptr, nullptr});
+    const ContactId first = by_loads.ok() ? by_loads.value().contact : pick_by_name(statics, again, 0).contact;
+    const auto chosen =
+        std::find_if(contenders.begin(), contenders.end(), [first](const Contender& c) { return c.contact == first; });
+    const auto index = static_cast<std::size_t>(chosen - contenders.begin());
+    const auto record =
+        recorded_choice(minimum, members.value(), index, by_loads.ok() ? TieChoice::loads : TieChoice::names);
+    minimum.settled.insert(minimum.settled.end(), record.begin(), record.end());
+    minimum.index = index;
+    return std::nullopt;
+}
+
 } // namespace
 
 Enclosure quotient(const Enclosure& a, const Enclosure& b) {
@@ -172,17 +203,18 @@ Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, c
     const auto guess =
         std::min_element(contenders.begin(), contenders.end(),
                          [](const Contender& a, const Contender& b) { return a.key.value < b.key.value; });
-    const auto found = proved_minimum(contest, static_cast<std::size_t>(guess - contenders.begin()),
-                                      "the comparisons of the opening rule contradict each other");
+    auto found = proved_minimum(contest, static_cast<std::size_t>(guess - contenders.begin()),
+                                "the comparisons of the opening rule contradict each other");
     if (!found.ok()) {
         return found.failure();
     }
-    const Minimum& minimum = found.value();
-    const Contender& best = contenders[*minimum.index];
+    Minimum& minimum = found.value();
     if (!minimum.tied.empty()) {
-        return failed(FailureKind::tie, "the opening rule cannot order the contacts {} (f = {:.17g}){}",
-                      name(statics, best.contact), best.force.value, minimum.tied);
+        if (auto failure = choose(statics, contenders, contest, choice.rule, minimum)) {
+            return *failure;
+        }
     }
+    const Contender& best = contenders[*minimum.index];
     Opening opening{best.contact,
                     false,
                     best.force,

@@ -17,9 +17,10 @@ struct Comparison {
     enum class Answer : unsigned char { smaller, larger, tied, left_out };
     Answer answer = Answer::left_out; ///< the rival is ...; left out: it does not compete
     double margin = std::numeric_limits<double>::infinity();
-    Rung rung = Rung::combinatorial;    ///< that proved it
-    Words tie;                          ///< with `tied`: who, and how far the two agree
-    std::optional<TieDecision> settled; ///< a tie in the base that first-order terms ordered
+    Rung rung = Rung::combinatorial; ///< that proved it
+    Words tie;                       ///< with `tied`: who, and how far the two agree
+    /// A tie in the base that first-order terms ordered; with `tied`: that they do not, and that may be chosen.
+    std::optional<TieDecision> settled;
 };
 
 /// Quantities that can be compared, by number.
@@ -36,8 +37,14 @@ class Contest {
 };
 
 struct Minimum {
+    /// Someone who cannot be told from it.
+    struct Tied {
+        std::size_t index;
+        std::optional<TieDecision> terms;
+    };
     std::optional<std::size_t> index; ///< none: as `Contest::stand` says
     Words tied;                       ///< not empty: these cannot be told from it
+    std::vector<Tied> open;           ///< the same by number
     double margin = std::numeric_limits<double>::infinity();
     Rung rung = Rung::combinatorial;  ///< highest of the comparisons
     std::vector<TieDecision> settled; ///< first-order comparisons that were needed
@@ -54,9 +61,24 @@ Comparison by_order(const Order& order, Words tie);
 /// The base does not tell the two apart: `order` says that a quantity of this size is a tie.
 bool needs_first_order(const Order& order, double size);
 
-/// The rule of first order: `terms.other` is that of the rival, `terms.first` that of the smallest so far. `falling`:
-/// the larger term is the smaller quantity. Failure: `undecided`, with `message` and the two terms.
-Result<Comparison> by_first_order(TieDecision terms, const Order& order, bool falling, Rung rung, const Words& message);
+/// How first-order terms are compared, and what is said when they do not tell.
+struct FirstOrderRule {
+    bool falling = false; ///< the larger term is the smaller quantity
+    bool choose = false;  ///< what they do not tell is tied, and may be chosen; else it is `undecided`
+    Rung rung = Rung::none;
+};
+
+/// The rule of first order: `terms.other` is that of the rival, `terms.first` that of the smallest so far. Failure:
+/// `undecided`, with `message` and the two terms.
+Result<Comparison> by_first_order(TieDecision terms, const Order& order, const FirstOrderRule& rule,
+                                  const Words& message);
+
+/// Who may be chosen: the smallest and all that are tied with it, but for those proved larger than another of them.
+/// Empty: not all of the ties may be. Failure: that of a comparison.
+Result<std::vector<std::size_t>> choosable(Contest& contest, const Minimum& minimum);
+/// The choice in records: against each other one of `members`, with what is known of them in the base.
+std::vector<TieDecision> recorded_choice(const Minimum& minimum, const std::vector<std::size_t>& members,
+                                         std::size_t chosen, TieChoice how);
 
 /// "proved to 256 bits" or "exactly".
 std::string reach(const Order& order);

@@ -26,7 +26,9 @@ template <int Dim> LimitLoad<Dim> zero_load(Statics<Dim>& statics, ContactId at_
 
 } // namespace
 
-template <int Dim> FirstOrderSide<Dim>::FirstOrderSide(State<Dim>& state, std::uint64_t seed) : state_(state) {
+template <int Dim>
+FirstOrderSide<Dim>::FirstOrderSide(State<Dim>& state, std::uint64_t seed, bool choose)
+    : state_(state), choose_(choose) {
     if (!state.perturbation) {
         state.perturbation.emplace();
         state.perturbation->seed = seed;
@@ -42,7 +44,8 @@ template <int Dim> void FirstOrderSide<Dim>::attach(Vertex<Dim>& vertex, const L
     vertex.perturbed = std::make_unique<FirstOrderVertex<Dim>>(
         FirstOrder<Dim>(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.enclosure,
                         state_.perturbation->rho),
-        vertex.statics, at.load, at.stress_rate);
+        vertex.statics, at.load, at.stress_rate, choose_);
+    vertex.perturbed->rho = &state_.perturbation->rho;
 }
 
 template <int Dim> std::optional<Failure> FirstOrderSide<Dim>::choose_contacts() const {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// A run under `ties = "perturb"`: what it knows of its radii R_i + eps rho_i besides the base. Private to the room.
+/// A run under `ties = "perturb"` or `"choose"`: what it knows of its radii R_i + eps rho_i besides the base. Private
+/// to the room.
 
 #include "trajectory/ties.hpp"
 
@@ -28,8 +29,8 @@ template <int Dim> struct LimitLoad {
 /// The first-order side of a run. What of it outlives a vertex is in the state: rho, and what its load means.
 template <int Dim> class FirstOrderSide {
   public:
-    /// rho is made from `seed` unless the state has one. The state must outlive the side.
-    FirstOrderSide(State<Dim>& state, std::uint64_t seed);
+    /// rho is made from `seed` unless the state has one. The state must outlive the side. `choose`: see `TiePolicy`.
+    FirstOrderSide(State<Dim>& state, std::uint64_t seed, bool choose);
 
     /// Gives a vertex its first-order terms. Before any question to its statics.
     void attach(Vertex<Dim>& vertex, const LimitLoad<Dim>& at) const;
@@ -48,6 +49,7 @@ template <int Dim> class FirstOrderSide {
 
   private:
     State<Dim>& state_;
+    bool choose_;
 };
 
 extern template class FirstOrderSide<2>;

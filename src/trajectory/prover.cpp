@@ -70,7 +70,7 @@ void Prover<Dim>::start_at(const Packing<Dim>& packing, const std::shared_ptr<co
 template <int Dim>
 Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::vertex(Packing<Dim> packing, std::vector<Contact> contacts,
                                                          const LimitLoad<Dim>& at) {
-    auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), at.load, bounds_);
+    auto made = Vertex<Dim>::make(std::move(packing), std::move(contacts), at.load, bounds_, ladder());
     if (!made.ok()) {
         return made.failure();
     }
@@ -78,6 +78,15 @@ Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::vertex(Packing<Dim> packing, s
         first_order_->attach(*made.value(), at);
     }
     return std::shared_ptr<Vertex<Dim>>(std::move(made.value()));
+}
+
+template <int Dim> LadderOptions Prover<Dim>::ladder() const {
+    LadderOptions options;
+    if (options_->ties == TiePolicy::choose) {
+        options.first_bits = 280;
+        options.max_bits = 1120; // tie_bits, and what a bad condition takes
+    }
+    return options;
 }
 
 template <int Dim>
@@ -127,9 +136,10 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         return located(failure, words("at the end of the arc that opens {} and closes {}",
                                       named<Dim>(proof.record.opened), named<Dim>(proof.record.closed)));
     };
-    LadderOptions ladder;
-    ladder.first_accuracy = first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
-    auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, ladder);
+    LadderOptions options = ladder();
+    options.first_accuracy =
+        first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
+    auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, options);
     if (!made.ok()) {
         return at_end(made.failure());
     }
@@ -206,15 +216,23 @@ std::optional<Failure> Prover<Dim>::power(ArcProof<Dim>& proof, const Opening& o
         PerturbedStatics<Dim>& side = to.perturbed->statics;
         if ((!order.decided || order.sign == 0) && is_tie(order, side.size())) {
             f = side.force(closed);
-            if (!f.positive()) {
+            const bool stays_zero = !f.positive() && side.chooses(); // such a force opens nothing (C1 d)
+            if (!f.positive() && !stays_zero) {
                 return failed(FailureKind::undecided,
                               "the new force in {} vanishes, and its first-order term is {:.6g} +- "
                               "{:.3g}: the power of the load is not proved positive at the end of the arc",
                               named<Dim>(record.closed), f.value, f.radius);
             }
-            record.perturbed.push_back(
-                {"force", record.closed, f, {ContactKind::disk_disk, -1, -1}, {}, order.exponent, order.bits});
-            proof.count({DecisionKind::power, f.margin(), to.statics.rung(), true});
+            record.perturbed.push_back({"force",
+                                        record.closed,
+                                        f,
+                                        {ContactKind::disk_disk, -1, -1},
+                                        {},
+                                        order.exponent,
+                                        order.bits,
+                                        stays_zero ? TieChoice::zero : TieChoice::none});
+            constexpr double chosen = std::numeric_limits<double>::infinity();
+            proof.count({DecisionKind::power, stays_zero ? chosen : f.margin(), to.statics.rung(), true});
             return std::nullopt;
         }
         if (order.decided && order.sign > 0) {
@@ -262,7 +280,7 @@ template <int Dim>
 EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, const LimitLoad<Dim>& limit,
                                      ContactId hold, const std::vector<ContactId>& zeros, long step) {
     EndProof<Dim> proof;
-    auto made = Vertex<Dim>::make(std::move(beginning), limit.load, bounds_);
+    auto made = Vertex<Dim>::make(std::move(beginning), limit.load, bounds_, ladder());
     if (!made.ok()) {
         proof.failure = made.failure();
         return proof;

@@ -57,7 +57,7 @@ template <int Dim> struct EndProof {
 /// Nothing else touches these, whatever thread the prover works on; one thread at a time.
 template <int Dim> class Prover {
   public:
-    /// `first_order`: under `ties = "perturb"`, else null. Both must outlive the prover.
+    /// `first_order`: under `ties = "perturb"` or `"choose"`, else null. Both must outlive the prover.
     Prover(const RunOptions& options, const FirstOrderSide<Dim>* first_order)
         : options_(&options), first_order_(first_order) {}
 
@@ -90,6 +90,8 @@ template <int Dim> class Prover {
     Result<OpeningDecision> decide(Vertex<Dim>& vertex, double stress, const ZeroHolds& zero, long step) const;
 
   private:
+    /// How far signs climb: of ties that are chosen no farther than it takes to call them ties.
+    [[nodiscard]] LadderOptions ladder() const;
     void certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening, const Load<Dim>& load) const;
     std::optional<Failure> reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
                                  const LimitLoad<Dim>& at);

@@ -323,7 +323,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return std::nullopt;
     }
     return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
-                  options().ties == TiePolicy::perturb ? "the load as it is stored" : "fresh factors and bounds",
+                  options().ties != TiePolicy::stop ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 

@@ -27,6 +27,8 @@ template <int Dim> void Recorder<Dim>::record(ArcProof<Dim>& proof, int arc, dou
     record.stress = stress;
     counters.tally.plain += options.certify == CertifyLevel::plain ? 1 : 0;
     count(proof);
+    counters.tally.choices += std::count_if(record.perturbed.begin(), record.perturbed.end(),
+                                            [](const TieDecision& tie) { return tie.choice != TieChoice::none; });
     if (record.certificate) {
         count(*record.certificate, proof.seconds);
     }

@@ -58,9 +58,10 @@ template <int Dim> class Run {
     double seconds_before_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::unique_ptr<const FirstOrderSide<Dim>> first_order_ = ///< null: ties end the run
-        recorder_.options.ties == TiePolicy::perturb
-            ? std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed)
-            : nullptr;
+        recorder_.options.ties == TiePolicy::stop
+            ? nullptr
+            : std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
+                                                          recorder_.options.ties == TiePolicy::choose);
     Prover<Dim> prover_{recorder_.options, first_order_.get()};
     std::shared_ptr<Vertex<Dim>> vertex_;
     EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
@@ -191,7 +192,7 @@ std::optional<Failure> Run<Dim>::first_equilibrium(const typename Vertex<Dim>::G
     return report(0);
 }
 
-/// What the state stores says of `vertex_`; under `perturb` it must be an equilibrium again.
+/// What the state stores says of `vertex_`; with first-order terms it must be an equilibrium again.
 template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
     auto decision = prover_.ask_again(*vertex_, sigma());
     if (!perturbs() || (decision.ok() && !decision.value().opening)) {
@@ -265,7 +266,8 @@ template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
 }
 
 /// Where the statics have climbed since `describe`, the same question has an answer with other bits; a resumed run,
-/// whose statics climb at other moments, must find the same. Under `perturb` ties are written to the log once more.
+/// whose statics climb at other moments, must find the same. With first-order terms ties are written to the log once
+/// more.
 template <int Dim> Result<LoadLimit> Run<Dim>::find_limit() {
     if (vertex_->perturbed) {
         vertex_->perturbed->statics.log.clear();

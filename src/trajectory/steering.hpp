@@ -49,7 +49,7 @@ template <int Dim> struct ArcProposal {
     std::vector<double> forces;                     ///< the finite ones; empty: not known
     double cost_before = 0;                         ///< see `Vertex`
     bool ahead = false;                             ///< nothing is proved of its start either
-    /// Under `ties = "perturb"`:
+    /// With first-order terms:
     bool stays = false;                  ///< the way is of length O(eps)
     std::vector<Contact> resting;        ///< pairs that touch all along
     std::vector<TieDecision> settled;    ///< ties at the start of the way

@@ -1,6 +1,7 @@
 #include "trajectory/ties.hpp"
 
 #include "contact/words.hpp"
+#include "verified/precise_first_order.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -47,18 +48,90 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
     return rho;
 }
 
+namespace {
+
+/// First-order terms of a vertex: in double, then with more bits where that does not tell.
+template <int Dim> class Terms {
+  public:
+    explicit Terms(const Vertex<Dim>& vertex)
+        : first_(vertex.perturbed->first), rho_(*vertex.perturbed->rho),
+          precise_(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse, vertex.ladder) {}
+
+    /// Exactly 0, radius 0, when it is 0 for a reason.
+    Enclosure rate(ContactId opened, int direction, const Contact& pair) {
+        const Enclosure rate = first_.rate(opened, direction, pair);
+        return rate.decided() || rate.radius == 0 ? rate : precise_.rate(opened, direction, pair);
+    }
+    /// Proved to separate though its rate vanishes, as far as `tie_bits` tell: by the second derivative.
+    bool bends_away(const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
+        return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits) &&
+               precise_.bend(opened, direction, pair).positive();
+    }
+    Enclosure gap(const Contact& pair) {
+        const Enclosure c = first_.gap(pair);
+        return c.decided() ? c : precise_.gap(rho_, pair);
+    }
+
+  private:
+    const FirstOrder<Dim>& first_;
+    const std::vector<double>& rho_;
+    PreciseFirstOrder<Dim> precise_;
+};
+
+struct Closing {
+    Contact contact;
+    Enclosure way;
+};
+
+/// Of those that close at once the one that is proved to be first; where ties are chosen, of those that no other is
+/// proved to come before, the first by name.
+Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::vector<TieDecision>& settled) {
+    const auto before = [](const Closing& a, const Closing& b) { return (b.way - a.way).positive(); };
+    auto first = std::min_element(closing.begin(), closing.end(),
+                                  [](const Closing& a, const Closing& b) { return a.way.value < b.way.value; });
+    if (choose) {
+        const auto unbeaten = [&](const Closing& a) {
+            return std::none_of(closing.begin(), closing.end(), [&](const Closing& b) { return before(b, a); });
+        };
+        for (auto other = closing.begin(); other != closing.end(); ++other) {
+            first = unbeaten(*other) && (!unbeaten(*first) || other->contact < first->contact) ? other : first;
+        }
+    }
+    for (const Closing& other : closing) {
+        if (&other == &*first) {
+            continue;
+        }
+        TieDecision step{"step", first->contact, first->way, other.contact, other.way, 0, 0};
+        if (!before(*first, other)) {
+            if (!choose) {
+                return failed(FailureKind::undecided,
+                              "tied at first order too: {} and {} touch, and close again after ways of eps "
+                              "({}) and eps ({})",
+                              named<2>(first->contact), named<2>(other.contact), shown(first->way), shown(other.way));
+            }
+            step.choice = TieChoice::names;
+        }
+        settled.push_back(std::move(step));
+    }
+    if (closing.size() == 1) {
+        settled.push_back({"step", first->contact, first->way, nobody, {}, 0, 0});
+    }
+    return first->contact;
+}
+
+} // namespace
+
 template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction) {
     Departure<Dim> departure;
-    struct Closing {
-        Contact contact;
-        Enclosure way;
-    };
     std::vector<Closing> closing;
+    const bool chooses = from.perturbed->statics.chooses();
+    Terms<Dim> terms(from);
     for (const auto& [contact, c] : from.perturbed->touching) {
-        const Enclosure rate = from.perturbed->first.rate(opened, direction, contact);
+        const Enclosure rate = terms.rate(opened, direction, contact);
         if (rate.value == 0 && rate.radius == 0) {
             departure.resting.push_back(contact);
-        } else if (rate.positive()) {
+        } else if (rate.positive() ||
+                   (!rate.negative() && chooses && terms.bends_away(rate, opened, direction, contact))) {
             departure.leaving.push_back(contact);
         } else if (rate.negative()) {
             closing.push_back({contact, way(c, rate)});
@@ -72,24 +145,11 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
     if (closing.empty()) {
         return departure;
     }
-    const auto first = std::min_element(closing.begin(), closing.end(),
-                                        [](const Closing& a, const Closing& b) { return a.way.value < b.way.value; });
-    for (const Closing& other : closing) {
-        if (&other == &*first) {
-            continue;
-        }
-        if (!(other.way - first->way).positive()) {
-            return failed(FailureKind::undecided,
-                          "tied at first order too: {} and {} touch, and close again after ways of eps "
-                          "({}) and eps ({})",
-                          named<Dim>(first->contact), named<Dim>(other.contact), shown(first->way), shown(other.way));
-        }
-        departure.settled.push_back({"step", first->contact, first->way, other.contact, other.way, 0, 0});
+    const auto first = first_of(closing, from.perturbed->statics.chooses(), departure.settled);
+    if (!first.ok()) {
+        return first.failure();
     }
-    if (closing.size() == 1) {
-        departure.settled.push_back({"step", first->contact, first->way, nobody, {}, 0, 0});
-    }
-    departure.closes = first->contact;
+    departure.closes = first.value();
     return departure;
 }
 
@@ -101,9 +161,11 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slo
     side.touching.clear();
     side.zero = zero;
     const Contact& closed = to.structure.contacts()[slot.index()];
+    Terms<Dim> terms(to);
     for (const auto& [contact, order] : zero) {
-        const Enclosure c = side.first.gap(contact);
-        if (!c.decided()) {
+        const Enclosure c = terms.gap(contact);
+        const bool watched = !c.decided() && side.statics.chooses();
+        if (!c.decided() && !watched) {
             return failed(FailureKind::undecided,
                           "{} touch where {} closes, and their first-order gap is not told from 0: {}",
                           named<Dim>(contact), named<Dim>(closed), shown(c));
@@ -111,8 +173,7 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slo
         const bool rests = std::find(resting.begin(), resting.end(), contact) != resting.end();
         if (!stayed && !rests) {
             // Simple roots (P3): going back opens both.
-            const Enclosure back =
-                closed.kind == ContactKind::held ? Enclosure{0, 0} : side.first.rate(slot, +1, contact);
+            const Enclosure back = closed.kind == ContactKind::held ? Enclosure{0, 0} : terms.rate(slot, +1, contact);
             if (!back.positive()) {
                 return failed(FailureKind::undecided,
                               "{} touch where {} closes, but are not proved to close there: the rate of "
@@ -130,7 +191,14 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slo
             return arrival;
         }
         side.touching.emplace_back(contact, c);
-        arrival.settled.push_back({"gap", closed, {0, 0}, contact, c, order.exponent, order.bits});
+        arrival.settled.push_back({"gap",
+                                   closed,
+                                   {0, 0},
+                                   contact,
+                                   c,
+                                   order.exponent,
+                                   order.bits,
+                                   watched ? TieChoice::zero : TieChoice::none});
     }
     return arrival;
 }
@@ -140,9 +208,10 @@ template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, c
     side.touching.clear();
     side.zero = zero;
     Words names;
+    Terms<Dim> terms(vertex);
     for (const auto& [contact, order] : zero) {
-        const Enclosure c = side.first.gap(contact);
-        if (!c.decided()) {
+        const Enclosure c = terms.gap(contact);
+        if (!c.decided() && !side.statics.chooses()) {
             return failed(FailureKind::undecided, "{} touch, and their first-order gap is not told from 0: {}",
                           named<Dim>(contact), shown(c));
         }

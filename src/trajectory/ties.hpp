@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Ties under `ties = "perturb"`: the decisions of a vertex at first order in eps. Private to the room.
+/// Ties under `ties = "perturb"` and `"choose"`: the decisions of a vertex at first order in eps. Private to the room.
 
 #include "trajectory/vertex.hpp"
 
@@ -14,12 +14,13 @@ template <int Dim> struct Departure {
     std::optional<Contact> closes;
     std::vector<TieDecision> settled;
 };
-/// Failure: `undecided` when a rate is not told from 0, or two pairs close at once to first order.
+/// Failure: `undecided` when a rate is not told from 0, or two pairs close at once to first order; where ties are
+/// chosen the first of these by name closes (C1).
 template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction);
 
 /// Judges the pairs that touch at the end of an arc, whose new contact is in the place `slot`: `touching` of `to` is
 /// set. `stayed`: the arc has length O(eps), or the pairs `resting` did not move; all other pairs must be proved to
-/// close there, not to graze.
+/// close there, not to graze. Where ties are chosen a pair whose first-order gap is not told from 0 stays watched (C1).
 /// Success: nothing, or the pair that closed before the new contact.
 template <int Dim> struct Arrival {
     std::optional<Contact> earlier;

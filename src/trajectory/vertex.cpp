@@ -3,6 +3,7 @@
 #include "contact/words.hpp"
 #include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
+#include "verified/gap_signs.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
 
 #include <algorithm>
@@ -13,11 +14,11 @@ namespace isostat {
 
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
-                    InverseBoundCache& cache)
+                    InverseBoundCache& cache, LadderOptions options)
     : packing(std::move(p)), structure(proof.unproved()), factorisation(std::move(factors)),
       inverse(bound_inverse(structure, factorisation, cache, [&] { return proof.is_regular(); })),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, {}, &enclosure) {}
+      statics(packing, load, structure, factorisation, inverse, options, &enclosure), ladder(options) {}
 
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
@@ -25,7 +26,8 @@ Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInvers
                     std::vector<double> forces)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near, std::move(forces)) {}
+      statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near, std::move(forces)),
+      ladder(options) {}
 
 template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
     if (inverse.verdict != Verdict::proved) {
@@ -57,20 +59,21 @@ Result<typename Vertex<Dim>::Beginning> Vertex<Dim>::begin(Packing<Dim> packing,
 
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                       const Load<Dim>& load, InverseBoundCache& cache) {
+                                                       const Load<Dim>& load, InverseBoundCache& cache,
+                                                       LadderOptions options) {
     auto begun = begin(std::move(packing), std::move(contacts));
     if (!begun.ok()) {
         return begun.failure();
     }
-    return make(std::move(begun.value()), load, cache);
+    return make(std::move(begun.value()), load, cache, options);
 }
 
 template <int Dim>
 Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::make(Beginning beginning, const Load<Dim>& load,
-                                                       InverseBoundCache& cache) {
+                                                       InverseBoundCache& cache, LadderOptions options) {
     RankProof<Dim>& rank = beginning.rank;
     std::unique_ptr<Vertex> vertex(
-        new Vertex(std::move(beginning.packing), rank, std::move(beginning.factorisation), load, cache));
+        new Vertex(std::move(beginning.packing), rank, std::move(beginning.factorisation), load, cache, options));
     auto proved = rank.conclude();
     if (!proved.ok()) {
         return proved.failure();
@@ -98,7 +101,8 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     }
     std::vector<Contact> contacts = from.structure.contacts();
     contacts[arc.opening.contact.index()] = arc.record.closed;
-    return make(std::move(arc.end), std::move(contacts), load, cache); // it says what is wrong
+    options.first_accuracy = 0;
+    return make(std::move(arc.end), std::move(contacts), load, cache, options); // it says what is wrong
 }
 
 /// Nothing when no bound was proved in doubles.
@@ -127,6 +131,16 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::prove(const Vertex& from, ArcP
     }
     return vertex;
 }
+
+namespace {
+
+/// Null: it is not among them.
+const ZeroGaps::value_type* find(const ZeroGaps& pairs, const Contact& contact) {
+    const auto pair = std::find_if(pairs.begin(), pairs.end(), [&](const auto& zero) { return zero.first == contact; });
+    return pair == pairs.end() ? nullptr : &*pair;
+}
+
+} // namespace
 
 template <int Dim>
 Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept,
@@ -162,17 +176,23 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             look(contact);
         }
     }
+    const auto told = [known](const Contact& contact) { // that it touches
+        return known == nullptr ? nullptr : find(*known, contact);
+    };
+    std::vector<Contact> asked;
+    std::copy_if(doubtful.begin(), doubtful.end(), std::back_inserter(asked),
+                 [&](const Contact& contact) { return told(contact) == nullptr; });
+    const std::vector<Order> orders = // with as many bits as the ladder has
+        asked.empty() ? std::vector<Order>()
+                      : gap_signs_at_vertex(packing, structure, factorisation, inverse, asked, ladder);
     Words names;
-    for (const Contact& contact : doubtful) { // with as many bits as the ladder has
-        if (known != nullptr) {
-            const auto pair = std::find_if(known->begin(), known->end(),
-                                           [&contact](const auto& zero) { return zero.first == contact; });
-            if (pair != known->end()) {
-                gaps.zero.push_back(*pair);
-                continue;
-            }
+    auto answer = orders.begin();
+    for (const Contact& contact : doubtful) {
+        if (const auto* zero = told(contact)) {
+            gaps.zero.push_back(*zero);
+            continue;
         }
-        const Order order = gap_sign_at_vertex(packing, structure, factorisation, inverse, contact);
+        const Order& order = *answer++;
         if (order.decided && order.sign != 0) {
             gaps.rung = std::max(gaps.rung, order.rung);
             gaps.margin = std::min(gaps.margin, order.margin);

@@ -23,18 +23,20 @@ using ZeroGaps = std::vector<std::pair<Contact, Order>>;
 
 /// The first-order side of a vertex whose radii are R_i + eps rho_i.
 template <int Dim> struct FirstOrderVertex {
-    /// `rate`: first-order term of the stress.
-    FirstOrderVertex(FirstOrder<Dim> terms, Statics<Dim>& forces, const Load<Dim>& load, const Enclosure& rate)
-        : first(std::move(terms)), statics(first, forces, load, rate), stress_rate(rate) {}
+    /// `rate`: first-order term of the stress. `choose`: what first-order terms do not tell is chosen (C1).
+    FirstOrderVertex(FirstOrder<Dim> terms, Statics<Dim>& forces, const Load<Dim>& load, const Enclosure& rate,
+                     bool choose)
+        : first(std::move(terms)), statics(first, forces, load, rate, choose), stress_rate(rate) {}
     FirstOrder<Dim> first;
-    PerturbedStatics<Dim> statics; ///< refers to `first`
+    const std::vector<double>* rho = nullptr; ///< its direction
+    PerturbedStatics<Dim> statics;            ///< refers to `first`
     Enclosure stress_rate;
-    /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive.
+    /// Pairs that touch in the base without being contacts, with their first-order gaps, proved positive; where ties
+    /// are chosen, not proved negative.
     std::vector<std::pair<Contact, Enclosure>> touching;
     /// The same pairs, with what says that they touch: where grains do not move against each other it is said once.
     ZeroGaps zero;
-    std::vector<ContactId>
-        zeros; ///< of an equilibrium: forces that vanish in the base, and are positive at first order
+    std::vector<ContactId> zeros; ///< of an equilibrium: forces that vanish in the base, as `OpeningDecision` says
 };
 
 template <int Dim> struct ArcProposal;
@@ -47,7 +49,8 @@ template <int Dim> class Vertex {
     /// Failures: `not_isostatic`; `undecided` when no bound of the inverse or no true vertex near the stored one was
     /// proved.
     static Result<std::unique_ptr<Vertex>> make(Packing<Dim> packing, std::vector<Contact> contacts,
-                                                const Load<Dim>& load, InverseBoundCache& cache);
+                                                const Load<Dim>& load, InverseBoundCache& cache,
+                                                LadderOptions options = {});
     /// The same in two steps: what a motion from the vertex needs, of which nothing is proved, and the proofs.
     struct Beginning {
         Packing<Dim> packing;
@@ -55,7 +58,8 @@ template <int Dim> class Vertex {
         Factorisation factorisation;
     };
     static Result<Beginning> begin(Packing<Dim> packing, std::vector<Contact> contacts);
-    static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load<Dim>& load, InverseBoundCache& cache);
+    static Result<std::unique_ptr<Vertex>> make(Beginning beginning, const Load<Dim>& load, InverseBoundCache& cache,
+                                                LadderOptions options = {});
     /// The vertex at the end of a proposed arc: one contact of `from` exchanged. The regularity of the new structure
     /// and the bound of its inverse are proved together, by the cheapest of: the bound of `from` carried over (V8), a
     /// Cholesky factorisation (V1), everything anew as in `make`. What the proposal brings are guesses, all but the
@@ -71,6 +75,7 @@ template <int Dim> class Vertex {
     InverseBound inverse;
     VertexEnclosure enclosure;
     Statics<Dim> statics;
+    LadderOptions ladder;   ///< of signs that must climb
     double cost_before = 0; ///< of the vertices since the factorisation, in passes of fresh factors, without this one
 
     /// Signs of the gaps of all candidates at the true vertex.
@@ -88,14 +93,14 @@ template <int Dim> class Vertex {
     /// `kept`: for the next vertices with the same list.
     Result<Gaps> check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
 
-    /// Under `ties = "perturb"` only.
+    /// Under `ties = "perturb"` and `"choose"` only.
     std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
     [[nodiscard]] PerturbedStatics<Dim>* first_order() { return perturbed ? &perturbed->statics : nullptr; }
 
   private:
     /// Nothing is proved unless the proof is concluded.
     Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
-           InverseBoundCache& cache);
+           InverseBoundCache& cache, LadderOptions options);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
            const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near, std::vector<double> forces);
     static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,

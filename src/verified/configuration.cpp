@@ -2,6 +2,7 @@
 
 #include "contact/gap_sign.hpp"
 #include "verified/enclosed_vertex.hpp"
+#include "verified/gap_signs.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
@@ -120,47 +121,74 @@ template <int Dim> PreciseInterval gap_at(const EnclosedVertex<Dim, Real>& verte
 
 } // namespace
 
+namespace {
+
+/// What one enclosure of the vertex says of a gap.
+template <int Dim> Order sign_at(const EnclosedVertex<Dim, Real>& vertex, const Contact& contact) {
+    const PreciseInterval gap_there = gap_at(vertex, contact);
+    Order order{false, 0, 0, Rung::multiprecision, vertex.at().arithmetic().bits()};
+    if (gap_there.positive() || gap_there.negative()) {
+        order.decided = true;
+        order.sign = gap_there.positive() ? 1 : -1;
+        order.margin = gap_there.margin();
+        return order;
+    }
+    Real logarithm(64);
+    mpfr_log2(logarithm.get(), magnitude(gap_there).high.get(), MPFR_RNDU);
+    order.exponent = logarithm.above();
+    return order;
+}
+
+} // namespace
+
 template <int Dim>
-Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
-                         const LadderOptions& options) {
-    Order order;
+std::vector<Order> gap_signs_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                       const Factorisation& factorisation, const InverseBound& inverse,
+                                       const std::vector<Contact>& candidates, const LadderOptions& options) {
+    std::vector<Order> orders(candidates.size());
+    const auto open = [](const Order& order) { return !order.decided; };
     std::vector<Real> start;
     const Neighbourhood at_q = Neighbourhood::of(packing, structure.contacts(), inverse);
-    for (int bits = options.first_bits; bits <= options.max_bits; bits *= 2) {
+    for (int bits = options.first_bits; bits <= options.max_bits && std::any_of(orders.begin(), orders.end(), open);
+         bits *= 2) {
         const EnclosedVertex<Dim, Real> vertex(Arithmetic<Real>(bits), packing, structure, factorisation, at_q, start);
         if (!vertex.exists()) {
             break;
         }
-        order.rung = Rung::multiprecision;
-        order.bits = bits;
-        const PreciseInterval gap_there = gap_at(vertex, contact);
-        if (gap_there.positive() || gap_there.negative()) {
-            order.decided = true;
-            order.sign = gap_there.positive() ? 1 : -1;
-            order.margin = gap_there.margin();
-            return order;
+        for (std::size_t k = 0; k < orders.size(); ++k) {
+            if (open(orders[k])) {
+                orders[k] = sign_at(vertex, candidates[k]);
+            }
         }
-        const PreciseInterval absolute = magnitude(gap_there);
-        Real logarithm(64);
-        mpfr_log2(logarithm.get(), absolute.high.get(), MPFR_RNDU);
-        order.exponent = logarithm.above();
         start = vertex.at().correction();
     }
     // A stored configuration that closes every kept gap exactly is the true vertex.
-    const bool exact = std::all_of(structure.contacts().begin(), structure.contacts().end(), [&](const Contact& c) {
-        return c.kind == ContactKind::held || gap_sign(packing, c, 0) == 0;
-    });
-    if (exact && order.rung != Rung::none) { // unique there, by the enclosure
-        constexpr double infinity = std::numeric_limits<double>::infinity();
-        const int sign = gap_sign(packing, contact, 0);
-        order = {true, sign, infinity, Rung::exact, 0, sign == 0 ? -infinity : infinity};
+    const auto& contacts = structure.contacts();
+    const auto closed = [&](const Contact& c) { return c.kind == ContactKind::held || gap_sign(packing, c, 0) == 0; };
+    const bool exact = std::any_of(orders.begin(), orders.end(), open) && // and unique there, by an enclosure
+                       std::all_of(contacts.begin(), contacts.end(), closed);
+    for (std::size_t k = 0; k < orders.size() && exact; ++k) {
+        if (open(orders[k]) && orders[k].rung != Rung::none) {
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            const int sign = gap_sign(packing, candidates[k], 0);
+            orders[k] = {true, sign, infinity, Rung::exact, 0, sign == 0 ? -infinity : infinity};
+        }
     }
-    return order;
+    return orders;
+}
+
+template <int Dim>
+Order gap_sign_at_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                         const Factorisation& factorisation, const InverseBound& inverse, const Contact& contact,
+                         const LadderOptions& options) {
+    return gap_signs_at_vertex(packing, structure, factorisation, inverse, {contact}, options)[0];
 }
 
 template Order gap_sign_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
                                      const InverseBound&, const Contact&, const LadderOptions&);
+template std::vector<Order> gap_signs_at_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&,
+                                                   const Factorisation&, const InverseBound&,
+                                                   const std::vector<Contact>&, const LadderOptions&);
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const InverseBound&);
 template VertexEnclosure enclose_vertex_double_double<2>(const Packing<2>&, const IsostaticStructure<2>&,
                                                          const Factorisation&, const InverseBound&);

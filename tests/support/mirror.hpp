@@ -41,6 +41,18 @@ inline State<2> equal_pair() {
     return state;
 }
 
+/// A square of four equal disks in the box: opposite forces stay equal at first order, whatever the radii.
+inline State<2> square() {
+    State<2> state = equal_pair();
+    state.packing.radius = {1, 1, 1, 1};
+    state.packing.q = {1, 1, 3, 1, 1, 3, 3, 3, 4, 4};
+    state.load.infinitesimal = isostat::generic_infinitesimal<2>(state.packing.radius, 7);
+    state.load.reference_length = {4, 4};
+    state.contacts = {left(0),  bottom(0), bottom(1),  right(1),   left(2),    top(2),
+                      right(3), top(3),    pair(0, 1), pair(2, 3), pair(0, 2), pair(1, 3)};
+    return state;
+}
+
 /// Rows of `columns` and `columns` - 1 equal disks in turn, from the bottom: a triangular lattice between the walls,
 /// with all its contacts. h > 0 from three columns on.
 inline State<2> triangular(int columns, int rows) {

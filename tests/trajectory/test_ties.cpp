@@ -2,6 +2,7 @@
 // a small eps, run under `stop`, must open and close the same contacts in the same order.
 #include "linear/factorisation.hpp"
 #include "preparation/backbone.hpp"
+#include "support/course.hpp"
 #include "support/mirror.hpp"
 
 #include <boost/test/unit_test.hpp>
@@ -13,47 +14,6 @@ using namespace isostat;
 using namespace crafted;
 
 namespace {
-
-struct Course {
-    std::vector<std::string> events;
-    std::vector<EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
-    std::vector<ArcRecord<2>> arcs;
-    SegmentOutcome outcome;
-    RunCounters counters;
-    [[nodiscard]] std::string end() const { return outcome.completed ? "completed" : to_string(outcome.failure->kind); }
-};
-
-class CourseRecorder : public RunObserver<2> {
-  public:
-    explicit CourseRecorder(Course& course) : course_(course) {}
-    void on_arc(const ArcRecord<2>& arc) override {
-        course_.events.push_back(
-            fmt::format("{}:{}>{}", arc.equilibrium, to_string<2>(arc.opened), to_string<2>(arc.closed)));
-        course_.arcs.push_back(arc);
-    }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
-        course_.equilibria.push_back(record);
-        course_.states.push_back(state);
-    }
-
-  private:
-    Course& course_;
-};
-
-Course follow_load(State<2> state, int direction, int equilibria, TiePolicy ties, std::uint64_t seed = 1) {
-    Course course;
-    CourseRecorder recorder(course);
-    Segment segment;
-    segment.direction = direction;
-    segment.equilibria = equilibria;
-    RunOptions options;
-    options.ties = ties;
-    options.ties_seed = seed;
-    course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
-    return course;
-}
 
 /// The contacts that a run under `perturb` starts from.
 std::vector<Contact> starting_contacts(const State<2>& state, const std::vector<double>& rho) {
@@ -125,21 +85,6 @@ Agreement agree(const State<2>& state, int direction, int equilibria, int seeds)
         }
     }
     return sum;
-}
-
-bool mentions(const Course& course, const std::string& word) {
-    return course.outcome.failure && course.outcome.failure->message().find(word) != std::string::npos;
-}
-
-bool settled_as(const Course& course, const std::string& what) {
-    for (const ArcRecord<2>& arc : course.arcs) {
-        for (const TieDecision& tie : arc.perturbed) {
-            if (tie.what == what) {
-                return true;
-            }
-        }
-    }
-    return false;
 }
 
 } // namespace
@@ -284,14 +229,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_
 }
 
 BOOST_AUTO_TEST_CASE(equal_forces_that_stay_equal_at_first_order_are_undecided_not_guessed) {
-    State<2> state = equal_pair();
-    state.packing.radius = {1, 1, 1, 1};
-    state.packing.q = {1, 1, 3, 1, 1, 3, 3, 3, 4, 4};
-    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, 7);
-    state.load.reference_length = {4, 4};
-    state.contacts = {left(0),  bottom(0), bottom(1),  right(1),   left(2),    top(2),
-                      right(3), top(3),    pair(0, 1), pair(2, 3), pair(0, 2), pair(1, 3)};
-    const Course course = follow_load(state, +1, 2, TiePolicy::perturb, 1);
+    const Course course = follow_load(square(), +1, 2, TiePolicy::perturb, 1);
     BOOST_TEST(course.end() == "undecided");
     BOOST_TEST(mentions(course, "first"));
 }

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A decision that a first-order comparison settled (proofs/perturbation.md).
+/// A decision that a first-order comparison settled (proofs/perturbation.md), or a choice (proofs/degenerate.md).
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/enclosure.hpp>
@@ -9,8 +9,25 @@
 
 namespace isostat {
 
+/// What a decision rests on where first-order terms do not tell, under `ties = "choose"` (statement C1).
+enum class TieChoice : unsigned char {
+    none,  ///< nothing was chosen: first-order terms decided
+    loads, ///< the infinitesimal loads, by the rule
+    names, ///< the order of contacts: disks by their numbers, then walls
+    zero   ///< what vanishes in the base is left at 0: such a force opens nothing, such a gap stays watched
+};
+constexpr const char* to_string(TieChoice choice) {
+    switch (choice) {
+    case TieChoice::none: return "none";
+    case TieChoice::loads: return "infinitesimal loads";
+    case TieChoice::names: return "names";
+    case TieChoice::zero: break;
+    }
+    return "zero";
+}
+
 /// One decision that a first-order comparison settled: in the base, quantities that cannot be told apart; their
-/// derivatives with respect to eps can.
+/// derivatives with respect to eps can. With a `choice` the first-order terms do not tell them apart either.
 struct TieDecision {
     /// - "force": the force in `chosen` vanishes; `first` is its first-order term (no `against`);
     /// - "opening": two contacts that the rule orders alike; first-order terms of both keys;
@@ -25,6 +42,7 @@ struct TieDecision {
     Enclosure other;
     double exponent = 0; ///< log2 of a proved bound of the base quantity; -infinity: exactly 0
     int bits = 0;        ///< of the arithmetic that found no difference; 0: exact numbers
+    TieChoice choice = TieChoice::none;
 };
 
 } // namespace isostat

@@ -43,7 +43,7 @@ template <int Dim> struct ArcRecord {
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided); or NaN
     Rung decided_by = Rung::none; ///< highest rung that was needed; `none` at level `plain`: nothing was proved
     std::optional<ArcCertificate> certificate; ///< level `arcs` only
-    std::vector<TieDecision> perturbed;        ///< what first-order terms settled, from the opening to the end
+    std::vector<TieDecision> perturbed; ///< what first-order terms settled, or the rule chose, from opening to end
 };
 
 /// One equilibrium, checked.
@@ -167,6 +167,7 @@ struct Tally {
         0; ///< forces that vanish together for a structural reason, ordered by the infinitesimal loads
     /// Decisions that a first-order comparison settled, by kind (they are among the counted ones).
     std::array<long, decision_kinds> perturbed{};
+    long choices = 0;           ///< ties in records of arcs that first-order terms did not settle: the rule chose
     double smallest_margin = 0; ///< smallest |quantity| / bound among the decided ones (0: none yet)
     /// The same by kind: decisions on the rungs combinatorial, double, double-double, mpfr, exact.
     std::array<std::array<long, 5>, decision_kinds> by_kind{};

@@ -8,6 +8,7 @@
 #include <isostat/statics/opening_rule.hpp>
 #include <isostat/trajectory/records.hpp>
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -29,8 +30,13 @@ struct Segment {
 /// What becomes of a tie: two quantities that are exactly equal, or agree to the cap of the precision ladder.
 /// - stop: the run ends with `tie`;
 /// - perturb: the radii are R_i + eps rho_i, eps > 0 smaller than every positive number, rho from `ties_seed` once for
-///   the whole run: first-order terms decide (proofs/perturbation.md); when they do not, the run ends with `undecided`.
-enum class TiePolicy : unsigned char { stop, perturb };
+///   the whole run: first-order terms decide (proofs/perturbation.md); when they do not, the run ends with `undecided`;
+/// - choose: the same, but where first-order terms do not tell which of several comes first, and any may, the rule goes
+///   on with the infinitesimal loads and the order of contacts (proofs/degenerate.md, C1). What it chose is recorded as
+///   a choice. The path is then one of the packing as it is, eps = 0: one of several.
+enum class TiePolicy : unsigned char { stop, perturb, choose };
+/// The words of scenes, in that order.
+inline constexpr std::array tie_policy_words{"stop", "perturb", "choose"};
 
 /// Caps and choices of a run.
 struct RunOptions {

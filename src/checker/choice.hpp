@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// Choices of a run under `ties = "choose"` (proofs/degenerate.md, C1; checker.md, K22).
+
+#include "checker/replay.hpp"
+
+#include <functional>
+
+namespace isostat::checker {
+
+/// How a run orders contacts that it finds tied.
+struct ChoiceRule {
+    std::string what;                       ///< "opening" or "limit"
+    std::function<bool(std::size_t)> tied;  ///< not told apart from the chosen contact in the base
+    std::function<Range(std::size_t)> load; ///< the infinitesimal loads take the smallest
+};
+
+/// The record of a choice of one contact against another; null: there is none.
+const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::string& what, const std::string& chosen,
+                                 const std::string& against);
+
+/// What the records say of the choice of that contact: that the others are not refuted to be tied with it, in the base
+/// and at first order as far as the run knew it, and that the rule takes it. Never that they are equal.
+Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, std::size_t chosen,
+                        const ChoiceRule& rule);
+
+/// By the rule alone, where there is no record: the infinitesimal loads put `chosen` before `other`, or do not tell,
+/// and the names do.
+bool comes_first(const Place& place, std::size_t chosen, std::size_t other, const ChoiceRule& rule);
+
+/// The first-order terms that a record gives are not told apart.
+bool tied_at_first_order(const TieRecord& tie);
+
+} // namespace isostat::checker

@@ -1,0 +1,16 @@
+#pragma once
+/// \file
+/// All forces that vanish by the pattern alone (proofs/checker.md, K7).
+
+#include "checker/forces.hpp"
+
+#include <optional>
+#include <vector>
+
+namespace isostat::checker {
+
+/// Contacts whose forces are exactly 0 for every load where `load` is not 0, by the pattern alone (K7): as many as
+/// there are. Ascending; nothing when the pattern has no perfect matching.
+std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load);
+
+} // namespace isostat::checker

@@ -1,0 +1,197 @@
+#include "verified/precise_first_order.hpp"
+
+#include "verified/contact_system.hpp"
+
+namespace isostat {
+
+template <int Dim> struct PreciseFirstOrder<Dim>::Rung {
+    Rung(int bits, const PreciseFirstOrder& of, const std::vector<Real>& start)
+        : vertex(Arithmetic<Real>(bits), of.packing_, of.structure_, of.factorisation_,
+                 Neighbourhood::of(of.packing_, of.structure_.contacts(), of.inverse_), start) {
+        if (vertex.exists() && vertex.sigma() > 0) {
+            system = std::make_unique<ContactSystem<Dim, Real>>(vertex, of.structure_, of.factorisation_);
+        }
+    }
+    EnclosedVertex<Dim, Real> vertex;
+    std::unique_ptr<ContactSystem<Dim, Real>> system; ///< null: nothing is known
+};
+
+namespace {
+
+constexpr double root2 = 1.4142135623731;
+
+/// Rate of the gap of a pair that touches at the true vertex, on a motion on the degrees of freedom.
+template <int Dim>
+PreciseInterval gap_rate(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Dim>& dofs,
+                         const BoundedVector<Real>& motion, const Contact& pair) {
+    const Arithmetic<Real>& a = vertex.at().arithmetic();
+    const auto component = [&](int coordinate) {
+        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
+        return dof < 0 ? a.number(0) : motion.value[static_cast<std::size_t>(dof)];
+    };
+    const UpperBound unknown = root2 * motion.bound;
+    if (pair.kind != ContactKind::disk_disk) {
+        const Real v = component(Dim * pair.i + pair.j);
+        const int wall = Dim * vertex.at().packing().disk_count() + pair.j;
+        const Real rate = pair.kind == ContactKind::lower_wall ? v : component(wall) - v;
+        return {rate, (unknown + a.unit() * (a.size(v) + a.size(rate))).real(), a.bits()};
+    }
+    const auto x = vertex.at().separation(pair);
+    Real sum = a.number(0);
+    UpperBound speed(0);
+    UpperBound size(0);
+    for (int k = 0; k < Dim; ++k) {
+        const Real v = component(Dim * pair.j + k) - component(Dim * pair.i + k);
+        const Real& d = x[static_cast<std::size_t>(k)];
+        sum += d * v;
+        speed += a.size(v) + a.size(component(Dim * pair.i + k)) + a.size(component(Dim * pair.j + k));
+        size += a.size(d);
+    }
+    // |x.v - x*.v*| <= |x| |v - v*| + |x - x*| |v*|; a component of x within 8 unit |x|, of v within 2 unit of `speed`,
+    // and two products and sums.
+    const UpperBound away = root2 * vertex.radius();
+    const UpperBound error = size * unknown + away * (speed + unknown) + 32 * a.unit() * size * speed;
+    const PreciseInterval product(sum, error.real(), a.bits());
+    const Real length = vertex.at().length(pair); // of x*: the pair touches
+    return product / PreciseInterval(length, (a.unit() * a.size(length)).real(), a.bits());
+}
+
+/// Part of the second derivative of a gap of 0 that its velocity makes: (|w|^2 - (n.w)^2) / D, w the relative velocity.
+template <int Dim>
+PreciseInterval turning(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Dim>& dofs,
+                        const BoundedVector<Real>& motion, const Contact& pair) {
+    const Arithmetic<Real>& a = vertex.at().arithmetic();
+    if (pair.kind != ContactKind::disk_disk) {
+        return PreciseInterval(a.bits());
+    }
+    const auto enclosed = [&](const Real& x, const UpperBound& radius) {
+        return PreciseInterval(x, (radius + 8 * a.unit() * a.size(x)).real(), a.bits());
+    };
+    const auto component = [&](int coordinate) {
+        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
+        return dof < 0 ? enclosed(a.number(0), 0) : enclosed(motion.value[static_cast<std::size_t>(dof)], motion.bound);
+    };
+    const auto x = vertex.at().separation(pair);
+    UpperBound size(0);
+    for (const Real& d : x) {
+        size += a.size(d);
+    }
+    PreciseInterval square(a.bits());
+    PreciseInterval along(a.bits());
+    for (int k = 0; k < Dim; ++k) {
+        const PreciseInterval w = component(Dim * pair.j + k) - component(Dim * pair.i + k);
+        const PreciseInterval d =
+            enclosed(x[static_cast<std::size_t>(k)], root2 * vertex.radius() + 8 * a.unit() * size);
+        square = square + w * w;
+        along = along + d * w;
+    }
+    const PreciseInterval length = enclosed(vertex.at().length(pair), 0);
+    return (square - along * along / (length * length)) / length;
+}
+
+} // namespace
+
+template <int Dim>
+PreciseFirstOrder<Dim>::PreciseFirstOrder(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                          const Factorisation& factorisation, const InverseBound& inverse,
+                                          const LadderOptions& options)
+    : packing_(packing), structure_(structure), factorisation_(factorisation), inverse_(inverse), options_(options) {}
+
+template <int Dim> PreciseFirstOrder<Dim>::~PreciseFirstOrder() = default;
+
+template <int Dim> typename PreciseFirstOrder<Dim>::Rung* PreciseFirstOrder<Dim>::rung(int number) {
+    const auto index = static_cast<std::size_t>(number);
+    while (rungs_.size() <= index) {
+        const int bits = options_.first_bits << rungs_.size();
+        const std::vector<Real> start = rungs_.empty() ? std::vector<Real>() : rungs_.back()->vertex.at().correction();
+        rungs_.push_back(std::make_unique<Rung>(bits, *this, start));
+    }
+    return rungs_[index]->system ? rungs_[index].get() : nullptr;
+}
+
+template <int Dim>
+Enclosure PreciseFirstOrder<Dim>::climb(const std::vector<Sum>& approach, const Sum& grown, const Contact& pair) {
+    Enclosure result{0, std::numeric_limits<double>::infinity()};
+    for (int number = 0; options_.first_bits << number <= options_.max_bits && !result.decided(); ++number) {
+        const Rung* at = rung(number);
+        if (at == nullptr) {
+            break;
+        }
+        const Arithmetic<Real>& a = at->vertex.at().arithmetic();
+        bool exact = true; // else the two are too far apart for these bits
+        const auto sum = [&](const Sum& two) {
+            Real total(a.bits());
+            exact = mpfr_add(total.get(), a.number(two[0]).get(), a.number(two[1]).get(), MPFR_RNDN) == 0 && exact;
+            return total;
+        };
+        std::vector<Real> right;
+        std::transform(approach.begin(), approach.end(), std::back_inserter(right), sum);
+        const PreciseInterval own(sum(grown), Real(), a.bits());
+        const BoundedVector<Real> motion = at->system->motion(right);
+        if (exact && !motion.value.empty()) {
+            result = (gap_rate(at->vertex, structure_.dofs(), motion, pair) - own).rounded();
+        }
+    }
+    return result;
+}
+
+template <int Dim>
+typename PreciseFirstOrder<Dim>::Sum PreciseFirstOrder<Dim>::grown(const std::vector<double>& rho,
+                                                                   const Contact& pair) {
+    switch (pair.kind) {
+    case ContactKind::held: return {0, 0};
+    case ContactKind::disk_disk: return {rho[static_cast<std::size_t>(pair.i)], rho[static_cast<std::size_t>(pair.j)]};
+    default: return {rho[static_cast<std::size_t>(pair.i)], 0};
+    }
+}
+
+template <int Dim> Enclosure PreciseFirstOrder<Dim>::rate(ContactId opened, int direction, const Contact& pair) {
+    std::vector<Sum> approach(structure_.contacts().size(), Sum{0, 0});
+    approach[opened.index()][0] = -direction;
+    return climb(approach, {0, 0}, pair);
+}
+
+template <int Dim> Enclosure PreciseFirstOrder<Dim>::bend(ContactId opened, int direction, const Contact& pair) {
+    const Rung* at = rung(0);
+    const Enclosure unknown{0, std::numeric_limits<double>::infinity()};
+    if (at == nullptr) {
+        return unknown;
+    }
+    const Arithmetic<Real>& a = at->vertex.at().arithmetic();
+    const auto& contacts = structure_.contacts();
+    std::vector<Real> approach(contacts.size(), a.number(0));
+    approach[opened.index()] = a.number(-direction);
+    const BoundedVector<Real> velocity = at->system->motion(approach);
+    if (velocity.value.empty()) {
+        return unknown;
+    }
+    // The gaps of the contacts stay as they are, that of `opened` grows at a constant rate: g.w + turning = 0.
+    std::vector<UpperBound> open;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const PreciseInterval t = turning(at->vertex, structure_.dofs(), velocity, contacts[l]);
+        approach[l] = t.low;
+        open.push_back(UpperBound::magnitude((t - PreciseInterval(t.low, Real(), a.bits())).high));
+    }
+    BoundedVector<Real> acceleration = at->system->motion(approach);
+    if (acceleration.value.empty()) {
+        return unknown;
+    }
+    constexpr double rounded_up = 1 + 0x1p-50;
+    acceleration.bound += norm_of_bounds(open) / at->vertex.sigma() * rounded_up;
+    return (gap_rate(at->vertex, structure_.dofs(), acceleration, pair) +
+            turning(at->vertex, structure_.dofs(), velocity, pair))
+        .rounded();
+}
+
+template <int Dim> Enclosure PreciseFirstOrder<Dim>::gap(const std::vector<double>& rho, const Contact& pair) {
+    std::vector<Sum> approach;
+    for (const Contact& c : structure_.contacts()) {
+        const Sum sum = grown(rho, c);
+        approach.push_back({-sum[0], -sum[1]});
+    }
+    return climb(approach, grown(rho, pair), pair);
+}
+
+template class PreciseFirstOrder<2>;
+
+} // namespace isostat

@@ -1,0 +1,120 @@
+// Runs under ties = "choose", re-checked from their records; a forged choice must be found.
+#include "support/forger.hpp"
+#include "support/mirror.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/checker/verify_run.hpp>
+#include <isostat/io/run_directory.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Plays one segment under `choose` into a folder; how it ends does not matter.
+void play(State<2> state, int direction, int equilibria, const fs::path& folder) {
+    RunHeader header;
+    header.program = "test";
+    header.settings = R"({"run":{"rule":"most_negative","ties":"choose"}})";
+    header.states_every = 1;
+    RunCounters counters;
+    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
+    Segment segment;
+    segment.direction = direction;
+    segment.equilibria = equilibria;
+    RunOptions options;
+    options.ties = TiePolicy::choose;
+    directory.begin_segment(0, segment, 0, 0);
+    (void)run_segment<2>(state, segment, 0, options, counters, directory);
+    directory.finish(RunStatus::completed, "");
+}
+
+/// One change in a file: what `verify` says of it.
+RunVerification altered(const fs::path& folder, const std::string& file, const std::string& from,
+                        const std::string& to) {
+    const std::string original = scratch::read(folder / file);
+    const std::string changed = scratch::replaced(original, from, to);
+    BOOST_REQUIRE(changed != original);
+    scratch::write(folder / file, changed);
+    forger::seal(folder);
+    RunVerification run = verify_run(folder);
+    scratch::write(folder / file, original);
+    forger::seal(folder);
+    return run;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    State<2> state = crafted::mirror_forces();
+    state.perturbation.emplace();
+    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
+    play(state, -1, 1, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST(run.choices_checked > 0);
+    const std::string events = scratch::read(folder / "events.jsonl");
+    const bool one = events.find("\"opened\":\"1-bottom\"") != std::string::npos;
+    const std::string chosen = one ? "1-bottom" : "2-bottom";
+    const std::string other = one ? "2-bottom" : "1-bottom";
+    const auto refuted = [&](const std::string& from, const std::string& to, const std::string& said) {
+        BOOST_TEST_CONTEXT(from << " -> " << to) {
+            const RunVerification forged = altered(folder, "events.jsonl", from, to);
+            BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
+            BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
+        }
+    };
+    const std::string loads = "\"choice\":\"infinitesimal loads\"";
+    refuted(loads, "\"choice\":\"names\"", one ? "tell which comes first" : "comes first");
+    refuted(loads, "\"choice\":\"dice\"", "dice");
+    // Terms that tell the two apart are no tie.
+    const std::size_t term = events.find("\"against_first_order\":[") + 23;
+    const std::string value = events.substr(term, events.find(',', term) - term);
+    refuted("\"against_first_order\":[" + value, "\"against_first_order\":[1e3", "");
+    // The other one of the two, in all of the record.
+    std::string swapped = events;
+    for (std::size_t at = 0; (at = swapped.find("-bottom\"", at)) != std::string::npos; at += 8) {
+        char& number = swapped[at - 1];
+        number = number == '1' ? '2' : number == '2' ? '1' : number;
+    }
+    scratch::write(folder / "events.jsonl", swapped);
+    forger::seal(folder);
+    const RunVerification forged = verify_run(folder);
+    BOOST_TEST((forged.verdict == Verdict::refuted));
+    BOOST_TEST(forged.wrong.find("infinitesimal loads take") != std::string::npos, forged.wrong);
+}
+
+BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::square(), +1, 3, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.equilibria > 0);
+    for (const std::string& open : run.undecided) {
+        BOOST_TEST_MESSAGE(open);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    State<2> state = crafted::mirror_gaps();
+    state.perturbation.emplace();
+    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
+    play(state, +1, 1, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST(run.choices_checked > 0);
+    const std::string header = scratch::read(folder / "run.json");
+    BOOST_TEST((altered(folder, "run.json", "choose", "perturb").verdict != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

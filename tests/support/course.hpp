@@ -1,0 +1,82 @@
+#pragma once
+// A run of one segment, kept: events, arcs, equilibria, states, and how it ended.
+
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+namespace crafted {
+
+using isostat::ArcRecord;
+using isostat::EquilibriumRecord;
+using isostat::RunCounters;
+using isostat::RunObserver;
+using isostat::RunOptions;
+using isostat::Segment;
+using isostat::SegmentOutcome;
+using isostat::State;
+using isostat::TieDecision;
+using isostat::TiePolicy;
+
+struct Course {
+    std::vector<std::string> events;
+    std::vector<EquilibriumRecord<2>> equilibria;
+    std::vector<State<2>> states;
+    std::vector<ArcRecord<2>> arcs;
+    SegmentOutcome outcome;
+    RunCounters counters;
+    [[nodiscard]] std::string end() const {
+        return outcome.completed ? "completed" : isostat::to_string(outcome.failure->kind);
+    }
+};
+
+class CourseRecorder : public RunObserver<2> {
+  public:
+    explicit CourseRecorder(Course& course) : course_(course) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        course_.events.push_back(fmt::format("{}:{}>{}", arc.equilibrium, isostat::to_string<2>(arc.opened),
+                                             isostat::to_string<2>(arc.closed)));
+        course_.arcs.push_back(arc);
+    }
+    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
+                        const std::vector<double>&) override {
+        course_.equilibria.push_back(record);
+        course_.states.push_back(state);
+    }
+
+  private:
+    Course& course_;
+};
+
+inline Course follow_load(State<2> state, int direction, int equilibria, TiePolicy ties, std::uint64_t seed = 1) {
+    Course course;
+    CourseRecorder recorder(course);
+    Segment segment;
+    segment.direction = direction;
+    segment.equilibria = equilibria;
+    RunOptions options;
+    options.ties = ties;
+    options.ties_seed = seed;
+    course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+    return course;
+}
+
+inline bool mentions(const Course& course, const std::string& word) {
+    return course.outcome.failure && course.outcome.failure->message().find(word) != std::string::npos;
+}
+
+inline bool settled_as(const Course& course, const std::string& what) {
+    for (const ArcRecord<2>& arc : course.arcs) {
+        for (const TieDecision& tie : arc.perturbed) {
+            if (tie.what == what) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+} // namespace crafted

@@ -1,0 +1,155 @@
+// Ties that first-order terms leave: chosen by the infinitesimal loads, then by the names (proofs/degenerate.md, C1).
+// Mirror images whose rho are mirror images too, so that nothing of first order in the radii tells them apart.
+#include "support/course.hpp"
+#include "support/mirror.hpp"
+
+#include <isostat/core/threads.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+/// The same rho for all disks.
+State<2> alike(State<2> state) {
+    state.perturbation.emplace();
+    state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
+    return state;
+}
+
+/// The infinitesimal loads of the mirror image, in which disks 1 and 2 change places.
+State<2> mirrored(State<2> state) {
+    std::vector<double>& g = state.load.infinitesimal;
+    std::swap(g[2], g[4]);
+    std::swap(g[3], g[5]);
+    for (std::size_t k = 0; k < 6; k += 2) {
+        g[k] = -g[k];
+    }
+    return state;
+}
+
+/// Loads that are their own mirror image.
+State<2> symmetric(State<2> state) {
+    std::vector<double>& g = state.load.infinitesimal;
+    g[0] = 0;
+    g[4] = -g[2];
+    g[5] = g[3];
+    return state;
+}
+
+std::vector<TieDecision> choices(const Course& course) {
+    std::vector<TieDecision> list;
+    for (const ArcRecord<2>& arc : course.arcs) {
+        for (const TieDecision& tie : arc.perturbed) {
+            if (tie.choice != TieChoice::none) {
+                list.push_back(tie);
+            }
+        }
+    }
+    return list;
+}
+
+std::string why(const Course& course) {
+    return course.outcome.failure ? course.outcome.failure->message() : "completed";
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_and_recorded) {
+    const State<2> state = alike(mirror_forces());
+    const Course open = follow_load(state, -1, 1, TiePolicy::perturb);
+    BOOST_TEST(open.end() == "undecided");
+    BOOST_TEST(mentions(open, "tied at first order too"));
+
+    std::vector<Contact> opened;
+    for (const State<2>& start : {state, mirrored(state)}) {
+        const Course course = follow_load(start, -1, 1, TiePolicy::choose);
+        BOOST_TEST(course.end() == "completed", why(course));
+        const auto found = choices(course);
+        BOOST_TEST_REQUIRE(found.size() >= 1U);
+        BOOST_TEST(found[0].what == "limit");
+        BOOST_TEST((found[0].choice == TieChoice::loads));
+        BOOST_TEST(found[0].exponent < -1000); // how the tie was proved
+        BOOST_TEST((found[0].chosen == course.arcs[0].opened));
+        opened.push_back(course.arcs[0].opened);
+        BOOST_TEST(course.counters.tally.choices == static_cast<long>(found.size()));
+    }
+    // The mirror image of the loads chooses the mirror image.
+    BOOST_TEST((opened[0] == bottom(1)) == (opened[1] == bottom(2)));
+    BOOST_TEST((opened[0] == bottom(2)) == (opened[1] == bottom(1)));
+
+    const Course by_name = follow_load(symmetric(state), -1, 1, TiePolicy::choose);
+    const auto found = choices(by_name);
+    BOOST_TEST_REQUIRE(found.size() >= 1U, why(by_name));
+    BOOST_TEST((found[0].choice == TieChoice::names));
+    BOOST_TEST((found[0].chosen == bottom(1)));
+    BOOST_TEST((found[0].against == bottom(2)));
+}
+
+BOOST_AUTO_TEST_CASE(of_gaps_that_close_together_one_enters_and_the_other_is_watched) {
+    const State<2> state = alike(mirror_gaps());
+    const Course open = follow_load(state, +1, 1, TiePolicy::perturb);
+    BOOST_TEST(open.end() == "undecided");
+    const Course course = follow_load(state, +1, 1, TiePolicy::choose);
+    BOOST_TEST(course.end() == "completed", why(course));
+    BOOST_TEST_REQUIRE(course.arcs.size() == 1U);
+    const bool first = course.arcs[0].closed == bottom(1);
+    BOOST_TEST((first || course.arcs[0].closed == bottom(2)));
+    const auto found = choices(course);
+    BOOST_TEST_REQUIRE(found.size() == 1U);
+    BOOST_TEST(found[0].what == "gap");
+    BOOST_TEST((found[0].choice == TieChoice::zero));
+    BOOST_TEST((found[0].against == bottom(first ? 2 : 1)));
+    // The configuration is the mirror image of itself, whichever entered.
+    const std::vector<double>& q = course.states.back().packing.q;
+    BOOST_TEST(std::abs(q[3] - q[5]) < 1e-12);
+    BOOST_TEST(std::abs(q[2] + q[4] - 20) < 1e-12);
+    BOOST_TEST_REQUIRE(course.states.back().perturbation->open.size() == 1U);
+}
+
+BOOST_AUTO_TEST_CASE(where_first_order_tells_nothing_is_chosen) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        for (const auto& [state, direction] : {std::pair{mirror_forces(), -1}, std::pair{mirror_gaps(), +1}}) {
+            const Course perturb = follow_load(state, direction, 1, TiePolicy::perturb, seed);
+            const Course choose = follow_load(state, direction, 1, TiePolicy::choose, seed);
+            BOOST_TEST(choose.end() == "completed");
+            BOOST_TEST(choose.events == perturb.events, boost::test_tools::per_element());
+            BOOST_TEST(choose.states.back().packing.q == perturb.states.back().packing.q,
+                       boost::test_tools::per_element());
+            BOOST_TEST(choices(choose).empty());
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(choices_do_not_depend_on_the_threads) {
+    const int before = threads();
+    std::vector<Course> courses;
+    for (const int count : {1, 2, 3}) {
+        set_threads(count);
+        courses.push_back(follow_load(alike(mirror_forces()), -1, 2, TiePolicy::choose));
+    }
+    set_threads(before);
+    for (const Course& course : courses) {
+        BOOST_TEST(course.events == courses[0].events, boost::test_tools::per_element());
+        BOOST_TEST(course.states.back().packing.q == courses[0].states.back().packing.q,
+                   boost::test_tools::per_element());
+    }
+}
+
+/// Four equal disks in the box, in a square: rows and columns carry the load, whatever it is. Pairs that touch besides
+/// the list part by their second derivative, as the motions are at right angles to them.
+BOOST_AUTO_TEST_CASE(a_square_of_disks_supports_every_load_and_pairs_that_only_bend_away_are_followed) {
+    const Course open = follow_load(square(), +1, 3, TiePolicy::perturb);
+    BOOST_TEST(open.end() == "undecided");
+    const Course course = follow_load(square(), +1, 3, TiePolicy::choose);
+    BOOST_TEST(course.end() == "no limit", why(course));
+    BOOST_TEST_REQUIRE(!course.equilibria.empty());
+    const std::vector<double>& length = course.equilibria.back().length;
+    BOOST_TEST(std::abs(length[1] - 4) < 1e-12); // the columns are straight still
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -45,10 +45,60 @@ template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& sta
 template <int Dim> double largest_length(const Packing<Dim>& packing) {
     double largest = packing.max_radius();
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        const bool exists = k < Dim * packing.radius.size() || packing.walls.upper[k % Dim] != WallKind::absent;
+        const bool exists =
+            k < Dim * packing.radius.size() || packing.cell.any() || packing.walls.upper[k % Dim] != WallKind::absent;
         largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
     }
     return largest;
+}
+
+/// A cell on the grid, where every r is exact, with `moved` bound of what that changes of a coordinate. Nothing where a
+/// part of the cell that cannot move would have to, or an image is farther than the grid allows for.
+template <int Dim>
+std::optional<Packing<Dim>> on_grid(Packing<Dim> packing, const std::vector<Contact>& contacts, double& moved) {
+    constexpr int farthest = 3;
+    const Packing<Dim> before = packing;
+    moved = snap_to_grid(packing);
+    const DofMap<Dim> dofs(packing);
+    bool stays = true;
+    for (std::size_t k = packing.length_at(0); k < packing.q.size(); ++k) {
+        stays = stays && (dofs.dof_of(k) >= 0 || packing.q[k] == before.q[k]);
+    }
+    const auto far = [](int m) { return std::abs(m) > farthest; };
+    for (const Contact& contact : contacts) {
+        stays = stays && std::none_of(contact.image.m.begin(), contact.image.m.end(), far);
+    }
+    return stays ? std::optional(std::move(packing)) : std::nullopt;
+}
+
+/// The smallest stretch of a lattice vector, from below: |A m| >= that times |m|.
+double least_stretch(const Packing<2>& packing) {
+    const auto period = [&](std::size_t a) { return packing.cell.periodic[a] ? packing.lattice(a, a) : infinity; };
+    if (!packing.cell.all()) {
+        return std::min(period(0), period(1));
+    }
+    const double size = std::hypot(period(0), packing.lattice(0, 1), period(1));
+    return period(0) / size * period(1) * (1 - 1e-12); // determinant / norm
+}
+
+/// The gap of a pair that is not among the candidates, at a distance from where they were found, is at least their
+/// reach minus this times the distance (proofs/cells.md, C4; V4 (d) in a box).
+template <int Dim> double far_weight(const Packing<Dim>& packing, double reach) {
+    constexpr double root2 = 1.4143;
+    if (!packing.cell.any()) {
+        return root2;
+    }
+    double extent = 0; // of the centres
+    for (std::size_t a = 0; a < Dim; ++a) {
+        double low = infinity;
+        double high = -infinity;
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            low = std::min(low, packing.q[Dim * i + a]);
+            high = std::max(high, packing.q[Dim * i + a]);
+        }
+        extent = std::hypot(extent, high - low);
+    }
+    return root2 + (2 * packing.max_radius() + reach + extent) / least_stretch(packing) * (1 + 1e-12);
 }
 
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
@@ -57,7 +107,7 @@ template <int Dim> class Prover {
     Prover(const State<Dim>& state, const CertifyOptions& options) : state_(state), options_(options) {}
 
     Certification run() {
-        if (prove_counting() && prove_vertex()) {
+        if (prove_counting() && put_on_grid() && prove_vertex()) {
             const bool forces = prove_forces();
             const bool gaps = prove_gaps();
             if (forces) {
@@ -96,6 +146,7 @@ template <int Dim> class Prover {
     std::string name(std::size_t l) const { return to_string<Dim>(state_.contacts[l]); }
 
     bool prove_counting();
+    bool put_on_grid();
     bool prove_vertex();
     bool prove_forces();
     bool prove_gaps();
@@ -110,7 +161,8 @@ template <int Dim> class Prover {
     const State<Dim>& state_;
     CertifyOptions options_;
     Certification result_;
-    std::unique_ptr<Centre<Dim>> stored_; ///< at the stored coordinates
+    std::unique_ptr<Centre<Dim>> stored_; ///< at the stored coordinates; in a cell, these on the grid
+    double rounded_away_ = 0;             ///< what that changed of a gap, at most
     std::unique_ptr<Centre<Dim>> moved_;  ///< at the end of a Newton iteration, when that is wanted
     const Centre<Dim>* centre_ = nullptr; ///< one of them
     std::unique_ptr<Subject<Dim>> subject_;
@@ -197,9 +249,33 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
     return false;
 }
 
+/// The bounds of the true vertex ask for exact differences: in a cell, for coordinates on the grid.
+template <int Dim> bool Prover<Dim>::put_on_grid() {
+    if (!state_.packing.cell.any()) {
+        return true;
+    }
+    double moved = 0;
+    auto snapped = on_grid(state_.packing, state_.contacts, moved);
+    if (!snapped) {
+        absent_from_vertex_on(
+            "a period or tilt that cannot move is not on the grid of the packing, or an image is more "
+            "than 3 periods away");
+        return false;
+    }
+    auto made = Centre<Dim>::make(std::move(*snapped), state_.contacts);
+    if (!made.ok()) {
+        absent_from_vertex_on("where the coordinates are on the grid the contact matrix is not proved regular");
+        return false;
+    }
+    stored_ = std::move(made.value());
+    constexpr double weight = 2 + 3 * (Dim + 1); // |delta gap| for offsets up to 3, component by component
+    rounded_away_ = Dim * weight * moved;
+    return true;
+}
+
 template <int Dim> bool Prover<Dim>::prove_vertex() {
     centre_ = stored_.get();
-    result_.stored_gap = centre_->largest_gap;
+    result_.stored_gap = centre_->largest_gap + rounded_away_;
     subject_ = std::make_unique<Subject<Dim>>(state_, stored_->structure);
     if (centre_->inverse.verdict != Verdict::proved) {
         absent_from_vertex_on("no bound of the inverse of the contact matrix was found");
@@ -208,6 +284,13 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
     // Where the gaps are visibly open, the stored place says less than the end of a Newton iteration. Either will do.
     constexpr double visible = 1e-10;
     moved_ = stored_->relative_gap < visible ? nullptr : Centre<Dim>::downhill(*stored_);
+    if (moved_ && state_.packing.cell.any()) {
+        double moved = 0;
+        auto snapped = on_grid(moved_->packing, state_.contacts, moved);
+        auto made = snapped ? Centre<Dim>::make(std::move(*snapped), state_.contacts)
+                            : Failure{FailureKind::undecided, "off the grid"};
+        moved_ = made.ok() ? std::move(made.value()) : nullptr;
+    }
     centre_ = moved_ ? moved_.get() : stored_.get();
     bool exists = exists_on_some_rung();
     if (!exists && moved_) {
@@ -297,10 +380,12 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
         return false;
     }
     const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
+    const Contact none = state_.packing.cell.any() ? Contact(ContactKind::disk_disk, -1, -1) : Contact();
     std::string doubtful;
     do {
-        // Pairs that are not listed: their gap changes by at most sqrt(2) times the distance to the true vertex.
-        GapsClaim claim{(pairs.reach - 1.4143 * vertex_->distance()) * (1 - 0x1p-50), {}, vertex_->rung()};
+        // Pairs that are not listed: their gap changes by at most so much times the distance to the true vertex.
+        const double weight = far_weight(centre_->packing, pairs.reach);
+        GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), none, vertex_->rung()};
         Interval nearest{infinity, infinity};
         std::vector<Interval> gaps;
         doubtful.clear();

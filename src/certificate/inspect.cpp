@@ -129,6 +129,10 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     if (counting.hyperstaticity > 0) {
         return Failure{FailureKind::not_isostatic, numbers(counting) + ": forces are not determined by the geometry"};
     }
+    if (state.packing.cell.any() && (counting.mechanisms > 0 || has_held(state))) {
+        return Failure{FailureKind::not_isostatic,
+                       numbers(counting) + ": mechanisms in a periodic cell are counted, not followed yet"};
+    }
     if (counting.mechanisms > 0 || has_held(state)) {
         auto found = inspect_mechanism(state, counting.mechanisms > 0 ? count_contacts(state.packing, state.contacts)
                                                                       : counting);

@@ -50,6 +50,16 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
     [[nodiscard]] T number(double x) const { return arithmetic().number(x); }
     [[nodiscard]] double unit() const { return above(arithmetic().unit()); }
     void claim_radii();
+    /// How far the pinned grain of a cell is from where it is stored: it was put on the grid.
+    [[nodiscard]] double pin_moved(const std::vector<double>& stored) const {
+        const Cell<Dim>& cell = centre_.packing.cell;
+        double most = 0;
+        for (std::size_t a = 0; a < Dim && cell.any(); ++a) {
+            const std::size_t k = Dim * static_cast<std::size_t>(cell.pin) + a;
+            most = cell.periodic[a] ? std::max(most, std::abs(centre_.packing.q[k] - stored[k]) * (1 + 2 * u)) : most;
+        }
+        return most;
+    }
     Solution solve(const std::vector<T>& load, double load_error) const;
     std::vector<T> external_force(bool loaded_wall_only) const;
     const Solution& present();
@@ -84,6 +94,11 @@ template <int Dim, class T> void TrueVertexAt<Dim, T>::claim_radii() {
         moved.push_back(std::abs(centre_.packing.q[c] - stored[c]) * (1 + 2 * u) +
                         std::abs(A::rounded(vertex_.at().correction()[c])) * (1 + 2 * u));
     }
+    if (const double shift = pin_moved(stored); shift > 0) { // the vertex is shifted back as a whole
+        for (double& m : moved) {
+            m += shift;
+        }
+    }
     const double largest = *std::max_element(moved.begin(), moved.end());
     const double away = norm_of_bounds(moved);
     const double radius = above(vertex_.radius());
@@ -112,10 +127,9 @@ template <int Dim, class T> Interval TrueVertexAt<Dim, T>::gap(const Contact& co
     } else {
         value = A::rounded(at.wall_gap(contact));
     }
-    constexpr double root2 = 1.4142135623731;
     const double radius = above(vertex_.radius());
-    return around(number(value),
-                  root2 * radius * (1 + 4 * u) + 8 * unit() * (std::abs(value) + size) + 16 * u * std::abs(value));
+    return around(number(value), separation_weight(contact) * radius * (1 + 4 * u) +
+                                     8 * unit() * (std::abs(value) + size) + 16 * u * std::abs(value));
 }
 
 template <int Dim, class T>

@@ -96,13 +96,15 @@ int verify(const VerifyArguments& arguments);
 struct ForeignArguments {
     std::string format, radius, diameter, walls, box, columns;
     std::string frame = "last";
-    bool not_periodic = false;
+    bool periodic = false, not_periodic = false;
+    bool cells = false; ///< the command takes periodic cells
 };
 
 struct PlateauArguments {
     Common common;
     std::string file, thresholds, csv;
     int rows = 40;
+    std::string strain = "isotropic"; ///< or "fixed", "diagonal", "full": what a periodic cell may do
     ForeignArguments foreign;
 };
 /// Counts of a packing made elsewhere against the gap threshold. 0: isostatic somewhere, proved; 1: nowhere; 2:

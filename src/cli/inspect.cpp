@@ -1,3 +1,4 @@
+#include "cli/cell_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/true_vertex_text.hpp"
@@ -19,10 +20,16 @@ namespace {
 
 void print_counting(const State<2>& state, const Counting& c) {
     fmt::print("disks                    {}\n", state.packing.disk_count());
-    fmt::print("box                      {} x {}, solid fraction {:.6f}\n", state.packing.length(0),
-               state.packing.length(1), state.packing.solid_fraction());
-    fmt::print("load                     sigma = ({}, {}), {}\n", state.load.stress[0], state.load.stress[1],
-               state.load.kind == LoadKind::nominal ? "nominal (constant wall forces)" : "true stresses");
+    const bool periodic = state.packing.cell.any();
+    fmt::print("{:<25}{}, solid fraction {:.6f}\n", periodic ? "cell" : "box",
+               periodic ? cell_words(state.packing)
+                        : fmt::format("{} x {}", state.packing.length(0), state.packing.length(1)),
+               state.packing.solid_fraction());
+    fmt::print("load                     sigma = ({}, {}){}, {}\n", state.load.stress[0], state.load.stress[1],
+               state.load.shear[0] != 0 ? fmt::format(", shear {}", state.load.shear[0]) : "",
+               state.load.kind != LoadKind::nominal ? "true stresses"
+               : periodic                           ? "nominal (constant forces on the periods)"
+                                                    : "nominal (constant wall forces)");
     fmt::print("degrees of freedom N_f   {}\n", c.dof_count);
     fmt::print("contacts N               {}\n", c.contact_count);
     fmt::print("rank, stored coordinates {} ({})\n", c.rank,
@@ -69,9 +76,11 @@ void print_inspection(const Inspection<2>& inspection) {
     }
     if (inspection.truth.claims.gaps) {
         fmt::print("smallest gap             {}\n",
-                   std::isfinite(r.min_gap) ? fmt::format("at least {} (nearest: {})", rounded_down(r.min_gap, 6),
-                                                          to_string<2>(r.min_gap_contact))
-                                            : "there is no other pair");
+                   !std::isfinite(r.min_gap)
+                       ? "there is no other pair"
+                       : fmt::format("at least {} ({})", rounded_down(r.min_gap, 6),
+                                     r.min_gap_contact.i < 0 ? "no other pair is near"
+                                                             : "nearest: " + to_string<2>(r.min_gap_contact)));
     }
     if (inspection.truth.claims.vertex) {
         fmt::print("largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
@@ -139,8 +148,9 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
         object["sigma_min_bound"] = number(r.sigma_min_bound);
     }
     object["min_gap"] = inspection.truth.claims.gaps ? number(r.min_gap) : Json();
-    object["min_gap_contact"] =
-        inspection.truth.claims.gaps && std::isfinite(r.min_gap) ? Json(to_string<2>(r.min_gap_contact)) : Json();
+    object["min_gap_contact"] = inspection.truth.claims.gaps && std::isfinite(r.min_gap) && r.min_gap_contact.i >= 0
+                                    ? Json(to_string<2>(r.min_gap_contact))
+                                    : Json();
     object["verdict"] = to_string(r.verdict);
     object["stable"] = to_string(inspection.stable);
     object["remark"] = inspection.remark;
@@ -191,7 +201,7 @@ int inspect(const InspectArguments& arguments) {
         }
         return inspect_packing(arguments);
     }
-    StateFile<2> file = read_state<2>(arguments.file);
+    StateFile<2> file = read_any_state<2>(arguments.file);
     State<2>& state = file.state;
     if (arguments.at) {
         state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = *arguments.at;
@@ -199,6 +209,7 @@ int inspect(const InspectArguments& arguments) {
     }
     const Result<Inspection<2>> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
+    const auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
         Json object = counting_json(arguments.file, state, truth.counting);
@@ -210,6 +221,9 @@ int inspect(const InspectArguments& arguments) {
         }
         object["true_configuration"] = true_vertex_json(truth);
         object["forces"] = forces_json(state, truth);
+        if (cell) {
+            object["cell"] = cell_json(state.packing, *cell);
+        }
         if (const auto forces = compared_forces(file, truth)) {
             object["forces_in_file"] = {{"difference", number(forces->difference)},
                                         {"contact", to_string<2>(forces->where)}};
@@ -224,6 +238,9 @@ int inspect(const InspectArguments& arguments) {
                        result.failure().message());
         }
         print_true_vertex(truth);
+        if (cell) {
+            print_cell(*cell);
+        }
         if (const auto forces = compared_forces(file, truth)) {
             fmt::print("forces in the file       differ from these by at most {}, in {}\n",
                        rounded_up(forces->difference, 2), to_string<2>(forces->where));

@@ -544,7 +544,16 @@ struct Program {
         command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
             ->check(CLI::NonNegativeNumber);
         command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
+        command
+            .add_option("--cell", a.strain,
+                        "what a periodic cell may do besides its disks: fixed, isotropic (shape kept, under a "
+                        "pressure), diagonal, full (default: isotropic)")
+            ->check(CLI::IsMember({"fixed", "isotropic", "diagonal", "full"}));
         add_foreign(command, a.foreign);
+        command
+            .add_flag("--periodic", a.foreign.periodic,
+                      "boundaries that the file leaves open are periodic (LAMMPS data files say nothing of them)")
+            ->excludes("--not-periodic");
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;

@@ -1,3 +1,4 @@
+#include "cli/cell_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
@@ -18,6 +19,35 @@ namespace {
 using crafted::PlateauCounts;
 using crafted::PlateauRange;
 using crafted::PlateauStep;
+
+Strain strain_of(const std::string& name) {
+    return name == "fixed"      ? Strain::none
+           : name == "diagonal" ? Strain::diagonal
+           : name == "full"     ? Strain::full
+                                : Strain::isotropic;
+}
+
+/// The backbone where it is isostatic first, or at the largest threshold.
+std::vector<Contact> shown_backbone(const ReadPacking& file, const crafted::Plateau& plateau, double& threshold) {
+    threshold = plateau.ranges.empty() ? threshold : plateau.ranges.front().first;
+    return crafted::backbone_at(file.packing, threshold);
+}
+
+StrainCounts strains_of(const ReadPacking& file, const std::vector<Contact>& backbone) {
+    const std::vector<int> rattlers = untouched(file.packing.disk_count(), backbone);
+    return count_strains(without_disks(file.packing, rattlers), backbone);
+}
+
+void print_strains(const ReadPacking& file, const crafted::Plateau& plateau, double threshold) {
+    const std::vector<Contact> backbone = shown_backbone(file, plateau, threshold);
+    const int disks =
+        file.packing.disk_count() - static_cast<int>(untouched(file.packing.disk_count(), backbone).size());
+    fmt::print("\nbackbone at the threshold {:.17g}, for every way to strain the cell\n", threshold);
+    print_counts(fmt::format("{} disks", disks), strains_of(file, backbone));
+    fmt::print("contacts needed          {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting)\n",
+               contacts_for_bulk_modulus<2>(disks), contacts_for_all_moduli<2>(disks));
+    fmt::print("jammed                   undecided: that asks for forces; counts alone do not tell\n");
+}
 
 std::string word(Verdict verdict) {
     return std::string(to_string(verdict));
@@ -83,6 +113,10 @@ void print_text(const PlateauArguments& a, const ReadPacking& file, const crafte
                plateau.no_self_stress_open
                    ? fmt::format("up to the largest threshold {:.17g}, proved", plateau.no_self_stress_below)
                    : fmt::format("below {:.17g}, proved", plateau.no_self_stress_below));
+    if (file.packing.cell.all()) {
+        fmt::print("cell                        {}, as --cell says: its strains are among the N_f above\n", a.strain);
+        print_strains(file, plateau, thresholds[1]);
+    }
 }
 
 Json counts_json(const PlateauCounts& c) {
@@ -138,6 +172,13 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
                          {"all", counts_json(s.all)}});
     }
     out["steps"] = std::move(steps);
+    if (file.packing.cell.all()) {
+        double threshold = thresholds[1];
+        const std::vector<Contact> backbone = shown_backbone(file, plateau, threshold);
+        out["cell"] = {{"strain", a.strain},
+                       {"threshold", number(threshold)},
+                       {"backbone", counts_json(strains_of(file, backbone))}};
+    }
     return out;
 }
 
@@ -162,13 +203,17 @@ int plateau(const PlateauArguments& a) {
     if (!a.thresholds.empty()) {
         thresholds = parse_range(a.thresholds, "--thresholds");
     }
-    const ReadPacking file = read_any_packing(a.file, a.foreign);
+    ForeignArguments foreign = a.foreign;
+    foreign.cells = true;
+    const ReadPacking file = read_any_packing(a.file, foreign);
+    const Strain strain = strain_of(a.strain);
     if (a.thresholds.empty()) {
         constexpr double share = 0.1; // of the smallest radius
         thresholds[1] = share * file.packing.min_radius();
-        thresholds[0] = std::min(crafted::plateau(file.packing, {thresholds[1]}).deepest_overlap, thresholds[1]);
+        thresholds[0] =
+            std::min(crafted::plateau(file.packing, {thresholds[1]}, strain).deepest_overlap, thresholds[1]);
     }
-    const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows);
+    const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain);
     if (!a.csv.empty()) {
         write_atomically(a.csv, to_csv(result));
     }

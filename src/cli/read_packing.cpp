@@ -86,6 +86,8 @@ ForeignOptions options_of(const ForeignArguments& a) {
         out.columns = split(a.columns, ',');
     }
     out.not_periodic = a.not_periodic;
+    out.periodic = a.periodic;
+    out.cells = a.cells;
     return out;
 }
 
@@ -115,10 +117,10 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
                 std::move(foreign.ids)};
     }
     if (options.size || options.box || !arguments.walls.empty() || !options.columns.empty() || options.frame ||
-        options.not_periodic) {
+        options.not_periodic || options.periodic) {
         throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
                                                   "expected none of --radius, --diameter, --walls, --box, --frame, "
-                                                  "--columns, --not-periodic",
+                                                  "--columns, --periodic, --not-periodic",
                                                   file, format));
     }
     if (format == "packing") {
@@ -127,8 +129,9 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;
     }
-    ReadPacking out{format == "state" ? parse_state<2>(text, file).state.packing
-                                      : parse_vertex_text(text, file).packing,
+    ReadPacking out{format == "state"
+                        ? (arguments.cells ? parse_any_state<2>(text, file) : parse_state<2>(text, file)).state.packing
+                        : parse_vertex_text(text, file).packing,
                     format,
                     {},
                     {}};

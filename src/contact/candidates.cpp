@@ -30,6 +30,19 @@ template <int Dim, class Visit> void for_each_wall_contact(const Packing<Dim>& p
     }
 }
 
+/// Whether A m can change.
+template <int Dim> bool moves_with_cell(const Packing<Dim>& packing, const Image& image) {
+    const Cell<Dim>& cell = packing.cell;
+    bool moves = false;
+    for (std::size_t b = 0; b < Dim; ++b) {
+        moves = moves || (image.m[b] != 0 && cell.period_moves[b]);
+        for (std::size_t a = 0; a < b; ++a) {
+            moves = moves || (image.m[b] != 0 && cell.tilt_moves[cell.tilt(a, b)]);
+        }
+    }
+    return moves;
+}
+
 /// Bound on the rounding of a wall gap, from the lengths that enter.
 template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Contact& contact) {
     double lengths = 0;
@@ -42,6 +55,9 @@ template <int Dim> double wall_rounding(const Packing<Dim>& packing, const Conta
 } // namespace
 
 template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pair) {
+    if (packing.cell.any() && pair.kind == ContactKind::disk_disk) { // no disk is fixed there
+        return pair.i != pair.j || moves_with_cell(packing, pair.image);
+    }
     if (!packing.is_fixed(DiskId(pair.i))) {
         return true;
     }
@@ -61,7 +77,7 @@ template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& pack
             found = pair;
         }
     };
-    if (std::any_of(packing.fixed.begin(), packing.fixed.end(), [](unsigned char f) { return f != 0; })) {
+    if (packing.cell.any() || std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
         for (const Contact& pair :
              near_pairs(packing, 0.5 * packing.min_radius()).pairs) { // any positive reach will do
             look(pair);
@@ -72,7 +88,7 @@ template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& pack
 }
 
 template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, double radius) const {
-    if (reference.size() != packing.q.size()) {
+    if (reference.size() != packing.q.size() || packing.cell.any()) { // displacements grow with the cell: not yet
         return false;
     }
     // 1e-14 covers the rounding of the differences and of the norm; a NaN gives false.
@@ -113,7 +129,7 @@ CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
     NearPairs<Dim> near = near_pairs(packing, list.reach, from);
     list.contacts = std::move(near.pairs);
     list.triangulation = std::move(near.triangulation);
-    if (!packing.fixed.empty()) {
+    if (!packing.fixed.empty() || packing.cell.any()) {
         std::erase_if(list.contacts, [&](const Contact& contact) { return !can_move(packing, contact); });
     }
     const std::size_t pairs = list.contacts.size();
@@ -150,7 +166,8 @@ Admissibility certify_admissible(const Packing<Dim>& packing, double allowance, 
         }
     };
     // Any positive reach finds every overlapping pair.
-    if (known != nullptr && known->reach > 0 && packing.fixed.empty() && known->reference == packing.q) {
+    if (known != nullptr && known->reach > 0 && packing.fixed.empty() && !packing.cell.any() &&
+        known->reference == packing.q) {
         for (const Contact& contact : known->contacts) {
             if (contact.kind == ContactKind::disk_disk) {
                 look(contact);

@@ -24,6 +24,15 @@ template <int Dim> double plain_norm(const std::array<double, Dim>& d) {
     return std::sqrt(square);
 }
 
+/// "(1,-1)", or nothing.
+template <int Dim> std::string image_text(const Image& image) {
+    std::string text;
+    for (std::size_t a = 0; a < Dim && !image.is_here(); ++a) {
+        text += fmt::format("{}{}", a == 0 ? "(" : ",", static_cast<int>(image.m[a]));
+    }
+    return text.empty() ? text : text + ")";
+}
+
 /// No square of a component that matters under- or overflows.
 bool in_range(double norm) {
     return norm > 0x1p-450 && norm < 0x1p500;
@@ -55,10 +64,22 @@ template <int Dim> double norm(std::array<double, Dim> d) {
 
 } // namespace
 
+template <int Dim> std::array<double, Dim> direction(std::array<double, Dim> d) {
+    double length = plain_norm<Dim>(d);
+    if (!in_range(length)) {
+        normalise<Dim>(d); // squares under- or overflow
+        length = plain_norm<Dim>(d);
+    }
+    for (double& component : d) {
+        component /= length;
+    }
+    return d;
+}
+
 template <int Dim> std::string to_string(const Contact& contact) {
     const auto axis = static_cast<std::size_t>(contact.kind == ContactKind::disk_disk ? 0 : contact.j);
     switch (contact.kind) {
-    case ContactKind::disk_disk: return fmt::format("{}-{}", contact.i, contact.j);
+    case ContactKind::disk_disk: return fmt::format("{}-{}{}", contact.i, contact.j, image_text<Dim>(contact.image));
     case ContactKind::lower_wall: return fmt::format("{}-{}", contact.i, lower_name[axis]);
     case ContactKind::upper_wall: return fmt::format("{}-{}", contact.i, upper_name[axis]);
     case ContactKind::held:
@@ -84,22 +105,14 @@ template <int Dim> GapGradient<Dim> gap_gradient(const Packing<Dim>& packing, co
     std::array<double, Dim> normal; // but for the sign; of a wall 1
     normal.fill(1);
     if (contact.kind == ContactKind::disk_disk) {
-        normal = separation<Dim>(packing.q, contact);
-        double length = plain_norm<Dim>(normal);
-        if (!in_range(length)) {
-            normalise<Dim>(normal); // squares under- or overflow
-            length = plain_norm<Dim>(normal);
-        }
-        for (double& component : normal) {
-            component /= length;
-        }
+        normal = direction<Dim>(separation<Dim>(packing.q, contact));
     }
     GapGradient<Dim> g;
     Separation<Dim>(contact, packing.disk_count())
-        .for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {
+        .for_each_coordinate([&](std::size_t coordinate, std::size_t a, int multiple) {
             const auto entry = static_cast<std::size_t>(g.count++);
             g.coordinate[entry] = static_cast<int>(coordinate);
-            g.value[entry] = sign * normal[a];
+            g.value[entry] = multiple * normal[a];
         });
     return g;
 }
@@ -120,6 +133,7 @@ template <int Dim> double gap_curvature(const Packing<Dim>& packing, const Conta
     return (square - speed * speed) / length;
 }
 
+template std::array<double, 2> direction<2>(std::array<double, 2>);
 template std::string to_string<2>(const Contact&);
 template double gap<2>(const Packing<2>&, const Contact&);
 template GapGradient<2> gap_gradient<2>(const Packing<2>&, const Contact&);

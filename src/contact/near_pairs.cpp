@@ -1,5 +1,6 @@
 #include "contact/near_pairs.hpp"
 
+#include "contact/images.hpp"
 #include "contact/separation.hpp"
 
 #include <isostat/contact/candidates.hpp>
@@ -20,6 +21,7 @@ constexpr double u = 0x1p-53;
 // of their weights have exactly the power diagram of the rounded weights; an edge may overlap by half of what that
 // shift allows.
 constexpr double edge_overlap = 0.0005;    // times R_min^2 (1/R_i + 1/R_j)
+constexpr double largest_reach = 0.825;    // times R_min; T6 allows 0.828: room for the rounding of images
 constexpr double largest_ratio = 1e5;      // beyond it the rounding of R_max^2 is not small against the shift
 constexpr double largest_length = 1e100;   // squares neither overflow
 constexpr double smallest_length = 1e-100; // nor underflow
@@ -45,13 +47,29 @@ class Gaps {
         const auto [dx, dy] = separation<2>(packing_.q, pair);
         const double distance = plain_ ? std::sqrt(dx * dx + dy * dy) : std::hypot(dx, dy); // slow; error below 1 ulp
         const double radii = touching_distance(packing_.radius, pair);
-        return {distance - radii, 0x1p-50 * (distance + radii)};
+        return {distance - radii, 0x1p-50 * (distance + radii + lengths_of_image(packing_, pair))};
     }
 
   private:
     const Packing<2>& packing_;
     bool plain_;
 };
+
+/// Pairs of images, by the cell.
+std::vector<Contact> near_pairs_in_cell(const Packing<2>& packing, double reach) {
+    const Images<2> images = images_near_cell(packing, reach);
+    const Gaps gaps(packing);
+    std::vector<Contact> pairs;
+    for (const Contact& pair : near_pairs(images.packing, reach + images.rounding).pairs) {
+        const Contact contact = images.contact(pair.i, pair.j);
+        if (gaps.of(contact).may_be_below(reach)) {
+            pairs.push_back(contact);
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
+}
 
 // Buckets by the first disk, each a few pairs long.
 void sort_pairs(std::vector<Contact>& pairs, std::size_t disk_count) {
@@ -135,7 +153,10 @@ template <int Dim>
 NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
                           const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
     using Triangulation = RegularTriangulation<Dim>;
-    assert(reach > 0 && reach <= largest_candidate_fraction * (1 + 2 * u) * packing.min_radius());
+    assert(reach > 0 && reach <= largest_reach * packing.min_radius());
+    if (packing.cell.any()) {
+        return {near_pairs_in_cell(packing, reach), nullptr};
+    }
     if (packing.disk_count() > 0 && lengths_are_plain(packing) &&
         packing.max_radius() <= largest_ratio * packing.min_radius()) {
         auto triangulation =

@@ -42,7 +42,7 @@ std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Conta
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     CandidateList<Dim> candidates = find_candidates(packing, largest_candidate_fraction);
     OtherPairs pairs{without(std::move(candidates.contacts), contacts, packing.disk_count()), candidates.reach};
-    if (pairs.near.empty()) {
+    if (pairs.near.empty() && !packing.cell.any()) { // of images there is no list of all
         pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};
     }
     return pairs;

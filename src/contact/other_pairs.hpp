@@ -10,7 +10,7 @@ namespace isostat {
 
 /// Pairs that are not contacts, and a bound for those that were left out.
 struct OtherPairs {
-    std::vector<Contact> near; ///< not empty when there is any pair at all
+    std::vector<Contact> near; ///< in a box not empty when there is any pair at all
     double reach =
         0; ///< every pair that is not in `near` has a gap >= reach in the packing; infinity: none was left out
 };

@@ -1,39 +1,65 @@
 #pragma once
 /// \file
-/// How the grains of a contact stand to each other: the one place that forms r = x_j - x_i.
+/// How the grains of a contact stand to each other: the one place that forms r = x_j - x_i + A m.
 
 #include <isostat/contact/contact.hpp>
 
 #include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <type_traits>
 #include <utility>
 
 namespace isostat {
 
-/// The separation of two grains as a function of the coordinates: r = x_j - x_i of two disks; x_i of a disk and a lower
-/// wall, L - x_i of a disk and an upper one, along the axis of the wall. It is linear in the coordinates, with
-/// coefficients -1 and +1: of a velocity it is the relative velocity, of a derivative its derivative. (A periodic cell
-/// adds its multiples of the coordinates behind the last disk here, and nowhere else.)
+/// The separation of two grains as a function of the coordinates: r = x_j - x_i + A m of a disk and the image of
+/// another; x_i of a disk and a lower wall, L - x_i of a disk and an upper one, along the axis of the wall. It is
+/// linear in the coordinates, with coefficients -1 and +1, and m_a on those of the cell: of a velocity it is the
+/// relative velocity, of a derivative its derivative.
 ///
 /// Arithmetic: at(k) is what stands at coordinate k (as in `Packing::q`), minus(a, b) the difference of two such, a
-/// value. In double r is exact where the coordinates are on the grid, and else correctly rounded.
+/// value. In double r is exact where the coordinates are on the grid; without an image it is else correctly rounded.
 template <int Dim> class Separation {
     static_assert(has_dimension<Dim>());
 
   public:
     /// `disks`: how many the packing has.
     Separation(const Contact& contact, int disks)
-        : kind_(contact.kind), i_(contact.i), j_(contact.j), walls_(static_cast<std::size_t>(Dim * disks)) {}
+        : kind_(contact.kind), image_(contact.image), i_(contact.i), j_(contact.j),
+          walls_(static_cast<std::size_t>(Dim * disks)) {}
 
     /// \pre two disks
     template <class At, class Minus> auto of_disks(At at, Minus minus) const {
+        auto r = of_centres(at, minus);
+        using Number = std::remove_cvref_t<decltype(r[0])>;
+        static_assert(std::is_same_v<Number, std::remove_cvref_t<decltype(at(std::size_t{0}))>>);
+        if (!image_.is_here()) [[unlikely]] {
+            add_periods(r, at, minus);
+        }
+        return r;
+    }
+    /// x_j - x_i alone: r where there is no image.
+    template <class At, class Minus> auto of_centres(At at, Minus minus) const {
         const auto i = static_cast<std::size_t>(Dim * i_);
         const auto j = static_cast<std::size_t>(Dim * j_);
         using Number = std::remove_cvref_t<decltype(minus(at(j), at(i)))>;
         return [&]<std::size_t... axis>(std::index_sequence<axis...>) {
             return std::array<Number, sizeof...(axis)>{minus(at(j + axis), at(i + axis))...};
         }(std::make_index_sequence<static_cast<std::size_t>(Dim)>());
+    }
+    /// r += A m, of what `at` says of the coordinates of the cell.
+    template <class Number, class At, class Minus>
+    void add_periods(std::array<Number, static_cast<std::size_t>(Dim)>& r, At at, Minus minus) const {
+        for_each_period([&](std::size_t coordinate, std::size_t axis, int m) {
+            const Number period = at(coordinate);
+            const Number back = minus(minus(period, period), period); // -period
+            for (; m > 0; --m) {
+                r[axis] = minus(r[axis], back);
+            }
+            for (; m < 0; ++m) {
+                r[axis] = minus(r[axis], period);
+            }
+        });
     }
     /// \pre a disk and a wall
     template <class At, class Minus> auto of_wall(At at, Minus minus) const {
@@ -43,18 +69,22 @@ template <int Dim> class Separation {
                                                 : minus(at(walls_ + static_cast<std::size_t>(j_)), at(x));
     }
 
-    /// Calls visit(coordinate, component, sign) for every coordinate that the gap depends on, in ascending order:
-    /// sign = -1 or +1 is the derivative of that component of r (of a held coordinate: 0, +1). \pre i < j
+    /// Calls visit(coordinate, component, coefficient) for every coordinate that the gap depends on, in ascending
+    /// order: the coefficient is the derivative of that component of r (of a held coordinate: 0, +1): -1 or +1, of the
+    /// cell m_a. A disk and its own image depend on the cell alone. \pre i <= j
     template <class Visit> void for_each_coordinate(Visit visit) const {
         const auto axis = static_cast<std::size_t>(j_);
         const auto x = static_cast<std::size_t>(Dim * i_);
         switch (kind_) {
         case ContactKind::disk_disk:
-            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim) && i_ != j_; ++a) {
                 visit(x + a, a, -1);
             }
-            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+            for (std::size_t a = 0; a < static_cast<std::size_t>(Dim) && i_ != j_; ++a) {
                 visit(static_cast<std::size_t>(Dim * j_) + a, a, 1);
+            }
+            if (!image_.is_here()) [[unlikely]] {
+                for_each_period(visit);
             }
             break;
         case ContactKind::lower_wall: visit(x + axis, axis, 1); break;
@@ -68,25 +98,48 @@ template <int Dim> class Separation {
 
     /// The column of H (minus the gradient of the gap): visit(dof, entry) in ascending order. `normal`: the unit normal
     /// from disk to disk, or any multiple of it, in any arithmetic; not read for other contacts, whose entries are -1
-    /// and +1.
+    /// and +1. On the rows of the cell they are multiplied by -m_a, by sums of up to three.
     template <class Number, class Visit>
     void for_each_entry(const DofMap<Dim>& dofs, const std::array<Number, static_cast<std::size_t>(Dim)>& normal,
                         Visit visit) const {
         for_each_coordinate([&](std::size_t coordinate, std::size_t component, int sign) {
             const int dof = dofs.dof_of(coordinate);
             if (dof >= 0) {
-                visit(dof, kind_ != ContactKind::disk_disk ? Number(-sign)
-                           : sign > 0                      ? Number(-normal[component])
-                                                           : normal[component]);
+                Number entry = kind_ != ContactKind::disk_disk ? Number(-sign)
+                               : sign > 0                      ? Number(-normal[component])
+                                                               : normal[component];
+                for (int times = std::abs(sign); times > 1; --times) {
+                    entry = sign > 0 ? Number(entry - normal[component]) : Number(entry + normal[component]);
+                }
+                visit(dof, entry);
             }
         });
     }
 
   private:
+    /// visit(coordinate, component of r, multiple) for the coordinates of the cell that A m depends on, ascending.
+    template <class Visit> void for_each_period(Visit visit) const {
+        for (std::size_t a = 0; a < static_cast<std::size_t>(Dim); ++a) {
+            if (image_.m[a] != 0) {
+                visit(walls_ + a, a, static_cast<int>(image_.m[a]));
+            }
+        }
+        for (std::size_t b = 1; b < static_cast<std::size_t>(Dim); ++b) {
+            for (std::size_t a = 0; a < b && image_.m[b] != 0; ++a) {
+                visit(walls_ + static_cast<std::size_t>(Dim) + Cell<Dim>::tilt(a, b), a, static_cast<int>(image_.m[b]));
+            }
+        }
+    }
+
     ContactKind kind_;
+    Image image_;
     int i_, j_;
     std::size_t walls_; ///< first coordinate behind the disks
 };
+
+/// The unit vector along d, whatever the length: defined in contact.cpp.
+template <int Dim> std::array<double, Dim> direction(std::array<double, Dim> d);
+extern template std::array<double, 2> direction<2>(std::array<double, 2>);
 
 /// r of two disks for a vector on all coordinates, of numbers of any kind. \pre two disks
 template <int Dim, class Vector> inline auto separation(const Vector& x, const Contact& pair) {

@@ -1,5 +1,6 @@
 #include "crafted/gap_order.hpp"
 
+#include "contact/images.hpp"
 #include "contact/separation.hpp"
 
 #include <boost/multiprecision/gmp.hpp>
@@ -106,7 +107,8 @@ GapOrder::Item GapOrder::item(const Contact& contact) const {
     if (contact.kind == ContactKind::disk_disk) {
         const auto [dx, dy] = separation<2>(q, contact);
         const double distance = std::hypot(dx, dy);
-        return {contact, distance - touching, relative_bound * (distance + touching)};
+        return {contact, distance - touching,
+                relative_bound * (distance + touching + lengths_of_image(*packing_, contact))};
     }
     double size = touching;
     Separation<2>(contact, packing_->disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {

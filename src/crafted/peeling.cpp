@@ -1,5 +1,7 @@
 #include "crafted/peeling.hpp"
 
+#include "contact/separation.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
 
@@ -8,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 namespace isostat::crafted {
 
@@ -20,6 +23,16 @@ struct StoredNormal {
     std::array<double, 2> d{};
     std::array<double, 2> from{}, to{};
     bool exact = true; ///< d is the difference
+    /// Of a disk and an image, where it is no difference of two doubles.
+    std::shared_ptr<const std::array<Number, 2>> of_image;
+
+    /// d has the sign of the number, and is within 1 ulp of it.
+    explicit StoredNormal(const std::array<Number, 2>& r) : of_image(std::make_shared<std::array<Number, 2>>(r)) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            d[k] = r[k].to_double();
+            exact = exact && (Number::from_double(d[k]) - r[k]).is_zero();
+        }
+    }
 
     StoredNormal(const std::array<double, 2>& a, const std::array<double, 2>& b) : from(a), to(b) {
         for (std::size_t k = 0; k < 2; ++k) {
@@ -30,7 +43,7 @@ struct StoredNormal {
         }
     }
     [[nodiscard]] Number number(std::size_t k) const {
-        return Number::from_double(to[k]) - Number::from_double(from[k]);
+        return of_image ? (*of_image)[k] : Number::from_double(to[k]) - Number::from_double(from[k]);
     }
 };
 
@@ -51,7 +64,7 @@ template <class Exact> int difference_of_products(double a, double b, double c, 
     const double q = c * d;
     const double size = std::abs(p) + std::abs(q);
     if (size > no_underflow && std::isfinite(size)) {
-        // Differences and product: 3 roundings of 2^-53 each, and one of p - q.
+        // Differences and product: 3 roundings of 2^-53 each (of images 5), and one of p - q.
         if (std::abs(p - q) > 0x1p-49 * size) {
             return p > q ? 1 : -1;
         }
@@ -206,7 +219,9 @@ class Peeler {
         const Contact& contact = contacts_[static_cast<std::size_t>(l)];
         const auto i = static_cast<std::size_t>(contact.i);
         const auto j = static_cast<std::size_t>(contact.j);
-        if (contact.kind == ContactKind::disk_disk) {
+        if (contact.kind == ContactKind::disk_disk && !contact.image.is_here()) {
+            add_arms_of_image(l);
+        } else if (contact.kind == ContactKind::disk_disk) {
             const std::array<double, 2> a{packing_.q[2 * i], packing_.q[2 * i + 1]};
             const std::array<double, 2> b{packing_.q[2 * j], packing_.q[2 * j + 1]};
             if (a == b) {
@@ -220,6 +235,25 @@ class Peeler {
             unit[j] = contact.kind == ContactKind::lower_wall ? -1 : 1;
             rings_[i].add(l, StoredNormal({0, 0}, unit));
         }
+    }
+
+    void add_arms_of_image(int l) {
+        const Contact& contact = contacts_[static_cast<std::size_t>(l)];
+        if (contact.i == contact.j) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("disk {} is near its own image: expected a cell that is larger than the largest "
+                                    "disk and the threshold",
+                                    contact.i));
+        }
+        const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
+        const auto r = Separation<2>(contact, packing_.disk_count())
+                           .of_disks([&](std::size_t k) { return Number::from_double(packing_.q[k]); }, minus);
+        if (r[0].is_zero() && r[1].is_zero()) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("disk {} and an image of disk {} have the same centre", contact.i, contact.j));
+        }
+        rings_[static_cast<std::size_t>(contact.i)].add(l, StoredNormal(r));
+        rings_[static_cast<std::size_t>(contact.j)].add(l, StoredNormal({-r[0], -r[1]}));
     }
 
     /// The contact carries no longer with `now_` contacts, and still did with one more.

@@ -1,3 +1,4 @@
+#include "contact/images.hpp"
 #include "crafted/gap_order.hpp"
 #include "crafted/peeling.hpp"
 #include "crafted/rigid_motions.hpp"
@@ -110,7 +111,8 @@ class Hyperstaticity {
 
 class Sequence {
   public:
-    Sequence(const Packing<2>& packing, double largest) : packing_(packing), order_(packing), largest_(largest) {
+    Sequence(const Packing<2>& packing, double largest, Strain strain)
+        : packing_(packing), strain_(strain), order_(packing), largest_(largest) {
         check();
         find_candidates();
         std::sort(items_.begin(), items_.end(), [this](const GapOrder::Item& a, const GapOrder::Item& b) {
@@ -128,7 +130,10 @@ class Sequence {
         }
         count_backbones();
         count_all();
-        const auto matrix_rank = [](const Packing<2>& rest, const std::vector<Contact>& list) {
+        const auto matrix_rank = [strain](const Packing<2>& rest, const std::vector<Contact>& list) {
+            if (rest.cell.all()) {
+                return list.empty() ? 0 : exact::rank(exact_strained_matrix(rest, list, strain));
+            }
             const DofMap<2> dofs(rest);
             return list.empty() || dofs.dof_count() == 0 ? 0 : exact::rank(exact_contact_matrix(rest, dofs, list));
         };
@@ -251,11 +256,36 @@ class Sequence {
         }
     }
 
+    void find_pairs_of_images(double reach) {
+        const Images<2> images = images_near_cell(packing_, reach);
+        const int count = images.packing.disk_count();
+        preparation::PairList pairs;
+        std::vector<double> centres(images.packing.q.begin(), images.packing.q.end() - 2);
+        preparation::find_pairs<2>(centres, images.packing.radius, reach + images.rounding, pairs);
+        std::vector<Contact> found;
+        for (int a = 0; a < count; ++a) {
+            const auto k = static_cast<std::size_t>(a);
+            for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
+                found.push_back(images.contact(a, pairs.partner[static_cast<std::size_t>(p)]));
+            }
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        for (const Contact& contact : found) {
+            keep(contact);
+        }
+    }
+
     void find_candidates() {
         // Wider than the rounding of the search.
         const double reach = std::max(largest_, 0.0) + 1e-9 * (2 * packing_.max_radius() + std::max(largest_, 0.0));
         preparation::PairList pairs;
-        preparation::find_pairs<2>(packing_.q, packing_.radius, reach, pairs);
+        if (packing_.cell.any()) {
+            find_pairs_of_images(reach);
+            pairs.start.assign(packing_.radius.size() + 1, 0);
+        } else {
+            preparation::find_pairs<2>(packing_.q, packing_.radius, reach, pairs);
+        }
         for (int i = 0; i < packing_.disk_count(); ++i) {
             const auto k = static_cast<std::size_t>(i);
             for (int p = pairs.start[k]; p < pairs.start[k + 1]; ++p) {
@@ -309,16 +339,19 @@ class Sequence {
         for (const WallKind wall : packing_.walls.upper) {
             movable_walls_ += wall == WallKind::movable ? 1 : 0;
         }
-        all_dofs_ = DofMap<2>(packing_).dof_count();
+        all_dofs_ = DofMap<2>(packing_).dof_count() + cell_coordinates();
     }
+    /// What the cell adds to the degrees of freedom of the disks: its strains. A cell that is read does not move
+    /// itself.
+    [[nodiscard]] int cell_coordinates() const { return packing_.cell.all() ? strain_count<2>(strain_) : 0; }
 
     [[nodiscard]] PlateauCounts backbone_counts(int m) const {
         const auto k = static_cast<std::size_t>(m);
         PlateauCounts out;
-        out.dof_count = 2 * free_[k] + movable_walls_;
+        const auto pinned = static_cast<int>(packing_.cell.periodic_axes());
+        out.dof_count = 2 * free_[k] + movable_walls_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
         out.contact_count = carrying_[k];
-        out.rigid_motions = std::min(
-            out.dof_count, rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count() - rattlers_[k]));
+        out.rigid_motions = std::min(out.dof_count, rigid_motions(packing_, packing_.disk_count() - rattlers_[k]));
         return out;
     }
 
@@ -326,8 +359,7 @@ class Sequence {
         PlateauCounts out;
         out.dof_count = all_dofs_;
         out.contact_count = m;
-        out.rigid_motions =
-            std::min(out.dof_count, rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count()));
+        out.rigid_motions = std::min(out.dof_count, rigid_motions(packing_, packing_.disk_count()));
         return out;
     }
 
@@ -379,6 +411,7 @@ class Sequence {
     }
 
     const Packing<2>& packing_;
+    Strain strain_;
     GapOrder order_;
     double largest_;
     std::vector<GapOrder::Item> items_; ///< by increasing gap
@@ -449,13 +482,13 @@ Plateau begin(Sequence& sequence) {
 
 } // namespace
 
-Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds) {
+Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain) {
     require_floating_point();
     assert(std::is_sorted(thresholds.begin(), thresholds.end()));
     if (thresholds.empty()) {
         return {};
     }
-    Sequence sequence(packing, thresholds.back());
+    Sequence sequence(packing, thresholds.back(), strain);
     Plateau out = begin(sequence);
     std::vector<int> lists;
     for (const double threshold : thresholds) {
@@ -466,10 +499,10 @@ Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds
     return out;
 }
 
-Plateau plateau(const Packing<2>& packing, double first, double last, int rows) {
+Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain) {
     require_floating_point();
     assert(first <= last);
-    Sequence sequence(packing, last);
+    Sequence sequence(packing, last, strain);
     Plateau out = begin(sequence);
     std::vector<int> lists{sequence.below(first)};
     std::vector<double> thresholds{first};
@@ -487,7 +520,7 @@ Plateau plateau(const Packing<2>& packing, double first, double last, int rows) 
 }
 
 std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold) {
-    const Sequence sequence(packing, threshold);
+    const Sequence sequence(packing, threshold, Strain::isotropic);
     return sequence.backbone_contacts(sequence.below(threshold));
 }
 

@@ -18,4 +18,16 @@ int rigid_motions(const Walls<2>& walls, const std::vector<unsigned char>& fixed
     return out;
 }
 
+int rigid_motions(const Packing<2>& packing, int disks) {
+    if (!packing.cell.any()) {
+        return rigid_motions(packing.walls, packing.fixed, disks);
+    }
+    int out = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+        const bool held = packing.walls.lower[a] == WallKind::fixed || packing.walls.upper[a] == WallKind::fixed;
+        out += held || packing.cell.periodic[a] ? 0 : 1;
+    }
+    return out;
+}
+
 } // namespace isostat::crafted

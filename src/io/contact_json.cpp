@@ -22,12 +22,52 @@ int disk_index(const Field& field, int disks) {
     return static_cast<int>(i);
 }
 
+/// The third element of [i, j, [mx, my]].
+template <int Dim> Image image_of(const Field& field, const Packing<Dim>& packing) {
+    constexpr int farthest = 3;
+    if (!packing.cell.any()) {
+        field.fail("[disk, disk]: images are of a periodic \"cell\"");
+    }
+    field.require_size(Dim, "one number of periods per axis");
+    Image image;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        const long m = field.at(a).integer();
+        if (m != 0 && !packing.cell.periodic[a]) {
+            field.at(a).fail("0, as that axis has walls");
+        }
+        if (m < -farthest || m > farthest) {
+            field.at(a).fail(
+                fmt::format("from {} to {} periods: put the disks into the cell first", -farthest, farthest));
+        }
+        image.m[a] = static_cast<std::int8_t>(m);
+    }
+    return image;
+}
+
+template <int Dim> Contact pair_from_json(const Field& field, int i, int j, const Packing<Dim>& packing) {
+    const Image image = field.size() == 3 ? image_of(field.at(std::size_t{2}), packing) : Image{};
+    if (i == j && image.is_here()) {
+        field.fail(packing.cell.any() ? "two different disks, or the image of one that is not itself"
+                                      : "two different disks");
+    }
+    return pair_of(i, j, image);
+}
+
 } // namespace
 
 template <int Dim> Json contact_to_json(const Contact& contact) {
     const auto axis = static_cast<std::size_t>(contact.j);
     switch (contact.kind) {
-    case ContactKind::disk_disk: return Json::array({contact.i, contact.j});
+    case ContactKind::disk_disk: {
+        Json pair = Json::array({contact.i, contact.j});
+        if (!contact.image.is_here()) {
+            pair.push_back(Json::array());
+            for (std::size_t a = 0; a < Dim; ++a) {
+                pair.back().push_back(static_cast<int>(contact.image.m[a]));
+            }
+        }
+        return pair;
+    }
     case ContactKind::lower_wall: return Json::array({contact.i, lower_name[axis]});
     case ContactKind::upper_wall: return Json::array({contact.i, upper_name[axis]});
     case ContactKind::held: return Json::array({"held", contact.i});
@@ -36,10 +76,13 @@ template <int Dim> Json contact_to_json(const Contact& contact) {
 }
 
 template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing) {
-    field.require_size(2, "[disk, disk], [disk, \"wall\"] or [\"held\", coordinate]");
+    if (field.size() != 3) {
+        field.require_size(2, "[disk, disk], [disk, disk, [mx, my]], [disk, \"wall\"] or [\"held\", coordinate]");
+    }
     const Field first = field.at(std::size_t{0});
     const Field second = field.at(std::size_t{1});
     if (first.value().is_string()) {
+        field.require_size(2, "[\"held\", coordinate]");
         const long coordinate = second.integer();
         const long limit = static_cast<long>(packing.q.size());
         if (first.string() != "held" || coordinate < 0 || coordinate >= limit) {
@@ -49,12 +92,9 @@ template <int Dim> Contact contact_from_json(const Field& field, const Packing<D
     }
     const int i = disk_index(first, packing.disk_count());
     if (!second.value().is_string()) {
-        const int j = disk_index(second, packing.disk_count());
-        if (i == j) {
-            field.fail("two different disks");
-        }
-        return {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+        return pair_from_json(field, i, disk_index(second, packing.disk_count()), packing);
     }
+    field.require_size(2, "[disk, \"wall\"]");
     for (std::size_t a = 0; a < Dim; ++a) {
         const bool lower = second.string() == lower_name[a];
         if (!lower && second.string() != upper_name[a]) {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// Contacts in state files: [i, j] for two disks, [i, "left"] for a wall, ["held", coordinate] for a held coordinate.
+/// Contacts in state files: [i, j] for two disks, [i, j, [mx, my]] for the image of the second, [i, "left"] for a wall,
+/// ["held", coordinate] for a held coordinate.
 
 #include "io/json.hpp"
 

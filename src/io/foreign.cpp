@@ -28,9 +28,14 @@ void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions&
     for (std::size_t a = 0; a < 2; ++a) {
         const char axis = a == 0 ? 'x' : 'y';
         if (options.not_periodic) {
+            raw.boundary[a] = Boundary::open;
             continue;
         }
-        if (raw.boundary[a] == Boundary::periodic) {
+        if (options.periodic && raw.boundary[a] == Boundary::unknown) {
+            raw.boundary[a] = Boundary::periodic;
+            raw.notes.push_back(fmt::format("{} is periodic, as stated", axis));
+        }
+        if (raw.boundary[a] == Boundary::periodic && !options.cells) {
             refuse(source, fmt::format("boundaries along {} are periodic: expected open ones or walls; contacts across "
                                        "them are not supported (--not-periodic looks at the disks as they lie)",
                                        axis));
@@ -39,6 +44,11 @@ void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions&
             raw.notes.push_back(fmt::format(
                 "the file does not say whether {} is periodic: no contact is looked for across the boundary", axis));
         }
+    }
+    const bool both = raw.boundary[0] == Boundary::periodic && raw.boundary[1] == Boundary::periodic;
+    if (raw.tilt != 0 && !both) {
+        refuse(source, fmt::format("the box is tilted by {}: expected both axes periodic{}", raw.tilt,
+                                   options.cells ? " (--periodic says so where the file does not)" : ""));
     }
 }
 
@@ -63,6 +73,68 @@ double shifted(double x, double origin, double& worst) {
     const double moved = x - d;
     worst = std::max(worst, std::abs((x - (d + moved)) + (moved - origin)));
     return d;
+}
+
+/// How far the disks are moved so that they lie in the cell, by whole periods; larger of the roundings and `worst`.
+double wrap(Packing<2>& packing, double worst) {
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        for (const std::size_t a : {1U, 0U}) { // a step along the second period moves x too
+            const double periods =
+                packing.cell.periodic[a]
+                    ? std::floor((packing.q[2 * i + a] -
+                                  (a == 0 && packing.cell.all()
+                                       ? packing.q[2 * i + 1] / packing.lattice(1, 1) * packing.lattice(0, 1)
+                                       : 0)) /
+                                 packing.lattice(a, a))
+                    : 0;
+            for (std::size_t b = 0; b <= a && periods != 0; ++b) {
+                double& x = packing.q[2 * i + b];
+                const double before = x;
+                x -= periods * packing.lattice(b, a);
+                worst = std::max(worst, 0x1p-51 * (std::abs(before) + std::abs(x)));
+            }
+        }
+    }
+    return worst;
+}
+
+/// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it.
+void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
+    Packing<2>& packing = out.packing;
+    if (!raw.box) {
+        refuse(source, "periodic, and the file has no bounds of a box: expected some");
+    }
+    if (options.walls != ForeignWalls::none || options.box) {
+        refuse(source, "walls or a box were stated of a periodic packing: expected none (--not-periodic looks at the "
+                       "disks as they lie)");
+    }
+    packing.walls = Walls<2>::none();
+    double worst = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+        packing.cell.periodic[a] = raw.boundary[a] == Boundary::periodic;
+        const double low = (*raw.box)[2 * a];
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            double& x = packing.q[2 * i + a];
+            x = packing.cell.periodic[a] ? shifted(x, low, worst) : x;
+        }
+        packing.q.push_back(packing.cell.periodic[a] ? shifted((*raw.box)[2 * a + 1], low, worst) : 0);
+    }
+    packing.q.push_back(raw.tilt);
+    for (std::size_t a = 0; a < 2; ++a) {
+        if (packing.cell.periodic[a] && !(packing.lattice(a, a) > 0)) {
+            refuse(source, fmt::format("period {} along {}: expected a positive one", packing.lattice(a, a),
+                                       a == 0 ? 'x' : 'y'));
+        }
+    }
+    worst = wrap(packing, worst);
+    out.notes.push_back(fmt::format("periodic along {}: periods {} and {}, tilt {}",
+                                    packing.cell.all()         ? "x and y"
+                                    : packing.cell.periodic[0] ? "x, open along y"
+                                                               : "y, open along x",
+                                    packing.lattice(0, 0), packing.lattice(1, 1), raw.tilt));
+    if (worst > 0) {
+        out.notes.push_back(fmt::format("coordinates were moved into the cell: rounded by up to {:.2g}", worst));
+    }
 }
 
 void add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
@@ -206,7 +278,8 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
         out.packing.q.push_back(raw.y[i]);
         out.packing.radius.push_back(raw.meaning == SizeMeaning::radius ? raw.size[i] : raw.size[i] / 2);
     }
-    add_walls(out, raw, source, options);
+    const bool periodic = raw.boundary[0] == Boundary::periodic || raw.boundary[1] == Boundary::periodic;
+    (periodic ? add_cell : add_walls)(out, raw, source, options);
     check_range(out.packing, source);
     return out;
 }

@@ -80,6 +80,7 @@ bool is_counter(const std::string& keyword) {
 
 struct DataHeader {
     long atoms = -1;
+    double tilt = 0; ///< xy
     std::array<std::optional<std::array<double, 2>>, 2> bounds;
 
     void take(const HeaderLine& header) {
@@ -111,9 +112,10 @@ struct DataHeader {
             }
         } else if (header.keyword == "xy xz yz") {
             numbers(3);
-            for (std::size_t k = 0; k < 3; ++k) {
+            tilt = line.number(0, "tilt");
+            for (std::size_t k = 1; k < 3; ++k) {
                 if (line.number(k, "tilt") != 0) {
-                    line.fail(line.field(k), "tilt of the box", "0: only rectangular boxes are read");
+                    line.fail(line.field(k), "tilt of the box", "0: only packings in a plane are read");
                 }
             }
         } else if (is_counter(header.keyword)) {
@@ -181,6 +183,7 @@ struct Frame {
     long timestep = 0;
     long atoms = -1;
     std::array<double, 4> box{};
+    double tilt = 0; ///< xy
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{};
     bool boxed = false;
@@ -215,14 +218,19 @@ void read_bounds(Lines& lines, std::string_view flags_text, Frame& frame) {
         if (!(low <= high)) {
             line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
         }
-        if (tilted && line.number(2, "tilt") != 0) {
-            line.fail(line.field(2), "tilt of the box", "0: only rectangular boxes are read");
+        if (tilted && a == 0) {
+            frame.tilt = line.number(2, "tilt");
+        } else if (tilted && line.number(2, "tilt") != 0) {
+            line.fail(line.field(2), "tilt of the box", "0: only packings in a plane are read");
         }
         if (a < 2) {
             frame.box[2 * a] = low;
             frame.box[2 * a + 1] = high;
         }
     }
+    // A dump bounds the whole parallelepiped: xlo + min(0, xy), xhi + max(0, xy).
+    frame.box[0] -= std::min(0.0, frame.tilt);
+    frame.box[1] -= std::max(0.0, frame.tilt);
     frame.boxed = true;
 }
 
@@ -336,6 +344,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
     }
     if (header.bounds[0] && header.bounds[1]) {
         raw.box = {(*header.bounds[0])[0], (*header.bounds[0])[1], (*header.bounds[1])[0], (*header.bounds[1])[1]};
+        raw.tilt = header.tilt;
     }
     return raw;
 }
@@ -379,11 +388,12 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         }
         rows.finish();
         raw.box = frame.box;
+        raw.tilt = frame.tilt;
         raw.boundary = frame.boundary;
         raw.loose = frame.loose;
         if (coordinates.scaled) {
             for (std::size_t i = 0; i < raw.x.size(); ++i) {
-                raw.x[i] = frame.box[0] + raw.x[i] * (frame.box[1] - frame.box[0]);
+                raw.x[i] = frame.box[0] + raw.x[i] * (frame.box[1] - frame.box[0]) + raw.y[i] * frame.tilt;
                 raw.y[i] = frame.box[2] + raw.y[i] * (frame.box[3] - frame.box[2]);
             }
             raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");

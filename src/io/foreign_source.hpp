@@ -76,6 +76,7 @@ struct Raw {
     std::vector<long> ids; ///< one per disk, or none
     SizeMeaning meaning = SizeMeaning::radius;
     std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
+    double tilt = 0;                          ///< x component of the second period
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
     std::vector<std::string> notes;

@@ -113,11 +113,13 @@ void read_box(const Line& line, const std::map<std::string, std::string>& keys, 
             const std::vector<double> w = numbers_of(line, "Origin", o->second, 3);
             origin = {w[0], w[1]};
         }
-        for (const std::size_t off : {1U, 2U, 3U, 5U, 6U, 7U}) {
+        for (const std::size_t off : {1U, 2U, 5U, 6U, 7U}) { // of the second vector its x may differ from 0
             if (v[off] != 0) {
-                line.fail(lattice->second, "Lattice", "a box along the axes: only these are read");
+                line.fail(lattice->second, "Lattice",
+                          "a first vector along x, a second one in the plane: only these are read");
             }
         }
+        raw.tilt = v[3];
         if (!(v[0] > 0 && v[4] > 0)) {
             line.fail(lattice->second, "Lattice", "positive lengths");
         }

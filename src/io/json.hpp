@@ -30,6 +30,8 @@ class Field {
     /// Throws `Error(bad_input)`: "FILE: PATH is VALUE: expected WHAT".
     [[noreturn]] void fail(const std::string& expected) const;
 
+    /// "FILE: PATH".
+    [[nodiscard]] std::string where() const { return source_ + ": " + path_; }
     /// Every key must be in the list.
     void only(std::initializer_list<const char*> keys) const;
     [[nodiscard]] bool has(const char* key) const { return value_->is_object() && value_->contains(key); }

@@ -10,6 +10,9 @@
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
+#include <gmpxx.h>
+
+#include <array>
 
 namespace isostat {
 
@@ -74,6 +77,59 @@ template <int Dim> void read_disks(const Field& document, Packing<Dim>& packing)
     }
 }
 
+constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
+constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
+
+/// The names of the coordinates of a cell that move.
+template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
+    for (std::size_t k = 0; k < moves.size(); ++k) {
+        const std::string& name = moves.at(k).string();
+        bool known = false;
+        for (std::size_t a = 0; a < Dim; ++a) {
+            known = known || name == axis_name[a];
+            cell.period_moves[a] = cell.period_moves[a] || name == axis_name[a];
+        }
+        for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+            known = known || name == tilt_name[t];
+            cell.tilt_moves[t] = cell.tilt_moves[t] || name == tilt_name[t];
+        }
+        if (!known) {
+            moves.at(k).fail("\"x\", \"y\" (periods) or \"xy\" (tilt)");
+        }
+    }
+}
+
+/// Axes that repeat have no walls; the others keep those of a box unless "walls" says otherwise.
+template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
+    field.only({"axes", "moves", "tilt", "pin"});
+    Cell<Dim>& cell = packing.cell;
+    const Field axes = field.at("axes");
+    axes.require_size(Dim, "one word per axis");
+    for (std::size_t a = 0; a < Dim; ++a) {
+        const std::string& word = axes.at(a).string();
+        if (word != "periodic" && word != "walls") {
+            axes.at(a).fail("\"periodic\" or \"walls\"");
+        }
+        cell.periodic[a] = word == "periodic";
+        if (cell.periodic[a]) {
+            packing.walls.lower[a] = packing.walls.upper[a] = WallKind::absent;
+        }
+    }
+    if (!cell.any()) {
+        axes.fail("a periodic axis; a box has no \"cell\"");
+    }
+    read_moves(field.at("moves"), cell);
+    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+        packing.q.push_back(field.has("tilt") ? field.at("tilt").at(t).number() : 0);
+    }
+    if (field.has("tilt")) {
+        field.at("tilt").require_size(Cell<Dim>::tilts, "one tilt per pair of axes");
+    }
+    if (field.has("pin")) {
+        cell.pin = field.at("pin").integer(0, packing.disk_count() - 1);
+    }
+}
+
 template <int Dim> Packing<Dim> packing_of(const Field& document) {
     Packing<Dim> packing;
     read_disks(document, packing);
@@ -81,6 +137,9 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     length.require_size(Dim, "one length per axis");
     for (std::size_t a = 0; a < Dim; ++a) {
         packing.q.push_back(length.at(a).number());
+    }
+    if (document.has("cell")) {
+        read_cell(document.at("cell"), packing);
     }
     if (document.has("walls")) {
         const Field walls = document.at("walls");
@@ -109,6 +168,25 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     return packing;
 }
 
+/// Along periodic axes loads on the disks sum to zero, exactly: else the pinned disk bears the rest, whichever it is.
+template <int Dim>
+void require_balance(const Field& document, const char* name, const std::vector<double>& values,
+                     const Cell<Dim>& cell) {
+    for (std::size_t a = 0; a < Dim; ++a) {
+        mpq_class sum = 0;
+        for (std::size_t k = a; k < values.size() && cell.periodic[a]; k += Dim) {
+            sum += mpq_class(values[k]);
+        }
+        if (sum != 0) {
+            throw Error(
+                ErrorKind::bad_input,
+                fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
+                            "minus the sum of the others)",
+                            document.at(name).where(), axis_name[a], sum.get_d()));
+        }
+    }
+}
+
 template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& packing) {
     Load<Dim> load;
     for (std::size_t a = 0; a < Dim; ++a) {
@@ -117,13 +195,27 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
     }
     if (document.has("load")) {
         const Field field = document.at("load");
-        field.only({"kind", "stress", "loaded_axis", "reference_length"});
+        field.only({"kind", "stress", "loaded_axis", "reference_length", "shear"});
         if (field.has("kind")) {
             const std::string& kind = field.at("kind").string();
             if (kind != "nominal" && kind != "true") {
                 field.at("kind").fail("\"nominal\" or \"true\"");
             }
             load.kind = kind == "nominal" ? LoadKind::nominal : LoadKind::true_stress;
+            if (load.kind == LoadKind::true_stress && packing.cell.any()) {
+                field.at("kind").fail("\"nominal\" in a periodic cell: true stresses have no potential there once a "
+                                      "tilt moves, and are not written yet where none does");
+            }
+        }
+        if (field.has("shear")) {
+            const Field shear = field.at("shear");
+            shear.require_size(Cell<Dim>::tilts, "one shear stress per tilt");
+            for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+                load.shear[t] = shear.at(t).number();
+                if (load.shear[t] != 0 && !packing.cell.tilt_moves[t]) {
+                    shear.at(t).fail("0, as that tilt does not move");
+                }
+            }
         }
         for (const char* name : {"stress", "reference_length"}) {
             if (!field.has(name)) {
@@ -149,6 +241,8 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
     }
     load.disk_force = vectors<Dim>(document, "disk_force", packing.radius.size());
     load.infinitesimal = vectors<Dim>(document, "infinitesimal", packing.radius.size());
+    require_balance<Dim>(document, "disk_force", load.disk_force, packing.cell);
+    require_balance<Dim>(document, "infinitesimal", load.infinitesimal, packing.cell);
     return load;
 }
 
@@ -164,8 +258,8 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     if (const long version = document.at("version").integer(); version != 1 && version != 2) {
         document.at("version").fail("1 or 2, the versions that this program reads");
     }
-    document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "disks",
-                   "fixed", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
+    document.only({"format", "version", "dimension", "equilibrium", "provenance", "load", "walls", "length", "cell",
+                   "disks", "fixed", "disk_force", "infinitesimal", "perturbation", "contacts", "forces"});
     if (document.has("dimension") && document.at("dimension").integer() != Dim) {
         document.at("dimension").fail(fmt::format("{}", Dim));
     }
@@ -202,16 +296,33 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     return file;
 }
 
-template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source) {
+namespace {
+
+template <int Dim> StateFile<Dim> of_box(StateFile<Dim> file, const std::string& source) {
+    require_box(file.state.packing, source, "inspect and plateau take it, this command");
+    return file;
+}
+
+} // namespace
+
+template <int Dim> StateFile<Dim> parse_any_state(const std::string& text, const std::string& source) {
     const json::Json parsed = Field::parse(text, source);
     return json::state_from_json<Dim>(Field(parsed, source), source);
 }
 
+template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source) {
+    return of_box(parse_any_state<Dim>(text, source), source);
+}
+
 template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) {
+    return of_box(read_any_state<Dim>(path), path.string());
+}
+
+template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     const std::string_view content = without_byte_order_mark(text);
     if (content[content.find_first_not_of(" \t\r\n")] == '{') {
-        return parse_state<Dim>(text, path.string());
+        return parse_any_state<Dim>(text, path.string());
     }
     try {
         return {parse_vertex_text(text, path.string()), {}};
@@ -227,6 +338,8 @@ template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path) 
 }
 
 template StateFile<2> json::state_from_json<2>(const Field&, const std::string&);
+template StateFile<2> parse_any_state<2>(const std::string&, const std::string&);
+template StateFile<2> read_any_state<2>(const std::filesystem::path&);
 template StateFile<2> parse_state<2>(const std::string&, const std::string&);
 template StateFile<2> read_state<2>(const std::filesystem::path&);
 

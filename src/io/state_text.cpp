@@ -51,6 +51,32 @@ template <int Dim> std::vector<Json> vectors(const std::vector<double>& values, 
     return rows;
 }
 
+/// The member "cell", or nothing in a box.
+template <int Dim> std::string cell_text(const Packing<Dim>& packing) {
+    constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
+    constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
+    const Cell<Dim>& cell = packing.cell;
+    if (!cell.any()) {
+        return {};
+    }
+    Json object;
+    object["moves"] = Json::array();
+    for (std::size_t a = 0; a < Dim; ++a) {
+        object["axes"].push_back(cell.periodic[a] ? "periodic" : "walls");
+        if (cell.period_moves[a]) {
+            object["moves"].push_back(axis_name[a]);
+        }
+    }
+    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+        object["tilt"].push_back(finite(packing.q[packing.length_at(Dim + t)], "cell.tilt"));
+        if (cell.tilt_moves[t]) {
+            object["moves"].push_back(tilt_name[t]);
+        }
+    }
+    object["pin"] = cell.pin;
+    return fmt::format("  \"cell\": {},\n", object.dump());
+}
+
 /// The members "length" and "disks".
 template <int Dim> void append_disks(std::string& text, const Packing<Dim>& packing) {
     const std::size_t first_length = Dim * packing.radius.size();
@@ -83,6 +109,9 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
     head["stress"] = numbers(load.stress, "load.stress");
     head["loaded_axis"] = load.loaded_axis;
     head["reference_length"] = numbers(load.reference_length, "load.reference_length");
+    if (packing.cell.any()) {
+        head["shear"] = numbers(load.shear, "load.shear");
+    }
     text += fmt::format("  \"load\": {},\n", head.dump());
 
     Json walls;
@@ -91,6 +120,7 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
         walls["upper"].push_back(word(packing.walls.upper[a]));
     }
     text += fmt::format("  \"walls\": {},\n", walls.dump());
+    text += cell_text(packing);
     append_disks(text, packing);
     std::vector<Json> rows;
 

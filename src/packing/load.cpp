@@ -1,5 +1,7 @@
 #include <isostat/packing/load.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace isostat {
@@ -11,11 +13,16 @@ template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<D
         const int other = 1 - a;
         const bool follows = kind == LoadKind::true_stress;
         const int walls = Dim * packing.disk_count();
-        if (packing.walls.upper[static_cast<std::size_t>(a)] == WallKind::movable) {
+        const auto axis = static_cast<std::size_t>(a);
+        if (packing.cell.periodic[axis] ? packing.cell.period_moves[axis]
+                                        : packing.walls.upper[axis] == WallKind::movable) {
             forces.push_back({walls + a, a, stress[static_cast<std::size_t>(a)],
                               follows ? packing.length(other) : reference_length[static_cast<std::size_t>(other)],
                               follows ? walls + other : -1, a == loaded_axis});
         }
+    }
+    if (packing.cell.any() && packing.cell.tilt_moves[0]) {
+        forces.push_back({Dim * packing.disk_count() + Dim, 0, shear[0], reference_length[0], -1, false});
     }
     return forces;
 }
@@ -101,6 +108,28 @@ std::vector<double> generic_infinitesimal(const std::vector<double>& radius, uns
     return g;
 }
 
+template <int Dim> void balance(std::vector<double>& infinitesimal, const Cell<Dim>& cell) {
+    constexpr int bits = 30;
+    double largest = 0;
+    for (const double g : infinitesimal) {
+        largest = std::max(largest, std::abs(g));
+    }
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    for (std::size_t a = 0; a < Dim && largest > 0; ++a) {
+        if (!cell.periodic[a]) {
+            continue;
+        }
+        double others = 0; // up to 2^22 terms of 30 bits: exact
+        for (std::size_t k = a; k < infinitesimal.size(); k += Dim) {
+            infinitesimal[k] =
+                std::ldexp(std::nearbyint(std::ldexp(infinitesimal[k], bits - exponent)), exponent - bits);
+            others += k == Dim * static_cast<std::size_t>(cell.pin) + a ? 0 : infinitesimal[k];
+        }
+        infinitesimal[Dim * static_cast<std::size_t>(cell.pin) + a] = -others;
+    }
+}
+
 template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs) {
     std::vector<double> force(static_cast<std::size_t>(dofs.dof_count()), 0.0);
     for (std::size_t mu = 0; mu < force.size(); ++mu) {
@@ -112,6 +141,7 @@ template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coo
 
 template struct Load<2>;
 template std::vector<double> on_dofs<2>(const std::vector<double>&, const DofMap<2>&);
+template void balance<2>(std::vector<double>&, const Cell<2>&);
 template double potential<2>(const Packing<2>&, const Load<2>&);
 template std::vector<double> generic_infinitesimal<2>(const std::vector<double>&, unsigned long long);
 

@@ -13,6 +13,16 @@ namespace {
 
 constexpr std::array<const char*, 3> axis_name{"x", "y", "z"};
 constexpr std::array<const char*, 3> upper_name{"right wall", "top wall", "front wall"};
+constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
+
+/// -1: nothing has to be pinned.
+template <int Dim> int pinned_grain(const Packing<Dim>& packing) {
+    int pin = packing.cell.any() ? packing.cell.pin : -1;
+    for (int i = 0; pin >= 0 && packing.is_fixed(DiskId(pin)) && i < packing.disk_count(); ++i) {
+        pin = packing.is_fixed(DiskId(i)) ? pin : i;
+    }
+    return pin;
+}
 
 } // namespace
 
@@ -47,29 +57,116 @@ template <int Dim> double Packing<Dim>::solid_fraction() const {
 }
 
 template <int Dim>
-DofMap<Dim>::DofMap(const Packing<Dim>& packing) : disks_(packing.disk_count()), dof_of_(packing.q.size(), -1) {
+DofMap<Dim>::DofMap(const Packing<Dim>& packing)
+    : disks_(packing.disk_count()), periodic_(packing.cell.periodic), dof_of_(packing.q.size(), -1) {
     coordinate_of_.reserve(packing.q.size());
     const auto add = [&](std::size_t coordinate) {
         dof_of_[coordinate] = static_cast<int>(coordinate_of_.size());
         coordinate_of_.push_back(static_cast<int>(coordinate));
     };
+    const int pin = pinned_grain(packing);
     for (int i = 0; i < disks_; ++i) {
         for (int a = 0; a < Dim && !packing.is_fixed(DiskId(i)); ++a) {
-            add(static_cast<std::size_t>(Dim * i + a));
+            if (i != pin || !periodic_[static_cast<std::size_t>(a)]) {
+                add(static_cast<std::size_t>(Dim * i + a));
+            }
         }
     }
-    for (int a = 0; a < Dim; ++a) {
-        if (packing.walls.upper[static_cast<std::size_t>(a)] == WallKind::movable) {
-            add(static_cast<std::size_t>(Dim * disks_ + a));
+    const Cell<Dim>& cell = packing.cell;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        if (cell.periodic[a] ? cell.period_moves[a] : packing.walls.upper[a] == WallKind::movable) {
+            add(packing.length_at(a));
+        }
+    }
+    for (std::size_t t = 0; cell.any() && t < cell.tilt_moves.size(); ++t) {
+        if (cell.tilt_moves[t]) {
+            add(packing.length_at(Dim + t));
         }
     }
 }
 
 template <int Dim> std::string DofMap<Dim>::name(int dof) const {
-    const int coordinate = coordinate_of(dof);
-    const auto axis = static_cast<std::size_t>(coordinate % Dim);
-    const int disk = coordinate / Dim;
-    return disk == disks_ ? std::string(upper_name[axis]) : fmt::format("{} of disk {}", axis_name[axis], disk);
+    const auto coordinate = static_cast<std::size_t>(coordinate_of(dof));
+    const std::size_t lengths = static_cast<std::size_t>(Dim) * static_cast<std::size_t>(disks_);
+    if (coordinate < lengths) {
+        return fmt::format("{} of disk {}", axis_name[coordinate % Dim], coordinate / Dim);
+    }
+    const std::size_t axis = coordinate - lengths;
+    return axis >= Dim       ? fmt::format("tilt {}", tilt_name[axis - Dim])
+           : periodic_[axis] ? fmt::format("period along {}", axis_name[axis])
+                             : std::string(upper_name[axis]);
+}
+
+namespace {
+
+template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::string& source) {
+    const auto bad = [&](const std::string& what) { throw Error(ErrorKind::bad_input, source + ": " + what); };
+    const Cell<Dim>& cell = packing.cell;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        if (!cell.periodic[a]) {
+            if (cell.period_moves[a]) {
+                bad(fmt::format("the period along {} moves, and that axis has walls: expected a periodic axis",
+                                axis_name[a]));
+            }
+            continue;
+        }
+        if (packing.walls.lower[a] != WallKind::absent || packing.walls.upper[a] != WallKind::absent) {
+            bad(fmt::format("{} is periodic and has walls: expected walls \"absent\" along it", axis_name[a]));
+        }
+        const double length = packing.lattice(a, a);
+        if (!(length > 0 && length <= longest_length)) {
+            bad(fmt::format("the period along {} is {}: expected a positive length of at most {} (the cell is inverted "
+                            "or degenerate)",
+                            axis_name[a], length, longest_length));
+        }
+    }
+    for (std::size_t b = 1; b < Dim; ++b) {
+        for (std::size_t a = 0; a < b; ++a) {
+            const double tilt = packing.lattice(a, b);
+            const bool both = cell.periodic[a] && cell.periodic[b];
+            if (!(std::abs(tilt) <= longest_length) || (!both && (tilt != 0 || cell.tilt_moves[cell.tilt(a, b)]))) {
+                bad(fmt::format("the tilt {} is {}: expected {}", tilt_name[cell.tilt(a, b)], tilt,
+                                both ? "a finite number" : "0, fixed, as one of its axes has walls"));
+            }
+        }
+    }
+    if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
+        bad(fmt::format("disk {} is pinned: expected one from 0 to {}", cell.pin, packing.disk_count() - 1));
+    }
+    if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
+        bad("fixed disks in a periodic cell are not supported: expected none (the pinned one says where the origin "
+            "is)");
+    }
+}
+
+/// Periods that a disk can meet itself through: the short ones among those of a few cells.
+void validate_own_images(const Packing<2>& packing, const std::string& source) {
+    constexpr int few = 3;
+    const auto largest = std::max_element(packing.radius.begin(), packing.radius.end());
+    for (int x = -few; x <= few; ++x) {
+        for (int y = 0; y <= few; ++y) {
+            const bool there = (x == 0 || packing.cell.periodic[0]) && (y == 0 || packing.cell.periodic[1]);
+            if (!there || (y == 0 && x <= 0)) {
+                continue;
+            }
+            const double period =
+                std::hypot(x * packing.lattice(0, 0) + y * packing.lattice(0, 1), y * packing.lattice(1, 1));
+            if (2 * *largest > period * (1 + 1e-9)) { // beyond rounding: whatever the configuration
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}: disk {} of diameter {} overlaps its own image ({}, {}), {} away: expected "
+                                        "a diameter of at most the shortest period",
+                                        source, largest - packing.radius.begin(), 2 * *largest, x, y, period));
+            }
+        }
+    }
+}
+
+} // namespace
+
+template <int Dim> void require_box(const Packing<Dim>& packing, const std::string& source, const std::string& what) {
+    if (packing.cell.any()) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: a periodic cell; {} takes boxes only so far", source, what));
+    }
 }
 
 template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source) {
@@ -77,9 +174,9 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
     if (packing.radius.empty()) {
         bad("no disks: a packing needs at least one disk");
     }
-    if (packing.q.size() != static_cast<std::size_t>(Dim) * (packing.radius.size() + 1)) {
+    if (packing.q.size() != packing.coordinate_count()) {
         bad(fmt::format("{} coordinates for {} disks: expected {}", packing.q.size(), packing.radius.size(),
-                        static_cast<std::size_t>(Dim) * (packing.radius.size() + 1)));
+                        packing.coordinate_count()));
     }
     if (!packing.fixed.empty() && packing.fixed.size() != packing.radius.size()) {
         bad(fmt::format("{} flags 'fixed' for {} disks", packing.fixed.size(), packing.radius.size()));
@@ -97,6 +194,10 @@ template <int Dim> void validate(const Packing<Dim>& packing, const std::string&
                                 longest_length));
             }
         }
+    }
+    if (packing.cell.any()) {
+        validate_cell(packing, source);
+        validate_own_images(packing, source);
     }
     for (std::size_t a = 0; a < Dim; ++a) {
         if (packing.walls.upper[a] == WallKind::absent) {
@@ -124,7 +225,7 @@ template <int Dim> double grid_step(const Packing<Dim>& packing) {
     double largest = 0;
     const std::size_t disks = Dim * packing.radius.size();
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        if (k < disks || packing.walls.upper[k - disks] != WallKind::absent) {
+        if (k < disks || packing.cell.any() || packing.walls.upper[k - disks] != WallKind::absent) {
             largest = std::max(largest, std::abs(packing.q[k]));
         }
     }
@@ -133,7 +234,14 @@ template <int Dim> double grid_step(const Packing<Dim>& packing) {
     if (mantissa == 0.5) {
         --exponent; // an exact power of two is its own bound
     }
-    return std::ldexp(1.0, exponent - 52);
+    // |x_j - x_i| + |A m| stays below 2^53 steps for |m_a| <= 3 (proofs/cells.md, C2).
+    const int coarser = packing.cell.any() ? 2 : 0;
+    return std::ldexp(1.0, exponent - 52 + coarser);
+}
+
+template <int Dim> bool is_on_grid(const Packing<Dim>& packing) {
+    const double step = grid_step(packing);
+    return std::all_of(packing.q.begin(), packing.q.end(), [step](double x) { return std::fmod(x, step) == 0; });
 }
 
 template <int Dim> double snap_to_grid(Packing<Dim>& packing) {
@@ -151,6 +259,10 @@ template <int Dim> double snap_to_grid(Packing<Dim>& packing) {
         moved = std::max(moved, std::abs(snapped - x));
         x = snapped;
     };
+    if (packing.cell.any()) {
+        std::for_each(packing.q.begin(), packing.q.end(), snap);
+        return moved;
+    }
     const std::size_t disks = packing.radius.size();
     for (std::size_t i = 0; i < disks; ++i) {
         for (std::size_t a = 0; a < Dim && !packing.is_fixed(DiskId(i)); ++a) {
@@ -169,6 +281,8 @@ template struct Walls<2>;
 template struct Packing<2>;
 template class DofMap<2>;
 template void validate<2>(const Packing<2>&, const std::string&);
+template void require_box<2>(const Packing<2>&, const std::string&, const std::string&);
+template bool is_on_grid<2>(const Packing<2>&);
 template double snap_to_grid<2>(Packing<2>&);
 template double grid_step<2>(const Packing<2>&);
 

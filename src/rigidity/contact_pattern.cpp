@@ -53,12 +53,16 @@ template <int Dim> std::vector<int> shared_levels(const Packing<Dim>& packing, c
     return level;
 }
 
+/// Whether the image of the second disk may be displaced along an axis: by a period, or by a tilt of a later one.
+bool is_displaced(const Contact& contact, int axis) {
+    return std::any_of(contact.image.m.begin() + axis, contact.image.m.end(), [](std::int8_t m) { return m != 0; });
+}
+
 } // namespace
 
 template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const Contact& contact) {
-    const int disks = dofs.coordinate_count() / Dim - 1; // those of the upper walls come last
     std::vector<int> rows;
-    Separation<Dim>(contact, disks).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
+    Separation<Dim>(contact, dofs.disk_count()).for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
         if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
             rows.push_back(dof);
         }
@@ -80,9 +84,10 @@ ContactPattern::ContactPattern(const Packing<Dim>& packing, const DofMap<Dim>& d
         const Contact& contact = contacts[l];
         for (int e = matrix.start[l]; e < matrix.start[l + 1]; ++e) {
             const int mu = matrix.row[static_cast<std::size_t>(e)];
-            const int axis = dofs.coordinate_of(mu) % Dim;
+            const int axis = dofs.coordinate_of(mu) % Dim; // of a tilt: 0, what it moves along (Dim = 2)
             const auto of = [&](int disk) { return level[static_cast<std::size_t>(Dim * disk + axis)]; };
-            if (contact.kind != ContactKind::disk_disk || of(contact.i) == 0 || of(contact.i) != of(contact.j)) {
+            if (contact.kind != ContactKind::disk_disk || of(contact.i) == 0 || of(contact.i) != of(contact.j) ||
+                is_displaced(contact, axis)) {
                 parts.row.push_back(mu);
             }
         }

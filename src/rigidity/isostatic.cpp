@@ -13,6 +13,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 
 namespace isostat {
 
@@ -41,9 +42,7 @@ template <int Dim> inline std::array<double, Dim> unit_normal(const Packing<Dim>
     }
     const double length = std::sqrt(square);
     if (!(length > 0x1p-450 && length < 0x1p500)) { // squares under- or overflow
-        const GapGradient<Dim> gradient = gap_gradient(packing, contact);
-        std::copy_n(gradient.value.end() - Dim, Dim, normal.begin());
-        return normal;
+        return direction<Dim>(normal);
     }
     for (double& component : normal) {
         component /= length;
@@ -72,7 +71,11 @@ sparse::Matrix<Value> reduced_contact_matrix(const Packing<Dim>& packing, const 
         separation.for_each_coordinate([&](std::size_t coordinate, std::size_t a, int sign) {
             if (const int dof = dofs.dof_of(coordinate); dof >= 0) {
                 matrix.row.push_back(dof);
-                matrix.value.push_back(sign > 0 ? subtract(0, normal[a]) : normal[a]); // minus the gradient of the gap
+                Value entry = 0; // minus the gradient of the gap
+                for (int times = std::abs(sign); times > 0; --times) {
+                    entry = sign > 0 ? subtract(entry, normal[a]) : subtract(entry, subtract(0, normal[a]));
+                }
+                matrix.value.push_back(entry);
             }
         });
         matrix.start.push_back(static_cast<int>(matrix.row.size()));
@@ -90,8 +93,9 @@ sparse::Matrix<double> contact_matrix(const Packing<Dim>& packing, const DofMap<
     matrix.rows = dofs.dof_count();
     matrix.cols = static_cast<int>(contacts.size());
     matrix.start.resize(contacts.size() + 1);
-    matrix.row.resize(2 * Dim * contacts.size());
-    matrix.value.resize(2 * Dim * contacts.size());
+    const std::size_t most = 2 * Dim + (packing.cell.any() ? Dim + Cell<Dim>::tilts : std::size_t{0});
+    matrix.row.resize(most * contacts.size());
+    matrix.value.resize(most * contacts.size());
     std::size_t end = 0;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];

@@ -73,6 +73,7 @@ template <int Dim, class T> class ContactSystem {
     Bound radius_;
     Bound uncertainty_;
     double sigma_;
+    double largest_entry_ = largest_multiple(structure_.contacts()); ///< no entry of a matrix of contacts is larger
 };
 
 template <int Dim, class T>
@@ -94,7 +95,7 @@ auto ContactSystem<Dim, T>::residual(const std::vector<T>& load, const std::vect
             const auto row = static_cast<std::size_t>(matrix_.row[e]);
             const auto [i, j] = transposed ? std::pair(l, row) : std::pair(row, l);
             result.value[i] -= matrix_.value[e] * x[j];
-            size[i] += magnitude[j];
+            size[i] += largest_entry_ * magnitude[j];
             ++terms[i];
         }
     }
@@ -114,6 +115,18 @@ auto ContactSystem<Dim, T>::turned(const std::vector<T>& x, bool transposed) con
         std::vector<Bound> size(x.size());
         std::transform(x.begin(), x.end(), size.begin(), [&](const T& c) { return a.size(c); });
         return uncertainty_ <= 0 ? Bound(0) : uncertainty_ * norm_of_bounds(size) * (1 + 4 * u);
+    }
+    if (packing_.cell.any()) {
+        HeaviestSum sum(packing_.radius.size());
+        for (std::size_t l = 0; l < x.size(); ++l) {
+            const Contact& contact = structure_.contacts()[l];
+            if (contact.kind == ContactKind::disk_disk) {
+                const double part = above(a.about(x[l])) / target(packing_, contact);
+                const double w = cell_weight(contact);
+                sum.add(contact, part * (2 + w), part * w * (contact.i == contact.j ? w : 2 + w));
+            }
+        }
+        return Bound(sum.largest()) * radius_ * sum_slack;
     }
     std::vector<Bound> weight(packing_.radius.size(), Bound(0)); // sum of |f_l| / D_l at each disk
     for (std::size_t l = 0; l < x.size(); ++l) {

@@ -14,8 +14,9 @@
 namespace isostat {
 
 /// c = q + p, q doubles. Differences of coordinates are formed as (q_j - q_i) + (p_j - p_i): no cancellation of large
-/// coordinates, whatever the distance from the origin. `Correction`: how p is kept, one number per coordinate. Copies
-/// share the packing, which must outlive them.
+/// coordinates, whatever the distance from the origin. With an image x_j - x_i + A m of the doubles is formed first: it
+/// is exact in every arithmetic where they are on the grid, which is asked of a cell. `Correction`: how p is kept, one
+/// number per coordinate. Copies share the packing, which must outlive them.
 template <int Dim, class T, class Correction = std::vector<T>> class CorrectedConfiguration {
   public:
     /// p = 0.
@@ -60,11 +61,20 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
         default: return wall_gap(contact);
         }
     }
-    /// x_j - x_i of two disks.
+    /// x_j - x_i + A m of two disks: the stored numbers first, which cancel where they are large, then the corrections.
     [[nodiscard]] std::array<T, static_cast<std::size_t>(Dim)> separation(const Contact& pair) const {
-        return Separation<Dim>(pair, packing_->disk_count())
-            .of_disks([](std::size_t coordinate) { return coordinate; },
-                      [this](std::size_t to, std::size_t from) { return difference(from, to); });
+        const Separation<Dim> separation(pair, packing_->disk_count());
+        if (pair.image.is_here()) [[likely]] {
+            return separation.of_centres([](std::size_t coordinate) { return coordinate; },
+                                         [this](std::size_t to, std::size_t from) { return difference(from, to); });
+        }
+        const auto minus = [](const T& a, const T& b) -> T { return a - b; };
+        auto r = separation.of_disks([this](std::size_t k) { return number(packing_->q[k]); }, minus);
+        const auto p = separation.of_disks([this](std::size_t k) { return moved(k); }, minus);
+        for (std::size_t a = 0; a < r.size(); ++a) {
+            r[a] += p[a];
+        }
+        return r;
     }
     /// R_i + R_j.
     [[nodiscard]] T length(const Contact& contact) const {
@@ -87,12 +97,12 @@ template <int Dim, class T, class Correction = std::vector<T>> class CorrectedCo
                 continue;
             }
             const T by = divided == Divided::by_lengths ? length(contact) : sqrt(square(contact));
-            const auto d = separation(contact);
-            for (int e = h.start[l]; e < h.start[l + 1]; ++e) {
-                const int coordinate = structure.dofs().coordinate_of(h.row[index(e)]);
-                const T n = d[index(coordinate % Dim)] / by;
-                matrix.value.push_back(coordinate / Dim == contact.i ? n : -n);
+            auto normal = separation(contact);
+            for (T& component : normal) {
+                component = component / by;
             }
+            Separation<Dim>(contact, packing_->disk_count())
+                .for_each_entry(structure.dofs(), normal, [&](int, const T& entry) { matrix.value.push_back(entry); });
         }
         return matrix;
     }

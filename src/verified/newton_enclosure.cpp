@@ -66,7 +66,7 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
             const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
             const Pair target_square = exact_square(d.sum);
             Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
-            for (const Pair& x : separation.of_disks(at, minus)) {
+            for (const Pair& x : separation.of_centres(at, minus)) {
                 const Pair square = exact_square(x.sum);
                 const Pair sum = exact_sum(value.sum, square.sum);
                 value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
@@ -122,7 +122,8 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
     }
     int exponent = 0;
     std::frexp(longest, &exponent);
-    if (inverse.verdict != Verdict::proved || std::abs(exponent) > 400) {
+    const bool displaced = packing.cell.any(); // `Constraints` knows no images
+    if (inverse.verdict != Verdict::proved || std::abs(exponent) > 400 || displaced) {
         return enclose_vertex(packing, structure, inverse);
     }
     const double scale = std::ldexp(1.0, -exponent);

@@ -4,7 +4,10 @@
 #include "contact/separation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
 #include <limits>
 #include <vector>
 
@@ -26,9 +29,72 @@ template <int Dim> bool in_range_of_products(const Packing<Dim>& packing) {
            std::abs(*std::max_element(packing.q.begin(), packing.q.end(), longer)) < 1e100;
 }
 
-/// Lipschitz constant of the derivative of F_l = (|x_i - x_j|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
+/// |m| of a contact: how strongly r depends on the cell. 0 without an image.
+inline double cell_weight(const Contact& contact) {
+    const auto& m = contact.image.m;
+    return contact.image.is_here() ? 0.0 : std::sqrt(static_cast<double>(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]));
+}
+
+/// w_l^2 of proofs/cells.md: |delta r| <= w_l |delta q|, and so |delta gap|. 2 without an image.
+inline double separation_weight_square(const Contact& contact) {
+    const double a = cell_weight(contact);
+    return (contact.i == contact.j ? 0.0 : 2.0) + a * a;
+}
+inline double separation_weight(const Contact& contact) {
+    constexpr double root2 = 1.4142135623731;
+    return contact.image.is_here() ? root2 : std::sqrt(separation_weight_square(contact)) * (1 + 0x1p-50);
+}
+
+/// What multiplies unit normals at most: 1 without images.
+inline double largest_multiple(const std::vector<Contact>& contacts) {
+    int most = 1;
+    for (const Contact& contact : contacts) {
+        for (const int m : contact.image.m) {
+            most = std::max(most, std::abs(m));
+        }
+    }
+    return most;
+}
+
+/// Largest sum of what contacts give to a disk, or those with an image to the cell.
+class HeaviestSum {
+  public:
+    explicit HeaviestSum(std::size_t disks) : at_disk_(disks, 0.0) {}
+    void add(const Contact& contact, double to_disks, double to_cell) {
+        if (contact.i != contact.j) { // a disk and its own image depend on the cell alone
+            at_disk_[static_cast<std::size_t>(contact.i)] += to_disks;
+            at_disk_[static_cast<std::size_t>(contact.j)] += to_disks;
+        }
+        cell_ += to_cell;
+    }
+    /// Roundings of up to 10^6 terms included.
+    [[nodiscard]] double largest() const {
+        return std::max(cell_, *std::max_element(at_disk_.begin(), at_disk_.end())) * (1 + 1e-9);
+    }
+
+  private:
+    std::vector<double> at_disk_;
+    double cell_ = 0;
+};
+
+/// K of proofs/cells.md: the root of the largest sum of w_l^4 / D_l^2 at a disk, or over the contacts with images.
+template <int Dim> double lipschitz_in_cell(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    HeaviestSum sum(packing.radius.size());
+    for (const Contact& contact : contacts) {
+        if (contact.kind == ContactKind::disk_disk) {
+            const double part = separation_weight_square(contact) / target(packing, contact);
+            sum.add(contact, part * part, contact.image.is_here() ? 0.0 : part * part);
+        }
+    }
+    return std::sqrt(sum.largest());
+}
+
+/// Lipschitz constant of the derivative of F_l = (|r|^2 - D^2) / (2 D): 2 sqrt(z) / D_min, z the largest number
 /// of disk contacts of one disk (V4). 0 when there are only walls.
 template <int Dim> double lipschitz(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    if (packing.cell.any()) {
+        return lipschitz_in_cell(packing, contacts);
+    }
     std::vector<int> count(packing.radius.size(), 0);
     double smallest = std::numeric_limits<double>::infinity();
     for (const Contact& contact : contacts) {
@@ -66,6 +132,7 @@ template <int Dim> double normal_rate(const Packing<Dim>& packing, const std::ve
 /// / D_l as in V6, which is smaller than normal_rate |x|_2 by about the square root of the number of contacts.
 template <int Dim>
 double turn_of_forces(const Packing<Dim>& packing, const std::vector<Contact>& contacts, const std::vector<double>& x) {
+    assert(!packing.cell.any()); // of trajectories, which take boxes
     std::vector<double> sum(packing.radius.size(), 0.0);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];

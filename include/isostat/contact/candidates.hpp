@@ -29,12 +29,13 @@ template <int Dim> struct CandidateList {
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
     /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
     /// another number of disks). Cost O(n).
-    /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`.
+    /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`. Always false in a
+    /// cell.
     [[nodiscard]] bool covers(const Packing<Dim>& packing, double radius = 0) const;
 };
 
 /// Whether the two grains of a pair can move relative to each other at all: not two fixed disks, nor a fixed disk and a
-/// wall that is not movable.
+/// wall that is not movable, nor a disk and its own image where the periods between them do not move.
 template <int Dim> bool can_move(const Packing<Dim>& packing, const Contact& pair);
 
 /// A pair of grains that cannot move relative to each other and that overlaps, exactly: such a packing is in no
@@ -51,7 +52,8 @@ template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& pack
 ///   at other places, is flipped until exact predicates prove every edge regular, O(n);
 /// - otherwise (deeper overlaps, size ratios above 1e5, lengths beyond 1e+-100) all pairs are swept along the first
 ///   axis; O(n^1.5) for packings.
-/// Walls by a scan. `contacts` depends on the packing and the fraction alone, not on `from` nor on what found them.
+/// In a cell: pairs with all images (proofs/cells.md, C3), nothing carried along. Walls by a scan. `contacts` depends
+/// on the packing and the fraction alone, not on `from` nor on what found them.
 template <int Dim>
 CandidateList<Dim> find_candidates(const Packing<Dim>& packing, double fraction,
                                    const std::shared_ptr<const RegularTriangulation<Dim>>& from = nullptr);

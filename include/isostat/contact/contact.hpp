@@ -10,17 +10,20 @@
 
 namespace isostat {
 
-/// "12-40", "12-left", "12-top", "held x of disk 3".
+/// "12-40", "12-40(1,-1)" of the image one period further along x and one back along y, "12-left", "12-top", "held x of
+/// disk 3".
 template <int Dim> std::string to_string(const Contact& contact);
 
-/// Derivative of a gap with respect to the coordinates: at most 2*Dim entries, coordinate indices as in `Packing::q`,
-/// components are unit normals. Column l of H is minus this vector restricted to the degrees of freedom (H = G^T, and G
-/// gives approach velocities). For a held coordinate the gradient is +1 on that coordinate.
+/// Derivative of a gap with respect to the coordinates: at most 2*Dim entries and those of the cell, coordinate indices
+/// as in `Packing::q`, components are those of the unit normal, on the cell m_a times them. Column l of H is minus this
+/// vector restricted to the degrees of freedom (H = G^T, and G gives approach velocities). For a held coordinate the
+/// gradient is +1 on that coordinate.
 template <int Dim> struct GapGradient {
     static_assert(has_dimension<Dim>());
+    static constexpr std::size_t most = 2 * Dim + Dim + Cell<Dim>::tilts;
     int count = 0;
-    std::array<int, 2 * Dim> coordinate{};
-    std::array<double, 2 * Dim> value{};
+    std::array<int, most> coordinate{};
+    std::array<double, most> value{};
 };
 
 /// Gap h: distance of the surfaces, >= 0 in an admissible packing. Held: 0.

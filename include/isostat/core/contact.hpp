@@ -2,6 +2,7 @@
 /// \file
 /// The name of a contact: what touches what. Its geometry is in the room contact.
 
+#include <array>
 #include <compare>
 #include <cstdint>
 
@@ -10,14 +11,48 @@ namespace isostat {
 /// What touches what. `held` is not a contact: it is a coordinate kept at its value (design: power turns).
 enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };
 
+/// Which image of a disk in a periodic cell: m_a periods further along the period vector a. All 0 in a box.
+struct Image {
+    std::array<std::int8_t, 3> m{};
+    [[nodiscard]] constexpr bool is_here() const { return m[0] == 0 && m[1] == 0 && m[2] == 0; }
+    [[nodiscard]] constexpr Image opposite() const {
+        return {{static_cast<std::int8_t>(-m[0]), static_cast<std::int8_t>(-m[1]), static_cast<std::int8_t>(-m[2])}};
+    }
+    friend constexpr auto operator<=>(const Image&, const Image&) = default;
+};
+
 /// One contact, or one candidate.
-/// - disk_disk: disks i < j;  - lower_wall, upper_wall: disk i and the wall of axis j;  - held: coordinate index i, j =
-/// 0.
+/// - disk_disk: disk i and the image of disk j, i < j; or i = j and an image that comes after {0, 0, 0} in the order:
+///   (i, j, m) and (j, i, -m) are one contact, (i, j, m) and (i, j, m') are two;
+/// - lower_wall, upper_wall: disk i and the wall of axis j;
+/// - held: coordinate index i, j = 0.
 struct Contact {
     ContactKind kind = ContactKind::disk_disk;
+    Image image{};
     int i = 0;
     int j = 0;
-    friend constexpr auto operator<=>(const Contact&, const Contact&) = default;
+    constexpr Contact() = default;
+    constexpr Contact(ContactKind what, int first, int second, Image of_second = {})
+        : kind(what), image(of_second), i(first), j(second) {}
+    friend constexpr bool operator==(const Contact& a, const Contact& b) {
+        return a.i == b.i && a.j == b.j && a.kind == b.kind && a.image == b.image;
+    }
+    friend constexpr std::strong_ordering operator<=>(const Contact& a, const Contact& b) {
+        if (const auto kinds = a.kind <=> b.kind; kinds != 0) {
+            return kinds;
+        }
+        if (const auto first = a.i <=> b.i; first != 0) {
+            return first;
+        }
+        const auto second = a.j <=> b.j;
+        return second != 0 ? second : a.image <=> b.image;
+    }
 };
+
+/// Two disks, in the one order that stands for both.
+constexpr Contact pair_of(int i, int j, Image image = {}) {
+    return i < j || (i == j && image > Image{}) ? Contact(ContactKind::disk_disk, i, j, image)
+                                                : Contact(ContactKind::disk_disk, j, i, image.opposite());
+}
 
 } // namespace isostat

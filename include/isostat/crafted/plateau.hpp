@@ -5,6 +5,7 @@
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/packing/packing.hpp>
+#include <isostat/rigidity/cell_counting.hpp>
 
 #include <vector>
 
@@ -72,12 +73,15 @@ struct Plateau {
 /// says nothing of a true configuration near the stored one. Throws `Error(bad_input)` for lengths beyond 1e+-100, and
 /// when two disks have the same centre. Cost at n = 10^4 (10^5): sorting and rattlers of all thresholds together 0.1 s
 /// (1.5 s), each rank 0.03 s (0.7 s).
-Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds);
+/// Periodic axes: contacts with images, and pairs with several. Where all are periodic the cell may strain as `strain`
+/// says: `isotropic` is a packing that was jammed at fixed shape, whose one self-stress a pressure balances (h = 0 here
+/// is h = 1 in a fixed cell, and the same contacts). Throws when a disk comes near its own image.
+Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain = Strain::isotropic);
 
 /// The same for every gap in [first, last] at which the contact list changes, thinned to about `rows` thresholds (0:
 /// none left out): half of them evenly over the changes and half evenly over the decades, and those next to the ends of
 /// the ranges. `first` and `last` are always among them.
-Plateau plateau(const Packing<2>& packing, double first, double last, int rows);
+Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain = Strain::isotropic);
 
 /// The contacts that `PlateauStep::backbone` counts at a threshold, sorted.
 std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold);

@@ -36,6 +36,8 @@ struct ForeignOptions {
     std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi instead of the bounds in the file
     std::optional<long> frame;                ///< of a file with several, from 0; the last one otherwise
     std::vector<std::string> columns;         ///< of a table without a header; "-" is a column to leave out
+    bool cells = false;                       ///< periodic boundaries make a cell; else they are refused
+    bool periodic = false;                    ///< boundaries that the file leaves open are periodic
     bool not_periodic = false; ///< boundaries that the file calls periodic (or does not deny to be) are open
 };
 
@@ -66,8 +68,8 @@ const std::vector<std::string>& foreign_formats();
 /// A byte order mark is skipped. Exponents are written with e: the D of Fortran is refused, with nan and inf.
 ///
 /// Throws `Error(bad_input)` with file, line, value and what was expected: also for sizes whose meaning nobody stated,
-/// periodic boundaries, tilted boxes, different z, ids given twice, more or fewer rows than announced, disks with their
-/// centre outside the walls. Overlaps are not looked at.
+/// periodic boundaries unless `cells`, tilted boxes that are not periodic, different z, ids given twice, more or fewer
+/// rows than announced, disks with their centre outside the walls. Overlaps are not looked at.
 ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options);
 
 /// The same from a file.

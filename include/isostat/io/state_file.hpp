@@ -36,11 +36,17 @@ void write_packing(const std::filesystem::path& path, const Packing<Dim>& packin
 /// float. Throws `Error(bad_input)` with file, field, value and what was expected: text that is not complete JSON,
 /// unknown or missing fields, numbers that are not finite, radii that are not positive, disks larger than the box,
 /// contacts out of range, of a disk with itself or given twice. It does not look at the geometry (gaps, overlaps) nor
-/// count contacts: see `check_start`.
+/// count contacts: see `check_start`. A state with a periodic cell is refused: most of the program takes boxes only.
 template <int Dim> StateFile<Dim> parse_state(const std::string& text, const std::string& source);
+
+/// The same, periodic cells too. Further messages: walls along a periodic axis, images in a box or more than 3 periods
+/// away, periods that are not positive, disks that overlap their own images, loads that do not sum to zero along a
+/// periodic axis.
+template <int Dim> StateFile<Dim> parse_any_state(const std::string& text, const std::string& source);
 
 /// Reads a state file or, recognised by its first character, a vertex text (`vertex_text.hpp`).
 template <int Dim> StateFile<Dim> read_state(const std::filesystem::path& path);
+template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& path);
 
 /// What must hold of a state before a trajectory starts from it, in the words of a user: throws `Error(bad_input)` when
 /// contacts and degrees of freedom do not match or the rank is deficient (h or k > 0, with the numbers), when two
@@ -55,6 +61,8 @@ extern template std::string state_text<2>(const State<2>&, std::span<const doubl
 extern template void write_state<2>(const std::filesystem::path&, const State<2>&, std::span<const double>);
 extern template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);
 extern template StateFile<2> parse_state<2>(const std::string&, const std::string&);
+extern template StateFile<2> parse_any_state<2>(const std::string&, const std::string&);
+extern template StateFile<2> read_any_state<2>(const std::filesystem::path&);
 extern template StateFile<2> read_state<2>(const std::filesystem::path&);
 extern template void check_start<2>(const State<2>&, const std::string&, bool);
 

@@ -15,11 +15,12 @@ namespace isostat {
 /// no disk carries a force of its own (proofs/stability.md, S5).
 enum class LoadKind : unsigned char { nominal, true_stress };
 
-/// The force on the movable wall of one axis, in the real numbers: minus `stress` times `length`, two stored numbers
-/// (proofs/definition.md). `external_force` rounds the product; what decides a sign must not.
+/// The force on the movable wall of one axis, on a moving period or on a moving tilt, in the real numbers: minus
+/// `stress` times `length`, two stored numbers (proofs/definition.md). `external_force` rounds the product; what
+/// decides a sign must not.
 struct WallForce {
     int coordinate = 0; ///< of the wall
-    int axis = 0;
+    int axis = 0;       ///< of a tilt: the one that it moves along
     double stress = 0;
     double length = 0;   ///< of the other axis: the reference length, or under true stresses the present one
     int length_at = -1;  ///< true stresses: the coordinate that is that length; -1: it does not change
@@ -33,17 +34,21 @@ template <int Dim> struct Load {
     LoadKind kind = LoadKind::nominal;
     std::array<double, Dim> stress{};           ///< sigma_1, sigma_2 (axis 0, axis 1)
     std::array<double, Dim> reference_length{}; ///< L_a at which nominal stress and strain are defined
-    int loaded_axis = 1;                        ///< the axis whose stress the programme changes (sigma_2)
-    std::vector<double> disk_force;             ///< empty, or Dim*n external forces on the disks
-    std::vector<double> infinitesimal;          ///< empty, or Dim*n infinitesimal loads g (the eps part)
+    /// Nominal shear stresses on the tilts of a cell that move: the dead force on A_ab is - shear L_a,ref.
+    std::array<double, Cell<Dim>::tilts> shear{};
+    int loaded_axis = 1;               ///< the axis whose stress the programme changes (sigma_2)
+    std::vector<double> disk_force;    ///< empty, or Dim*n external forces on the disks
+    std::vector<double> infinitesimal; ///< empty, or Dim*n infinitesimal loads g (the eps part)
 
-    /// What presses on the walls that can move. With `disk_force` this is the load, exactly.
+    /// What presses on the walls and on the coordinates of the cell that can move. With `disk_force` this is the load,
+    /// exactly. A period takes the force of the wall that would stand there: dead forces, so W is linear in the cell.
     [[nodiscard]] std::vector<WallForce> wall_forces(const Packing<Dim>& packing) const;
     /// Degrees of freedom that carry a finite load other than that of the loaded wall, ascending; and the loaded wall's
     /// (-1: it cannot move, or its stress presses on nothing).
     [[nodiscard]] std::vector<int> loaded_rows(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const;
     [[nodiscard]] int loaded_wall_row(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const;
-    /// External force on every coordinate (size Dim*(n+1)) for the current stresses, each rounded to the nearest.
+    /// External force on every coordinate (as many as `Packing::q` has) for the current stresses, each rounded to the
+    /// nearest.
     [[nodiscard]] std::vector<double> external_force(const Packing<Dim>& packing) const;
     /// Its derivative with respect to the loaded stress: one non-zero entry, on the loaded wall, not rounded.
     [[nodiscard]] std::vector<double> unit_force(const Packing<Dim>& packing) const;
@@ -59,10 +64,16 @@ template <int Dim> double potential(const Packing<Dim>& packing, const Load<Dim>
 template <int Dim>
 std::vector<double> generic_infinitesimal(const std::vector<double>& radius, unsigned long long seed);
 
+/// Such loads for a cell: along periodic axes they must sum to zero, or the pinned grain would bear the rest and its
+/// choice would matter. Every g is rounded to a common dyadic grid of 30 bits, and the pinned grain takes minus the sum
+/// of the others, so that the sum is exactly 0. Nothing changes in a box.
+template <int Dim> void balance(std::vector<double>& infinitesimal, const Cell<Dim>& cell);
+
 /// Forces on coordinates (as above, or on the disks only) as forces on degrees of freedom: what the contacts carry.
 template <int Dim> std::vector<double> on_dofs(const std::vector<double>& on_coordinates, const DofMap<Dim>& dofs);
 
 extern template struct Load<2>;
+extern template void balance<2>(std::vector<double>&, const Cell<2>&);
 extern template double potential<2>(const Packing<2>&, const Load<2>&);
 extern template std::vector<double> on_dofs<2>(const std::vector<double>&, const DofMap<2>&);
 extern template std::vector<double> generic_infinitesimal<2>(const std::vector<double>&, unsigned long long);

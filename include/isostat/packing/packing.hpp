@@ -1,10 +1,12 @@
 #pragma once
 /// \file
-/// The grains and where they are: disks (Dim = 2; spheres are not written yet) and flat walls normal to the axes.
+/// The grains and where they are: disks (Dim = 2; spheres are not written yet), flat walls normal to the axes, and axes
+/// that repeat.
 
 #include <isostat/core/dimension.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/core/ids.hpp>
+#include <isostat/packing/cell.hpp>
 
 #include <array>
 #include <cstddef>
@@ -37,14 +39,16 @@ template <int Dim> struct Walls {
 /// Radii, walls and configuration. Lengths are in the user's unit.
 ///
 /// Coordinates are stored flat: `q[Dim*i + a]` is coordinate a of disk i, `q[Dim*n + a]` is L_a, the position of the
-/// upper wall of axis a (present in q even when that wall is absent, then meaningless and 0). A *coordinate index* is
-/// an index into q. Invariant (checked by `validate`): every radius from `shortest_length` to `longest_length`, every
-/// coordinate finite, those of disks and walls at most `longest_length`.
+/// upper wall of axis a, or its period where it is periodic (present in q even when that wall is absent, then
+/// meaningless and 0). With periodic axes the tilts of the cell follow. A *coordinate index* is an index into q.
+/// Invariant (checked by `validate`): every radius from `shortest_length` to `longest_length`, every coordinate finite,
+/// those of disks, walls and cell at most `longest_length`; a periodic axis has no walls and no disk is fixed then.
 template <int Dim> struct Packing {
     static_assert(has_dimension<Dim>());
     std::vector<double> radius; ///< n radii
-    std::vector<double> q;      ///< Dim*(n+1) coordinates
+    std::vector<double> q;      ///< Dim*(n+1) coordinates, and the tilts of a cell
     Walls<Dim> walls = Walls<Dim>::box();
+    Cell<Dim> cell;                   ///< which axes repeat; none in a box
     std::vector<unsigned char> fixed; ///< empty, or n flags: 1 = this disk cannot move
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
@@ -58,15 +62,29 @@ template <int Dim> struct Packing {
     [[nodiscard]] double& length(int axis) {
         return q[static_cast<std::size_t>(Dim) * radius.size() + static_cast<std::size_t>(axis)];
     }
+    /// Coordinate index of L_a, and of the tilt A_ab, a < b. \pre of the tilt: there are periodic axes
+    [[nodiscard]] std::size_t length_at(std::size_t axis) const {
+        return static_cast<std::size_t>(Dim) * radius.size() + axis;
+    }
+    [[nodiscard]] std::size_t tilt_at(std::size_t a, std::size_t b) const { return length_at(Dim + cell.tilt(a, b)); }
+    /// A_ab, a <= b: the cell as it is stored. \pre there are periodic axes
+    [[nodiscard]] double lattice(std::size_t a, std::size_t b) const {
+        return a == b ? q[length_at(a)] : q[tilt_at(a, b)];
+    }
+    /// How many coordinates q has.
+    [[nodiscard]] std::size_t coordinate_count() const {
+        return length_at(Dim) + (cell.any() ? Cell<Dim>::tilts : std::size_t{0});
+    }
     [[nodiscard]] bool is_fixed(DiskId disk) const { return !fixed.empty() && fixed[disk.index()] != 0; }
     [[nodiscard]] double min_radius() const;
     [[nodiscard]] double max_radius() const;
-    /// Sum of the disks' areas (Dim = 2) over Lx*Ly.
+    /// Sum of the disks' areas (Dim = 2) over Lx*Ly, the area of box and cell.
     [[nodiscard]] double solid_fraction() const;
 };
 
 /// Which coordinates of a packing are degrees of freedom, numbered 0 .. N_f-1 in the order of q.
-/// In the paper's box without fixed disks the numbering is the identity and N_f = 2n + 2.
+/// In the paper's box without fixed disks the numbering is the identity and N_f = 2n + 2. Along periodic axes the
+/// pinned grain has none (the first one that is not fixed, where `Cell::pin` is fixed).
 template <int Dim> class DofMap {
     static_assert(has_dimension<Dim>());
 
@@ -80,24 +98,35 @@ template <int Dim> class DofMap {
     [[nodiscard]] int dof_of(std::size_t coordinate) const { return dof_of_[coordinate]; }
     /// Coordinate index of a degree of freedom.
     [[nodiscard]] int coordinate_of(int dof) const { return coordinate_of_[static_cast<std::size_t>(dof)]; }
-    /// "x of disk 12", "right wall": for messages.
+    /// "x of disk 12", "right wall", "period along x", "tilt xy": for messages.
     [[nodiscard]] std::string name(int dof) const;
+    [[nodiscard]] int disk_count() const { return disks_; }
 
   private:
     int disks_;
+    std::array<bool, Dim> periodic_;
     std::vector<int> dof_of_;
     std::vector<int> coordinate_of_;
 };
 
-/// Throws `Error(bad_input)` naming the disk or wall and the value when the invariant of `Packing` does not hold or a
-/// disk is larger than the box. `source` (a file name) starts the message.
+/// Throws `Error(bad_input)` naming the disk or wall and the value when the invariant of `Packing` does not hold, a
+/// disk is larger than the box, or overlaps its own image (its diameter may be anything up to the shortest period: two
+/// disks that touch through several images are no trouble). `source` (a file name) starts the message.
 template <int Dim> void validate(const Packing<Dim>& packing, const std::string& source);
+
+/// Throws `Error(bad_input)` when an axis is periodic: `what` takes boxes only. "FILE: a periodic cell; ..."
+template <int Dim> void require_box(const Packing<Dim>& packing, const std::string& source, const std::string& what);
 
 /// Rounds what can move to the common dyadic grid of the packing: multiples of 2^(e-52), 2^e the smallest power of two
 /// that is not below any coordinate of a disk or of a wall that is there. Fixed disks and walls stay where they are, on
 /// the grid or not; where all coordinates are on it, their differences are exact. Moves a coordinate by at most half a
 /// grid step (2^-53 of the box); returns the largest such move. Idempotent; commutes with scaling by powers of two.
+/// With periodic axes the grid is four times as coarse, so that x_j - x_i + A m is exact too for |m_a| <= 3, and every
+/// coordinate is rounded: of the pinned grain, and of a cell that does not move.
 template <int Dim> double snap_to_grid(Packing<Dim>& packing);
+
+/// Whether `snap_to_grid` would leave every coordinate where it is.
+template <int Dim> bool is_on_grid(const Packing<Dim>& packing);
 
 /// The grid step that `snap_to_grid` uses.
 template <int Dim> double grid_step(const Packing<Dim>& packing);
@@ -106,6 +135,8 @@ extern template struct Walls<2>;
 extern template struct Packing<2>;
 extern template class DofMap<2>;
 extern template void validate<2>(const Packing<2>&, const std::string&);
+extern template void require_box<2>(const Packing<2>&, const std::string&, const std::string&);
+extern template bool is_on_grid<2>(const Packing<2>&);
 extern template double snap_to_grid<2>(Packing<2>&);
 extern template double grid_step<2>(const Packing<2>&);
 

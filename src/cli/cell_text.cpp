@@ -1,0 +1,99 @@
+#include "cli/cell_text.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace isostat::cli {
+
+namespace {
+
+constexpr std::array<const char*, 2> axis_name{"x", "y"};
+
+std::vector<std::string> moving(const Cell<2>& cell) {
+    std::vector<std::string> names;
+    for (std::size_t a = 0; a < 2; ++a) {
+        if (cell.period_moves[a]) {
+            names.emplace_back(axis_name[a]);
+        }
+    }
+    if (cell.tilt_moves[0]) {
+        names.emplace_back("xy");
+    }
+    return names;
+}
+
+/// A number that is only bounded is marked.
+std::string marked(int value, const Counting& c) {
+    return fmt::format("{}{}", c.rank_exact == Verdict::proved ? "" : "<=", value);
+}
+
+void print_answer(const char* title, const Answer& answer) {
+    fmt::print("{:<24} {}: {}\n", title, to_string(answer.verdict), answer.reason);
+}
+
+} // namespace
+
+Json counts_json(const StrainCounts& counts) {
+    Json out;
+    for (std::size_t k = 0; k < strains.size(); ++k) {
+        const Counting& c = counts[k];
+        out[to_string(strains[k])] = {{"N_f", c.dof_count},    {"N", c.contact_count},
+                                      {"rank", c.rank},        {"rank_exact", to_string(c.rank_exact)},
+                                      {"h", c.hyperstaticity}, {"k", c.mechanisms}};
+    }
+    return out;
+}
+
+std::string cell_words(const Packing<2>& packing) {
+    std::string text;
+    for (std::size_t a = 0; a < 2; ++a) {
+        text += fmt::format("{}{} ({})", a == 0 ? "" : " x ", packing.length(static_cast<int>(a)),
+                            packing.cell.periodic[a] ? "periodic" : "walls");
+    }
+    const std::vector<std::string> names = moving(packing.cell);
+    return fmt::format("{}, tilt {}; {}, disk {} is pinned", text, packing.lattice(0, 1),
+                       names.empty() ? "no period moves" : fmt::format("{} move", fmt::join(names, ", ")),
+                       packing.cell.pin);
+}
+
+void print_counts(const std::string& title, const StrainCounts& counts) {
+    fmt::print("{:<24} {:>7} {:>7} {:>7} {:>6} {:>6}\n", title, "N_f", "N", "rank", "h", "k");
+    for (std::size_t k = 0; k < strains.size(); ++k) {
+        const Counting& c = counts[k];
+        fmt::print("  {:<22} {:>7} {:>7} {:>7} {:>6} {:>6}\n", to_string(strains[k]), c.dof_count, c.contact_count,
+                   c.rank, marked(c.hyperstaticity, c), marked(c.mechanisms, c));
+    }
+}
+
+void print_cell(const CellInspection& cell) {
+    print_counts("all disks", cell.all);
+    if (cell.backbone) {
+        print_counts(fmt::format("backbone, {} disks", cell.backbone_disks), *cell.backbone);
+        fmt::print("{:<24} {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}\n",
+                   "contacts needed", contacts_for_bulk_modulus<2>(cell.backbone_disks),
+                   contacts_for_all_moduli<2>(cell.backbone_disks), (*cell.backbone)[0].contact_count);
+    }
+    print_answer("jammed locally", cell.local);
+    print_answer("jammed collectively", cell.collective);
+    print_answer("jammed strictly", cell.strict);
+}
+
+Json cell_json(const Packing<2>& packing, const CellInspection& cell) {
+    Json out;
+    out["moves"] = moving(packing.cell);
+    out["tilt"] = number(packing.lattice(0, 1));
+    out["all"] = counts_json(cell.all);
+    out["backbone_disks"] = cell.backbone_disks;
+    out["backbone"] = cell.backbone ? counts_json(*cell.backbone) : Json();
+    for (const auto& [name, answer] : {std::pair("local", &cell.local), std::pair("collective", &cell.collective),
+                                       std::pair("strict", &cell.strict)}) {
+        out["jammed"][name] = {{"verdict", to_string(answer->verdict)}, {"reason", answer->reason}};
+    }
+    if (cell.backbone) {
+        out["contacts_for_bulk_modulus"] = contacts_for_bulk_modulus<2>(cell.backbone_disks);
+        out["contacts_for_all_moduli"] = contacts_for_all_moduli<2>(cell.backbone_disks);
+    }
+    return out;
+}
+
+} // namespace isostat::cli

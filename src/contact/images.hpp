@@ -1,0 +1,41 @@
+#pragma once
+// The images of the disks of a periodic cell that may matter, and what pairs of them stand for: private to the library.
+
+#include "contact/separation.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+namespace isostat {
+
+/// Finitely many images of the disks of a cell: without a cell, as a packing of their own. Every pair of a disk and an
+/// image with a gap below `reach` is, moved by some period, a pair of these (proofs/cells.md, C3).
+template <int Dim> struct Images {
+    Packing<Dim> packing;      ///< no walls, no cell; their centres as rounded
+    std::vector<int> disk;     ///< of each image, the disk
+    std::vector<Image> offset; ///< and where it is: x_disk + A offset
+    double rounding = 0;       ///< bound of what the rounding of two centres does to a gap
+
+    /// The contact that two of them stand for.
+    [[nodiscard]] Contact contact(int a, int b) const;
+};
+
+/// \pre there are periodic axes. Throws `Error(bad_input)` when a representative lies more than 30 periods away, or
+/// when more than 10^8 images would be needed: a cell that flat has another basis.
+Images<2> images_near_cell(const Packing<2>& packing, double reach);
+
+/// Sum of the lengths that r of an image is made of, which the rounding of r goes with; 0 without an image.
+template <int Dim> double lengths_of_image(const Packing<Dim>& packing, const Contact& pair) {
+    double sum = 0;
+    if (!pair.image.is_here()) {
+        Separation<Dim>(pair, packing.disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
+            sum += std::abs(multiple) * std::abs(packing.q[k]);
+        });
+    }
+    return sum;
+}
+
+extern template struct Images<2>;
+
+} // namespace isostat

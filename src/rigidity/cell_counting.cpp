@@ -1,0 +1,190 @@
+#include "contact/separation.hpp"
+
+#include <isostat/exact/kernel.hpp>
+#include <isostat/exact/rank.hpp>
+#include <isostat/rigidity/cell_counting.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <functional>
+
+namespace isostat {
+
+namespace {
+
+using Residue = std::uint64_t;
+
+/// What a column is made of, in numbers of any kind.
+template <int Dim, class Number> struct Arms {
+    std::array<Number, static_cast<std::size_t>(Dim)> r;      ///< x_j - x_i + A m
+    std::array<Number, static_cast<std::size_t>(Dim)> period; ///< A m
+};
+
+template <int Dim, class Number, class Of, class Minus>
+Arms<Dim, Number> arms_of(const Packing<Dim>& packing, const Contact& contact, Of of, Minus minus) {
+    const auto at = [&](std::size_t k) -> Number { return of(packing.q[k]); };
+    Arms<Dim, Number> arms;
+    arms.r = Separation<Dim>(contact, packing.disk_count()).of_disks(at, minus);
+    // A disk and its own image are A m apart.
+    arms.period =
+        Separation<Dim>(Contact(ContactKind::disk_disk, 0, 0, contact.image), packing.disk_count()).of_disks(at, minus);
+    return arms;
+}
+
+/// The cell held: only the disks have degrees of freedom.
+template <int Dim> Packing<Dim> in_fixed_cell(Packing<Dim> packing) {
+    packing.cell.period_moves.fill(false);
+    packing.cell.tilt_moves.fill(false);
+    return packing;
+}
+
+/// visit(row, entry) of one column, ascending. `product`, `sum`, `negative`: of the numbers.
+template <int Dim, class Number, class Ring, class Visit>
+void for_each_strained_entry(const DofMap<Dim>& dofs, const Contact& contact, const Arms<Dim, Number>& arms,
+                             Strain strain, const Ring& ring, Visit visit) {
+    for (const bool second : {false, true}) {
+        for (std::size_t a = 0; a < Dim && contact.i != contact.j; ++a) {
+            const auto disk = static_cast<std::size_t>(second ? contact.j : contact.i);
+            if (const int dof = dofs.dof_of(Dim * disk + a); dof >= 0) {
+                visit(dof, second ? ring.negative(arms.r[a]) : arms.r[a]);
+            }
+        }
+    }
+    const int first = dofs.dof_count();
+    int row = 0;
+    Number trace = ring.zero();
+    for (std::size_t a = 0; a < Dim && strain != Strain::none; ++a) {
+        const std::size_t last = strain == Strain::full ? static_cast<std::size_t>(Dim) : a + 1;
+        for (std::size_t b = a; b < last; ++b) {
+            const Number entry = ring.negative(ring.product(arms.r[a], arms.period[b]));
+            if (strain == Strain::isotropic) {
+                trace = ring.sum(trace, entry);
+            } else {
+                visit(first + row++, entry);
+            }
+        }
+    }
+    if (strain == Strain::isotropic) {
+        visit(first, trace);
+    }
+}
+
+struct ResidueRing {
+    static Residue zero() { return 0; }
+    static Residue negative(Residue a) { return a == 0 ? 0 : exact::mersenne61 - a; }
+    static Residue product(Residue a, Residue b) { return exact::multiply(a, b); }
+    static Residue sum(Residue a, Residue b) { return (a + b) % exact::mersenne61; }
+    static Residue difference(Residue a, Residue b) { return sum(a, negative(b)); }
+};
+
+struct NumberRing {
+    using Number = exact::Number;
+    static Number zero() { return Number(0); }
+    static Number negative(const Number& a) { return -a; }
+    static Number product(const Number& a, const Number& b) { return a * b; }
+    static Number sum(const Number& a, const Number& b) { return a + b; }
+};
+
+template <int Dim>
+exact::NumberMatrix number_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Strain strain) {
+    const DofMap<Dim> dofs(in_fixed_cell(packing));
+    exact::NumberMatrix matrix;
+    matrix.rows = dofs.dof_count() + strain_count<Dim>(strain);
+    for (const Contact& contact : contacts) {
+        const auto arms = arms_of<Dim, exact::Number>(packing, contact, exact::Number::from_double, std::minus<>());
+        auto& column = matrix.column.emplace_back();
+        for_each_strained_entry(dofs, contact, arms, strain, NumberRing(), [&](int row, const exact::Number& entry) {
+            if (!entry.is_zero()) {
+                column.emplace_back(row, entry);
+            }
+        });
+    }
+    return matrix;
+}
+
+} // namespace
+
+const char* to_string(Strain strain) {
+    switch (strain) {
+    case Strain::none: return "fixed cell";
+    case Strain::isotropic: return "isotropic";
+    case Strain::diagonal: return "diagonal";
+    case Strain::full: return "full strain";
+    }
+    return "";
+}
+
+template <int Dim>
+sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
+                                                    Strain strain) {
+    assert(packing.cell.all());
+    const DofMap<Dim> dofs(in_fixed_cell(packing));
+    sparse::Matrix<std::uint64_t> matrix;
+    matrix.rows = dofs.dof_count() + strain_count<Dim>(strain);
+    matrix.cols = static_cast<int>(contacts.size());
+    matrix.start.push_back(0);
+    for (const Contact& contact : contacts) {
+        const auto arms = arms_of<Dim, Residue>(packing, contact, exact::residue, ResidueRing::difference);
+        for_each_strained_entry(dofs, contact, arms, strain, ResidueRing(), [&](int row, Residue entry) {
+            matrix.row.push_back(row);
+            matrix.value.push_back(entry);
+        });
+        matrix.start.push_back(static_cast<int>(matrix.row.size()));
+    }
+    return matrix;
+}
+
+template <int Dim>
+Counting count_strained(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Strain strain) {
+    const auto matrix = exact_strained_matrix(packing, contacts, strain);
+    Counting counting;
+    counting.dof_count = matrix.rows;
+    counting.contact_count = matrix.cols;
+    counting.rank = matrix.rows == 0 || matrix.cols == 0 ? 0 : exact::rank(matrix);
+    if (counting.rank < std::min(matrix.rows, matrix.cols)) {
+        const exact::Kernel kernel = exact::kernel(number_matrix(packing, contacts, strain));
+        counting.rank = std::max(counting.rank, kernel.rank);
+        counting.rank_exact = kernel.exact;
+    } else {
+        counting.rank_exact = Verdict::proved;
+    }
+    counting.hyperstaticity = counting.contact_count - counting.rank;
+    counting.mechanisms = counting.dof_count - counting.rank;
+    return counting;
+}
+
+template <int Dim> StrainCounts count_strains(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    StrainCounts counts;
+    std::transform(strains.begin(), strains.end(), counts.begin(),
+                   [&](Strain strain) { return count_strained(packing, contacts, strain); });
+    return counts;
+}
+
+std::vector<int> untouched(int disks, const std::vector<Contact>& pairs) {
+    std::vector<unsigned char> touched(static_cast<std::size_t>(disks), 0);
+    for (const Contact& pair : pairs) {
+        touched[static_cast<std::size_t>(pair.i)] = touched[static_cast<std::size_t>(pair.j)] = 1;
+    }
+    std::vector<int> out;
+    for (int i = 0; i < disks; ++i) {
+        if (touched[static_cast<std::size_t>(i)] == 0) {
+            out.push_back(i);
+        }
+    }
+    return out;
+}
+
+template <int Dim> Packing<Dim> without_disks(Packing<Dim> packing, const std::vector<int>& disks) {
+    packing.fixed.resize(packing.radius.size(), 0);
+    for (const int disk : disks) {
+        packing.fixed[static_cast<std::size_t>(disk)] = 1;
+    }
+    return packing;
+}
+
+template sparse::Matrix<std::uint64_t> exact_strained_matrix<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
+template Counting count_strained<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
+template StrainCounts count_strains<2>(const Packing<2>&, const std::vector<Contact>&);
+template Packing<2> without_disks<2>(Packing<2>, const std::vector<int>&);
+
+} // namespace isostat

@@ -1,0 +1,278 @@
+#include "support/cells.hpp"
+
+#include <isostat/certificate/inspect.hpp>
+#include <isostat/certificate/inspect_cell.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+using isostat::Certification;
+using isostat::certify;
+using isostat::Contact;
+using isostat::Counting;
+using isostat::Interval;
+using isostat::State;
+using isostat::StateFile;
+using isostat::Verdict;
+
+namespace {
+
+bool contains(const Interval& interval, double value, double width) {
+    return interval.lower <= value + 1e-15 && value - 1e-15 <= interval.upper &&
+           interval.upper - interval.lower < width;
+}
+
+/// The forces of a state, proved at its true vertex.
+void check_forces(const State<2>& state, const std::vector<double>& expected) {
+    const Certification truth = certify(state);
+    BOOST_TEST(truth.claims.vertex.has_value());
+    BOOST_TEST_REQUIRE(truth.finite.size() == expected.size());
+    for (std::size_t l = 0; l < expected.size(); ++l) {
+        BOOST_TEST(contains(truth.finite[l], expected[l], 1e-10),
+                   isostat::to_string<2>(state.contacts[l]) << " in [" << truth.finite[l].lower << ", "
+                                                            << truth.finite[l].upper << "], not " << expected[l]);
+    }
+}
+
+StateFile<2> first_equilibrium(const std::string& name) {
+    return isostat::read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json");
+}
+
+void check_interval(const Certification& truth, double low, double high, double within) {
+    BOOST_TEST_REQUIRE(truth.claims.load_interval.has_value());
+    const auto& ends = *truth.claims.load_interval;
+    BOOST_TEST(std::abs(ends.low.stress.lower - low) < within);
+    BOOST_TEST(std::abs(ends.low.stress.upper - low) < within);
+    BOOST_TEST(std::abs(ends.high.stress.lower - high) < within);
+    BOOST_TEST(std::abs(ends.high.stress.upper - high) < within);
+}
+
+/// The same contacts carry the same forces.
+void check_same_forces(const State<2>& a, const State<2>& b, const std::vector<std::size_t>& place) {
+    const Certification one = certify(a);
+    const Certification other = certify(b);
+    BOOST_TEST((one.verdict == Verdict::proved));
+    BOOST_TEST((other.verdict == Verdict::proved));
+    for (std::size_t l = 0; l < a.contacts.size(); ++l) {
+        const Interval& f = one.finite[l];
+        const Interval& g = other.finite[place[l]];
+        BOOST_TEST((f.lower <= g.upper && g.lower <= f.upper));
+    }
+}
+
+std::vector<std::size_t> in_order(std::size_t count) {
+    std::vector<std::size_t> place(count);
+    for (std::size_t l = 0; l < count; ++l) {
+        place[l] = l;
+    }
+    return place;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cell)
+
+BOOST_AUTO_TEST_CASE(one_disk_bears_the_forces_of_its_periods) {
+    const State<2> state = cells::one_disk(2, 3);
+    check_forces(state, {3, 2});
+    const Certification truth = certify(state);
+    BOOST_TEST((truth.verdict == Verdict::proved));
+    BOOST_TEST(truth.counting.dof_count == 2);
+    BOOST_TEST_REQUIRE(truth.claims.load_interval.has_value());
+    BOOST_TEST(contains(truth.claims.load_interval->low.stress, 0, 1e-9));
+    BOOST_TEST(truth.claims.load_interval->high.unbounded);
+}
+
+BOOST_AUTO_TEST_CASE(one_tilted_disk_bears_pressure_and_shear) {
+    const double f1 = 2;
+    const double f2 = 1;
+    for (const double t : {0.0, 0.25, -0.5}) {
+        const double half = f2 / std::sqrt(3.0);
+        check_forces(cells::one_tilted_disk(f1, f2, t), {half + t, half - t, f1 - (half - t) / 2});
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_shear_beyond_what_the_tilt_bears_is_refuted) {
+    BOOST_TEST((certify(cells::one_tilted_disk(2, 1, 0.57)).verdict == Verdict::proved));
+    BOOST_TEST((certify(cells::one_tilted_disk(2, 1, 0.58)).verdict == Verdict::refuted)); // 1 / sqrt 3 is between
+}
+
+BOOST_AUTO_TEST_CASE(own_image_of_two_disks_takes_what_the_centred_rectangle_leaves) {
+    State<2> state = cells::two_disks(true, 5, 2);
+    state.contacts.push_back(cells::across(0, 0, 1, 0));
+    const double f1 = 5;
+    const double f2 = 2;
+    for (const double t : {0.0, 0.3}) {
+        state.load.shear = {t};
+        const double even = f2 * 2 / (2 * 1.6);
+        const double odd = t * 2 / (2 * 1.2);
+        const Certification truth = certify(state);
+        BOOST_TEST((truth.claims.vertex.has_value()));
+        // Contacts (0, 0) and (-1, -1) share a line, as do (-1, 0) and (0, -1); the shear tells the two pairs apart.
+        BOOST_TEST(contains(truth.finite[0], truth.finite[3].lower, 1e-10));
+        BOOST_TEST(contains(truth.finite[1], truth.finite[2].lower, 1e-10));
+        BOOST_TEST(std::abs(truth.finite[0].lower + truth.finite[1].lower - 2 * even) < 1e-10);
+        BOOST_TEST(std::abs(std::abs(truth.finite[0].lower - truth.finite[1].lower) - 2 * odd) < 1e-10);
+        BOOST_TEST(contains(truth.finite[4], f1 - f2 * 1.2 / 1.6, 1e-10));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(one_disk_in_a_channel) {
+    State<2> state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
+                                    {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
+    state.packing.cell = {{true, false}, {true, false}, {false}, 0};
+    state.packing.walls.lower[1] = isostat::WallKind::fixed;
+    state.packing.walls.upper[1] = isostat::WallKind::movable;
+    check_forces(state, {2, 3, 3});
+    BOOST_TEST((certify(state).verdict == Verdict::proved));
+    BOOST_TEST(certify(state).counting.dof_count == 3);
+}
+
+BOOST_AUTO_TEST_CASE(first_equilibria_of_an_independent_program) {
+    struct Known {
+        const char* name;
+        double low, high;
+    };
+    for (const Known& known :
+         {Known{"rect", 0.7027637466432636, 1.3794962837050024}, Known{"tilt", 0.9930651761293112, 1.8029080469581122},
+          Known{"channel", 0.519226501649397, 1.0005767055665702}}) {
+        BOOST_TEST_CONTEXT(known.name) {
+            const StateFile<2> file = first_equilibrium(known.name);
+            const Certification truth = certify(file.state);
+            BOOST_TEST((truth.verdict == Verdict::proved));
+            BOOST_TEST(truth.counting.rank == static_cast<int>(file.state.contacts.size()));
+            for (std::size_t l = 0; l < file.forces.size(); ++l) {
+                BOOST_TEST(std::abs(truth.finite[l].lower - file.forces[l]) < 1e-9);
+                BOOST_TEST(std::abs(truth.finite[l].upper - file.forces[l]) < 1e-9);
+            }
+            check_interval(truth, known.low, known.high, 1e-9);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_the_pinned_disk) {
+    for (const char* name : {"rect", "tilt", "channel"}) {
+        const State<2> state = first_equilibrium(name).state;
+        State<2> other = state;
+        other.packing.cell.pin = 5;
+        check_same_forces(state, other, in_order(state.contacts.size()));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_the_representatives) {
+    const State<2> state = first_equilibrium("tilt").state;
+    std::vector<isostat::Image> shift(state.packing.radius.size());
+    shift[3] = cells::image(1, 0);
+    shift[7] = cells::image(0, -1);
+    shift[8] = cells::image(-1, 1);
+    const State<2> other = cells::with_other_representatives(state, shift);
+    check_same_forces(state, other, in_order(state.contacts.size()));
+}
+
+BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_the_names_of_the_disks) {
+    const State<2> state = first_equilibrium("rect").state;
+    State<2> other = state;
+    const int n = state.packing.disk_count();
+    const auto renamed = [n](int i) { return n - 1 - i; };
+    for (int i = 0; i < n; ++i) {
+        const auto from = static_cast<std::size_t>(i);
+        const auto to = static_cast<std::size_t>(renamed(i));
+        other.packing.radius[to] = state.packing.radius[from];
+        for (std::size_t a = 0; a < 2; ++a) {
+            other.packing.q[2 * to + a] = state.packing.q[2 * from + a];
+            other.load.infinitesimal[2 * to + a] = state.load.infinitesimal[2 * from + a];
+        }
+    }
+    for (Contact& c : other.contacts) {
+        c = isostat::pair_of(renamed(c.i), renamed(c.j), c.image);
+    }
+    check_same_forces(state, other, in_order(state.contacts.size()));
+}
+
+BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_the_basis_of_the_lattice) {
+    // b -> b + a: the tilt grows by Lx, an offset (m, p) becomes (m - p, p). Dead forces: F1 takes what the tilt had.
+    const State<2> state = first_equilibrium("tilt").state;
+    State<2> other = state;
+    other.packing.q.back() += state.packing.lattice(0, 0);
+    for (Contact& c : other.contacts) {
+        isostat::Image m = c.image;
+        m.m[0] = static_cast<std::int8_t>(m.m[0] - m.m[1]);
+        c = isostat::pair_of(c.i, c.j, m);
+    }
+    check_same_forces(state, other, in_order(state.contacts.size()));
+}
+
+BOOST_AUTO_TEST_CASE(forces_do_not_depend_on_which_axis_is_called_x) {
+    const State<2> state = first_equilibrium("rect").state;
+    State<2> other = state;
+    for (std::size_t i = 0; i <= state.packing.radius.size(); ++i) {
+        std::swap(other.packing.q[2 * i], other.packing.q[2 * i + 1]);
+        if (i < state.packing.radius.size()) {
+            std::swap(other.load.infinitesimal[2 * i], other.load.infinitesimal[2 * i + 1]);
+        }
+    }
+    std::swap(other.load.reference_length[0], other.load.reference_length[1]);
+    std::swap(other.load.stress[0], other.load.stress[1]);
+    for (Contact& c : other.contacts) {
+        c = isostat::pair_of(c.i, c.j, cells::image(c.image.m[1], c.image.m[0]));
+    }
+    check_same_forces(state, other, in_order(state.contacts.size()));
+}
+
+BOOST_AUTO_TEST_CASE(a_rattler_must_not_overlap_an_image) {
+    // It rests on a disk and its image, under an infinitesimal force; there is room for it below the next images up to
+    // a radius of sqrt 2 - 1.
+    for (const double radius : {0.3, 0.5}) {
+        State<2> state =
+            cells::in_cell({{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
+                           {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0),
+                            cells::across(0, 1, -1, 0)});
+        state.load.infinitesimal = {0, 1, 0, -1};
+        const Certification truth = certify(state);
+        BOOST_TEST(truth.signs.structural_zero == 2);
+        BOOST_TEST((truth.verdict == (radius < 0.4 ? Verdict::proved : Verdict::refuted)));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(jammed_in_words_that_the_counts_prove) {
+    const State<2> rect = first_equilibrium("rect").state;
+    const isostat::CellInspection r = isostat::inspect_cell(rect, certify(rect));
+    BOOST_TEST((r.collective.verdict == Verdict::proved));
+    BOOST_TEST((r.strict.verdict == Verdict::refuted)); // one shear of the cell is left
+    BOOST_TEST_REQUIRE(r.backbone.has_value());
+    BOOST_TEST(r.backbone_disks == 15);
+    const auto& rows = *r.backbone;
+    const std::vector<int> dofs{28, 29, 30, 31};
+    const std::vector<int> h{2, 1, 0, 0};
+    const std::vector<int> k{0, 0, 0, 1};
+    for (std::size_t s = 0; s < 4; ++s) {
+        BOOST_TEST(rows[s].dof_count == dofs[s]);
+        BOOST_TEST(rows[s].contact_count == 30);
+        BOOST_TEST(rows[s].hyperstaticity == h[s]);
+        BOOST_TEST(rows[s].mechanisms == k[s]);
+        BOOST_TEST((rows[s].rank_exact == Verdict::proved));
+    }
+    const State<2> tilt = first_equilibrium("tilt").state;
+    const isostat::CellInspection t = isostat::inspect_cell(tilt, certify(tilt));
+    BOOST_TEST((t.collective.verdict == Verdict::proved));
+    BOOST_TEST((t.strict.verdict == Verdict::undecided));
+    BOOST_TEST(t.all[3].mechanisms == 0);
+    const State<2> square = cells::square_lattice(3, false);
+    const isostat::CellInspection s = isostat::inspect_cell(square, certify(square));
+    BOOST_TEST((s.collective.verdict == Verdict::undecided));
+    BOOST_TEST(!s.backbone.has_value());
+}
+
+BOOST_AUTO_TEST_CASE(states_with_a_mechanism_are_counted_not_followed) {
+    const auto result = isostat::inspect_vertex(
+        cells::in_cell({{1, 0, 0}}, {2, 2, 0}, true, 1, 1, {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0)}));
+    BOOST_TEST_REQUIRE(!result.ok());
+    BOOST_TEST(result.failure().message().find("N_f = 3, N = 2, rank 2, h = 0, k = 1") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,147 @@
+#include "contact/images.hpp"
+#include "contact/near_pairs.hpp"
+#include "support/cells.hpp"
+
+#include <isostat/contact/candidates.hpp>
+#include <isostat/core/error.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using isostat::Contact;
+using isostat::Packing;
+using isostat::State;
+
+namespace {
+
+/// Every pair with a gap below `reach` among images up to 8 periods away, by the definition.
+std::vector<Contact> by_definition(const Packing<2>& packing, double reach) {
+    std::vector<Contact> pairs;
+    const bool x = packing.cell.periodic[0];
+    const bool y = packing.cell.periodic[1];
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        for (int j = i; j < packing.disk_count(); ++j) {
+            for (int m = x ? -8 : 0; m <= (x ? 8 : 0); ++m) {
+                for (int p = y ? -8 : 0; p <= (y ? 8 : 0); ++p) {
+                    const Contact pair = isostat::pair_of(i, j, cells::image(m, p));
+                    const bool twice = i == j && pair.image != cells::image(m, p);
+                    if ((i != j || m != 0 || p != 0) && !twice && isostat::gap(packing, pair) < reach) {
+                        pairs.push_back(pair);
+                    }
+                }
+            }
+        }
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+struct Draw {
+    int disks;
+    double largest;
+    bool tilted, channel;
+};
+
+/// Disks that do not overlap, some of them outside the cell.
+Packing<2> random_cell(const Draw& draw, std::mt19937_64& random) {
+    const auto uniform = [&](double a, double b) {
+        return a + (b - a) * static_cast<double>(random() >> 11) * 0x1p-53;
+    };
+    const double side = draw.largest * std::max(2.3, 1.4 * std::sqrt(draw.disks));
+    std::vector<crafted::DiskAt> disks;
+    const cells::Periods periods{side * uniform(0.9, 1.3), side * uniform(0.9, 1.3),
+                                 draw.tilted ? side * uniform(-0.7, 0.7) : 0};
+    for (int tries = 0; static_cast<int>(disks.size()) < draw.disks && tries < 400; ++tries) {
+        disks.push_back({uniform(draw.largest > 1 ? 0.3 : 0.6, draw.largest), uniform(-1.5, 2.5) * periods.x,
+                         uniform(-1, 2) * periods.y});
+        State<2> state = cells::in_cell(disks, periods, draw.tilted, 1, 1, {});
+        if (draw.channel) {
+            state.packing.cell.periodic[1] = state.packing.cell.period_moves[1] = false;
+        }
+        const auto near = by_definition(state.packing, 0);
+        if (!near.empty()) {
+            disks.pop_back();
+        }
+    }
+    Packing<2> packing = cells::in_cell(disks, periods, draw.tilted, 1, 1, {}).packing;
+    if (draw.channel) {
+        packing.cell.periodic[1] = packing.cell.period_moves[1] = false;
+    }
+    return packing;
+}
+
+bool all_there(const std::vector<Contact>& wanted, const std::vector<Contact>& found) {
+    return std::includes(found.begin(), found.end(), wanted.begin(), wanted.end());
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(images)
+
+BOOST_AUTO_TEST_CASE(pairs_are_all_found_in_cells_of_one_disk_and_more) {
+    std::mt19937_64 random(11);
+    int seen = 0;
+    for (const Draw& draw :
+         {Draw{1, 1, false, false}, Draw{1, 1, true, false}, Draw{2, 1, true, false}, Draw{2, 3, true, false},
+          Draw{5, 1, true, false}, Draw{8, 3, true, false}, Draw{6, 1, false, true}}) {
+        for (int k = 0; k < 25; ++k) {
+            const Packing<2> packing = random_cell(draw, random);
+            const double reach = 0.82 * packing.min_radius();
+            const auto wanted = by_definition(packing, reach);
+            const auto found = isostat::near_pairs(packing, reach).pairs;
+            BOOST_TEST(all_there(wanted, found));
+            BOOST_TEST(found.size() <= wanted.size() + 1); // one at the reach, by rounding
+            seen += static_cast<int>(wanted.size());
+        }
+    }
+    BOOST_TEST(seen > 50);
+}
+
+BOOST_AUTO_TEST_CASE(a_flat_cell_has_images_several_periods_away) {
+    // The disk touches itself two periods back and one up.
+    const State<2> state = cells::in_cell({{1, 0, 0}}, {2, std::sqrt(3.0), 5}, true, 1, 1, {});
+    const auto found = isostat::near_pairs(state.packing, 0.5).pairs;
+    const std::vector<Contact> wanted = by_definition(state.packing, 0.5);
+    BOOST_TEST((found == wanted));
+    BOOST_TEST((std::find(found.begin(), found.end(), cells::across(0, 0, -2, 1)) != found.end()));
+}
+
+BOOST_AUTO_TEST_CASE(overlaps_with_images_are_found) {
+    const State<2> touching = cells::one_disk(1, 1);
+    BOOST_TEST((isostat::certify_admissible(touching.packing, 0).verdict == isostat::Verdict::proved));
+    State<2> smaller = touching;
+    smaller.packing.length(0) = std::nextafter(2.0, 1.0);
+    const auto result = isostat::certify_admissible(smaller.packing, 0);
+    BOOST_TEST((result.verdict == isostat::Verdict::refuted));
+    BOOST_TEST((result.worst == cells::across(0, 0, 1, 0)));
+}
+
+BOOST_AUTO_TEST_CASE(a_disk_and_its_image_in_a_period_that_stays_are_no_candidate) {
+    State<2> state = cells::one_disk(1, 1);
+    BOOST_TEST(isostat::find_candidates(state.packing, 0.8).contacts.size() == 2);
+    state.packing.cell.period_moves = {true, false};
+    const auto list = isostat::find_candidates(state.packing, 0.8).contacts;
+    BOOST_TEST_REQUIRE(list.size() == 1);
+    BOOST_TEST((list.front() == cells::across(0, 0, 1, 0)));
+    state.packing.length(1) = 1.9;
+    BOOST_TEST((isostat::fixed_overlap(state.packing) == cells::across(0, 0, 0, 1)));
+}
+
+BOOST_AUTO_TEST_CASE(representatives_far_away_are_refused) {
+    State<2> state = cells::one_disk(1, 1);
+    state.packing.q[0] = 70;
+    BOOST_CHECK_THROW(isostat::near_pairs(state.packing, 0.5), isostat::Error);
+}
+
+BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
+    BOOST_TEST((cells::across(3, 1, 1, -1) == cells::across(1, 3, -1, 1)));
+    BOOST_TEST((cells::across(2, 2, -1, 1) == cells::across(2, 2, 1, -1)));
+    BOOST_TEST((cells::across(1, 3, 0, 0) != cells::across(1, 3, 1, 0)));
+    BOOST_TEST(isostat::to_string<2>(cells::across(3, 1, 1, -1)) == "1-3(-1,1)");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,153 @@
+#include "io/bad_input.hpp"
+#include "support/cells.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/crafted/plateau.hpp>
+#include <isostat/io/files.hpp>
+#include <isostat/io/foreign.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <cmath>
+
+using namespace isostat;
+using scratch::replaced;
+
+namespace {
+
+std::string tilted_text() {
+    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    state.load.infinitesimal = {0, 0};
+    return state_text(state);
+}
+
+void refuses(const std::string& text, const std::vector<std::string>& words) {
+    BOOST_TEST_CONTEXT(text) {
+        expect_bad_input([&] { (void)parse_any_state<2>(text, "cell.json"); }, words);
+    }
+}
+
+ForeignPacking read(const std::string& text, ForeignOptions options = {}) {
+    options.cells = true;
+    return parse_foreign(text, "file", options);
+}
+
+std::string dump(const std::string& bounds, const std::string& atoms, int count) {
+    return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + std::to_string(count) + "\nITEM: BOX BOUNDS " + bounds +
+           "\nITEM: ATOMS id x y radius\n" + atoms;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cell_file)
+
+BOOST_AUTO_TEST_CASE(a_state_with_a_cell_comes_back) {
+    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    state.packing.cell.period_moves = {true, false};
+    const State<2> again = parse_any_state<2>(state_text(state), "cell.json").state;
+    BOOST_TEST((again.packing.cell == state.packing.cell));
+    BOOST_TEST((again.packing.walls == state.packing.walls));
+    BOOST_TEST(again.packing.q == state.packing.q);
+    BOOST_TEST((again.load.shear == state.load.shear));
+    BOOST_TEST((again.contacts == state.contacts));
+    BOOST_TEST(state_text(again) == state_text(state));
+}
+
+BOOST_AUTO_TEST_CASE(contacts_are_read_from_either_end) {
+    const std::string text = replaced(tilted_text(), "[0,0,[1,-1]]", "[0,0,[-1,1]]");
+    BOOST_TEST((parse_any_state<2>(text, "cell.json").state.contacts[1] == cells::across(0, 0, 1, -1)));
+}
+
+BOOST_AUTO_TEST_CASE(bad_cells_are_named) {
+    const std::string text = tilted_text();
+    refuses(replaced(text, "[0,0,[1,-1]]", "[0,0,[4,-1]]"), {"contacts[1][2][0]", "from -3 to 3 periods"});
+    refuses(replaced(text, "[0,0,[1,-1]]", "[0,0]"), {"contacts[1]", "the image of one that is not itself"});
+    refuses(replaced(text, "[0,0,[1,-1]]", "[0,0,[0,1]]"), {"0-0(0,1)", "already"});
+    refuses(replaced(text, "\"length\": [2.0", "\"length\": [-2.0"),
+            {"period along x is -2", "inverted or degenerate"});
+    refuses(replaced(text, "\"length\": [2.0", "\"length\": [0.0"), {"period along x is 0"});
+    refuses(replaced(text, "\"length\": [2.0", "\"length\": [1.5"), {"overlaps its own image (-1, 1)"});
+    refuses(replaced(text, "\"lower\":[\"absent\"", "\"lower\":[\"fixed\""), {"x is periodic and has walls"});
+    refuses(replaced(text, "\"moves\":[\"x\"", "\"moves\":[\"z\""), {"cell.moves[0]", "\"xy\" (tilt)"});
+    refuses(replaced(text, "\"pin\":0", "\"pin\":1"), {"cell.pin"});
+    refuses(replaced(text, "\"kind\":\"nominal\"", "\"kind\":\"true\""), {"load.kind", "no potential"});
+    refuses(replaced(text, "\"axes\":[\"periodic\",\"periodic\"]", "\"axes\":[\"periodic\",\"walls\"]"), {"period along y moves"});
+    refuses(replaced(text, "\"infinitesimal\": [\n    [0.0", "\"infinitesimal\": [\n    [0.5"),
+            {"infinitesimal along x", "exactly 0"});
+}
+
+BOOST_AUTO_TEST_CASE(images_are_no_contacts_of_a_box) {
+    const std::string text = replaced(state_text(::crafted::two_disks(1, 2, 1, 1)), "[0,1]", "[0,1,[1,0]]");
+    refuses(text, {"images are of a periodic"});
+}
+
+BOOST_AUTO_TEST_CASE(readers_that_take_boxes_only_say_so) {
+    expect_bad_input([] { (void)parse_state<2>(tilted_text(), "cell.json"); },
+                     {"cell.json: a periodic cell", "takes boxes only so far"});
+    const scratch::Folder folder;
+    const auto path = folder.path() / "cell.json";
+    write_atomically(path, tilted_text());
+    expect_bad_input([&] { (void)read_state<2>(path); }, {"a periodic cell"});
+    BOOST_TEST(read_any_state<2>(path).state.contacts.size() == 3);
+}
+
+BOOST_AUTO_TEST_CASE(lammps_dumps_with_pp_boundaries_make_a_cell) {
+    const auto file = read(dump("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n2 0.5 3.5 0.25\n", 2));
+    const Packing<2>& p = file.packing;
+    BOOST_TEST((p.cell.all()));
+    BOOST_TEST(p.q == (std::vector<double>{0.5, 0.25, 1.5, 3.5, 2, 4, 0}));
+    BOOST_TEST(DofMap<2>(p).dof_count() == 2);
+    expect_bad_input([] { (void)parse_foreign(dump("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n", 1), "file", {}); },
+                     {"boundaries along x are periodic"});
+}
+
+BOOST_AUTO_TEST_CASE(triclinic_dumps_bound_the_whole_parallelogram) {
+    // xlo = -1, xhi = 1, xy = -0.5: the bounds are -1.5 and 1.
+    const auto file =
+        read(dump("xy xz yz pp pp pp\n-1.5 1 -0.5\n0 4 0\n0 1 0", "1 -0.5 0.25 0.5\n2 1.25 4.25 0.25\n", 2));
+    const Packing<2>& p = file.packing;
+    BOOST_TEST(p.lattice(0, 0) == 2);
+    BOOST_TEST(p.lattice(0, 1) == -0.5);
+    // The second disk is one period up: (1.25 + 1 + 0.5, 0.25), and then one back.
+    BOOST_TEST(p.q[2] == 0.75);
+    BOOST_TEST(p.q[3] == 0.25);
+}
+
+BOOST_AUTO_TEST_CASE(lammps_data_is_periodic_when_stated) {
+    const std::string data = "a comment\n\n1 atoms\n\n0 2 xlo xhi\n0 1.75 ylo yhi\n-0.5 0.5 zlo zhi\n1 0 0 xy xz yz\n\n"
+                             "Atoms # sphere\n\n1 1 2 1 0.25 0.5 0\n";
+    expect_bad_input([&] { (void)read(data); }, {"tilted by 1", "--periodic"});
+    ForeignOptions stated;
+    stated.periodic = true;
+    const Packing<2> p = read(data, stated).packing;
+    BOOST_TEST(p.q == (std::vector<double>{0.25, 0.5, 2, 1.75, 1}));
+}
+
+BOOST_AUTO_TEST_CASE(extended_xyz_with_a_lattice_makes_a_cell) {
+    const std::string text =
+        "1\nLattice=\"2 0 0 1 1.75 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1\n7 0.25 0.5 0 1\n";
+    const Packing<2> p = read(text).packing;
+    BOOST_TEST(p.q == (std::vector<double>{0.25, 0.5, 2, 1.75, 1}));
+    const std::string strip =
+        replaced(replaced(text, "2 0 0 1 1.75", "2 0 0 0 1.75"), "Properties", "pbc=\"T F F\" Properties");
+    const Packing<2> q = read(strip).packing;
+    BOOST_TEST(q.cell.periodic[0]);
+    BOOST_TEST(!q.cell.periodic[1]);
+}
+
+BOOST_AUTO_TEST_CASE(a_packing_that_is_isostatic_under_pressure_is_found_so) {
+    // The first equilibrium in a rectangle with one contact less on the backbone: what a fixed shape needs.
+    const State<2> state = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/rect_16.json").state;
+    Packing<2> packing = state.packing;
+    packing.cell.period_moves = {false, false};
+    const auto counts = [&](Strain strain) {
+        return isostat::crafted::plateau(packing, {1e-9}, strain).steps.front().backbone;
+    };
+    BOOST_TEST(counts(Strain::diagonal).contact_count == 30);
+    BOOST_TEST((counts(Strain::diagonal).isostatic == Verdict::proved));
+    BOOST_TEST(counts(Strain::isotropic).hyperstaticity == 1);
+    BOOST_TEST((counts(Strain::isotropic).isostatic == Verdict::refuted));
+    BOOST_TEST(counts(Strain::full).mechanisms == 1);
+    BOOST_TEST(counts(Strain::none).hyperstaticity == 2);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

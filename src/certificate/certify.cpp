@@ -52,21 +52,24 @@ template <int Dim> double largest_length(const Packing<Dim>& packing) {
     return largest;
 }
 
+/// Some image is farther away than the grid allows for (proofs/cells.md, C2).
+bool any_far(const std::vector<Contact>& pairs) {
+    constexpr int farthest = 3;
+    return std::any_of(pairs.begin(), pairs.end(), [](const Contact& pair) {
+        return std::any_of(pair.image.m.begin(), pair.image.m.end(), [](int m) { return std::abs(m) > farthest; });
+    });
+}
+
 /// A cell on the grid, where every r is exact, with `moved` bound of what that changes of a coordinate. Nothing where a
-/// part of the cell that cannot move would have to, or an image is farther than the grid allows for.
+/// part of the cell that cannot move would have to, or an image is too far.
 template <int Dim>
 std::optional<Packing<Dim>> on_grid(Packing<Dim> packing, const std::vector<Contact>& contacts, double& moved) {
-    constexpr int farthest = 3;
     const Packing<Dim> before = packing;
     moved = snap_to_grid(packing);
     const DofMap<Dim> dofs(packing);
-    bool stays = true;
+    bool stays = !any_far(contacts);
     for (std::size_t k = packing.length_at(0); k < packing.q.size(); ++k) {
         stays = stays && (dofs.dof_of(k) >= 0 || packing.q[k] == before.q[k]);
-    }
-    const auto far = [](int m) { return std::abs(m) > farthest; };
-    for (const Contact& contact : contacts) {
-        stays = stays && std::none_of(contact.image.m.begin(), contact.image.m.end(), far);
     }
     return stays ? std::optional(std::move(packing)) : std::nullopt;
 }
@@ -380,6 +383,10 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
         return false;
     }
     const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
+    if (any_far(pairs.near)) {
+        absent("gaps", "a disk may touch an image more than 3 periods away: put the disks into the cell");
+        return false;
+    }
     const Contact none = state_.packing.cell.any() ? Contact(ContactKind::disk_disk, -1, -1) : Contact();
     std::string doubtful;
     do {

@@ -60,7 +60,10 @@ std::vector<Contact> near_pairs_in_cell(const Packing<2>& packing, double reach)
     const Images<2> images = images_near_cell(packing, reach);
     const Gaps gaps(packing);
     std::vector<Contact> pairs;
-    for (const Contact& pair : near_pairs(images.packing, reach + images.rounding).pairs) {
+    const double wide = reach + images.rounding;
+    const bool allowed = wide <= largest_reach * images.packing.min_radius();
+    for (const Contact& pair :
+         allowed ? near_pairs(images.packing, wide).pairs : near_pairs_by_sweep(images.packing, wide)) {
         const Contact contact = images.contact(pair.i, pair.j);
         if (gaps.of(contact).may_be_below(reach)) {
             pairs.push_back(contact);

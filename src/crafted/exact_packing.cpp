@@ -78,6 +78,7 @@ struct Sweep {
 } // namespace
 
 ExactPacking exact_copy(const Packing<2>& packing) {
+    require_box(packing, "exact numbers", "a crafted packing");
     ExactPacking out;
     for (int i = 0; i < packing.disk_count(); ++i) {
         out.radius.push_back(Number::from_double(packing.radius[static_cast<std::size_t>(i)]));

@@ -49,6 +49,7 @@ template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
 
 template <int Dim>
 Result<typename Vertex<Dim>::Beginning> Vertex<Dim>::begin(Packing<Dim> packing, std::vector<Contact> contacts) {
+    require_box(packing, "a vertex of a trajectory", "a run");
     auto rank = RankProof<Dim>::begin(packing, std::move(contacts));
     if (!rank.ok()) {
         return rank.failure();

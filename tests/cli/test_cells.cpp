@@ -1,0 +1,86 @@
+// isostat inspect and isostat plateau of periodic cells, and every other command that refuses them.
+
+#include "cli/program.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace {
+
+using program::contains;
+using program::expect;
+using program::run;
+
+const std::string rectangle = scratch::data("cells/rect_16.json");
+
+/// The disks of the rectangle as LAMMPS would dump them.
+std::string dump() {
+    const isostat::Packing<2> packing = isostat::read_any_state<2>(rectangle).state.packing;
+    std::string text = fmt::format("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp pp pp\n0 {}\n0 "
+                                   "{}\n-1 1\nITEM: ATOMS id x y radius\n",
+                                   packing.disk_count(), packing.length(0), packing.length(1));
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        text += fmt::format("{} {} {} {}\n", i + 1, packing.q[2 * i], packing.q[2 * i + 1], packing.radius[i]);
+    }
+    return text;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(cli_cells)
+
+BOOST_AUTO_TEST_CASE(inspect_counts_and_proves_a_rectangle) {
+    const auto text = run({"inspect", rectangle});
+    expect(text, 0);
+    for (const char* words : {"9.596462314332681 (periodic) x 10.938004019205389 (periodic), tilt 0; x, y move, disk 0 "
+                              "is pinned",
+                              "degrees of freedom N_f   32", "isostatic equilibrium    proved", "backbone, 15 disks",
+                              "jammed collectively      proved", "jammed strictly          refuted",
+                              "29 for a bulk modulus, 31 for all moduli"}) {
+        BOOST_TEST(contains(text.out, words), words << " is not in\n" << text.out);
+    }
+    const auto json = nlohmann::json::parse(run({"inspect", rectangle, "--json"}).out);
+    BOOST_TEST(json.at("cell").at("backbone").at("fixed cell").at("h") == 2);
+    BOOST_TEST(json.at("cell").at("backbone").at("full strain").at("k") == 1);
+    BOOST_TEST(json.at("cell").at("jammed").at("strict").at("verdict") == "refuted");
+    BOOST_TEST(std::abs(json.at("interval_high")[0].get<double>() - 1.3794962837050024) < 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(plateau_of_a_periodic_dump) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "disks.dump").string();
+    scratch::write(file, dump());
+    const auto diagonal = run({"plateau", file, "--cell", "diagonal"});
+    expect(diagonal, 0);
+    BOOST_TEST(contains(diagonal.out, "periodic along x and y"));
+    BOOST_TEST(contains(diagonal.out, "from N = 30 with 1 rattlers"));
+    const auto json = nlohmann::json::parse(run({"plateau", file, "--cell", "diagonal", "--json"}).out);
+    BOOST_TEST(json.at("cell").at("backbone").at("isotropic").at("h") == 1);
+    expect(run({"plateau", file, "--cell", "diagonal", "--not-periodic"}), 1);
+    const auto open = run({"plateau", file, "--periodic", "--not-periodic"});
+    BOOST_TEST(open.status == 64);
+}
+
+BOOST_AUTO_TEST_CASE(other_commands_refuse_a_cell) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "out").string();
+    const std::string file = (folder / "disks.dump").string();
+    scratch::write(file, dump());
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"certify", rectangle, "-o", out},
+                                                    {"export", rectangle, "-o", out + ".xyz"},
+                                                    {"convert", rectangle, "-o", out},
+                                                    {"snap", rectangle, "-o", out}}) {
+        const auto refused = run(command);
+        BOOST_TEST(refused.status == 65, command.front() << ": " << refused.err);
+        BOOST_TEST(contains(refused.err, "a periodic cell"), command.front() << ": " << refused.err);
+    }
+    const auto import = run({"import", file, "-o", out});
+    BOOST_TEST(import.status == 65);
+    BOOST_TEST(contains(import.err, "boundaries along x are periodic"));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -33,7 +33,7 @@ void print_answer(const char* title, const Answer& answer) {
 
 } // namespace
 
-Json counts_json(const StrainCounts& counts) {
+Json strains_json(const StrainCounts& counts) {
     Json out;
     for (std::size_t k = 0; k < strains.size(); ++k) {
         const Counting& c = counts[k];
@@ -82,9 +82,9 @@ Json cell_json(const Packing<2>& packing, const CellInspection& cell) {
     Json out;
     out["moves"] = moving(packing.cell);
     out["tilt"] = number(packing.lattice(0, 1));
-    out["all"] = counts_json(cell.all);
+    out["all"] = strains_json(cell.all);
     out["backbone_disks"] = cell.backbone_disks;
-    out["backbone"] = cell.backbone ? counts_json(*cell.backbone) : Json();
+    out["backbone"] = cell.backbone ? strains_json(*cell.backbone) : Json();
     for (const auto& [name, answer] : {std::pair("local", &cell.local), std::pair("collective", &cell.collective),
                                        std::pair("strict", &cell.strict)}) {
         out["jammed"][name] = {{"verdict", to_string(answer->verdict)}, {"reason", answer->reason}};

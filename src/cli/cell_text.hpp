@@ -13,7 +13,7 @@ std::string cell_words(const Packing<2>& packing);
 
 /// Counts of the stored coordinates, one row for each way to strain the cell.
 void print_counts(const std::string& title, const StrainCounts& counts);
-Json counts_json(const StrainCounts& counts);
+Json strains_json(const StrainCounts& counts);
 
 /// The counts side by side, the words of jamming, and the count of contacts that elastic moduli need.
 void print_cell(const CellInspection& cell);

@@ -177,7 +177,7 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
         const std::vector<Contact> backbone = shown_backbone(file, plateau, threshold);
         out["cell"] = {{"strain", a.strain},
                        {"threshold", number(threshold)},
-                       {"backbone", counts_json(strains_of(file, backbone))}};
+                       {"backbone", strains_json(strains_of(file, backbone))}};
     }
     return out;
 }

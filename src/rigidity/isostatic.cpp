@@ -210,7 +210,7 @@ IsostaticStructure<Dim>::exchange(const IsostaticStructure& previous, const Pack
 
 template <int Dim>
 IsostaticStructure<Dim> IsostaticStructure<Dim>::exchanged(ExchangedContacts<Dim> contacts,
-                                                           const RegularityProof& proof) {
+                                                           [[maybe_unused]] const RegularityProof& proof) {
     assert(proof.matrix_ == contacts.matrix_.get() && proof.sigma_min() > 0);
     IsostaticStructure structure = without_proof(std::move(contacts));
     structure.evidence_ = RegularityEvidence::singular_value;

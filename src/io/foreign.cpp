@@ -47,8 +47,10 @@ void check_boundaries(Raw& raw, const std::string& source, const ForeignOptions&
     }
     const bool both = raw.boundary[0] == Boundary::periodic && raw.boundary[1] == Boundary::periodic;
     if (raw.tilt != 0 && !both) {
-        refuse(source, fmt::format("the box is tilted by {}: expected both axes periodic{}", raw.tilt,
-                                   options.cells ? " (--periodic says so where the file does not)" : ""));
+        refuse(source,
+               fmt::format(
+                   "the box (Lattice, or xy) is tilted by {}: expected one along the axes, or both axes periodic{}",
+                   raw.tilt, options.cells ? " (--periodic says so where the file does not)" : ""));
     }
 }
 

@@ -70,7 +70,8 @@ BOOST_AUTO_TEST_CASE(bad_cells_are_named) {
     refuses(replaced(text, "\"moves\":[\"x\"", "\"moves\":[\"z\""), {"cell.moves[0]", "\"xy\" (tilt)"});
     refuses(replaced(text, "\"pin\":0", "\"pin\":1"), {"cell.pin"});
     refuses(replaced(text, "\"kind\":\"nominal\"", "\"kind\":\"true\""), {"load.kind", "no potential"});
-    refuses(replaced(text, "\"axes\":[\"periodic\",\"periodic\"]", "\"axes\":[\"periodic\",\"walls\"]"), {"period along y moves"});
+    refuses(replaced(text, "\"axes\":[\"periodic\",\"periodic\"]", "\"axes\":[\"periodic\",\"walls\"]"),
+            {"period along y moves"});
     refuses(replaced(text, "\"infinitesimal\": [\n    [0.0", "\"infinitesimal\": [\n    [0.5"),
             {"infinitesimal along x", "exactly 0"});
 }
@@ -114,19 +115,19 @@ BOOST_AUTO_TEST_CASE(triclinic_dumps_bound_the_whole_parallelogram) {
 
 BOOST_AUTO_TEST_CASE(lammps_data_is_periodic_when_stated) {
     const std::string data = "a comment\n\n1 atoms\n\n0 2 xlo xhi\n0 1.75 ylo yhi\n-0.5 0.5 zlo zhi\n1 0 0 xy xz yz\n\n"
-                             "Atoms # sphere\n\n1 1 2 1 0.25 0.5 0\n";
+                             "Atoms # sphere\n\n1 1 2 1 0.75 0.5 0\n";
     expect_bad_input([&] { (void)read(data); }, {"tilted by 1", "--periodic"});
     ForeignOptions stated;
     stated.periodic = true;
     const Packing<2> p = read(data, stated).packing;
-    BOOST_TEST(p.q == (std::vector<double>{0.25, 0.5, 2, 1.75, 1}));
+    BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
 }
 
 BOOST_AUTO_TEST_CASE(extended_xyz_with_a_lattice_makes_a_cell) {
     const std::string text =
-        "1\nLattice=\"2 0 0 1 1.75 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1\n7 0.25 0.5 0 1\n";
+        "1\nLattice=\"2 0 0 1 1.75 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1\n7 0.75 0.5 0 1\n";
     const Packing<2> p = read(text).packing;
-    BOOST_TEST(p.q == (std::vector<double>{0.25, 0.5, 2, 1.75, 1}));
+    BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
     const std::string strip =
         replaced(replaced(text, "2 0 0 1 1.75", "2 0 0 0 1.75"), "Properties", "pbc=\"T F F\" Properties");
     const Packing<2> q = read(strip).packing;

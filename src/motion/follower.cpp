@@ -15,7 +15,7 @@ namespace {
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
 constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
-constexpr double no_power = 1e-6;             ///< of the largest force of the load: what may be left of the power where it turns
+constexpr double no_power = 1e-6; ///< of the largest force of the load: what may be left of the power where it turns
 constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
 
 } // namespace

@@ -98,7 +98,7 @@ GenericitySample sampled(const Packing<2>& packing, const std::vector<Contact>& 
     preparation.stress = options.stress;
     PreparationReport<2> report;
     const auto found = find_vertex<2>(start, preparation, report);
-    if (!found.ok() && !report.candidate) {
+    if (!found.ok() && (!report.candidate || found.failure().kind == FailureKind::tie)) {
         sample.failure = found.failure();
         return sample;
     }

@@ -151,9 +151,12 @@ template <int Dim> GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& 
         }
         const GapCourse gap = gap_course(course.at, active_[c], course.tangent, course.curvature);
         gap_[c] = opening ? 0.0 : gap.value;
-        rate_[c] = opening ? std::max(gap.rate, 0.0) : gap.rate; // 0 but for rounding where it separates by its bend
+        // A pair that touches and parts by its bend: its rate is 0 but for rounding. Not the contact that opens: its
+        // rate tells when the motion was begun the wrong way.
+        const bool parts = opening && active_[c] != opened_;
+        rate_[c] = parts ? std::max(gap.rate, 0.0) : gap.rate;
         double root = first_root(std::max(gap_[c], 0.0), rate_[c], gap.bend);
-        if (gap_[c] <= 0 && !(rate_[c] > 0) && !(opening && gap.bend > 0)) {
+        if (gap_[c] <= 0 && !(rate_[c] > 0) && !(parts && gap.bend > 0)) {
             root = 0;
         }
         if (root < first.s) {

@@ -81,8 +81,9 @@ template <int Dim> struct PreparationReport {
     double min_force = 0;                 ///< smallest backbone force
     double min_gap = 0;                   ///< smallest gap of a pair that is not a contact
     double sigma_min_bound = 0;           ///< proved lower bound of the smallest singular value of H
-    /// After the failure `undecided` of `find_vertex`: contacts and configuration that are a vertex as far as rounded
-    /// numbers say, and that could not be proved to be one in double-double. Proves nothing; `certify` may.
+    /// After the failures `undecided` and `tie` of `find_vertex`: contacts and configuration that are a vertex as far
+    /// as rounded numbers say, and that could not be proved to be one in double-double. Proves nothing; `certify` may,
+    /// or a run that settles ties.
     std::optional<State<Dim>> candidate;
     std::optional<Packing<Dim>> last; ///< after a failure: the last configuration (overlaps of the dynamics included)
 };

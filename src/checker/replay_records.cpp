@@ -236,9 +236,11 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     }
     if (!decision.kind.empty()) {
         const auto l = static_cast<std::size_t>(decision.candidates[0]);
-        return Objection{true, fmt::format("no equilibrium: the {}force of {} is in {}",
-                                           decision.kind == "rattler" ? "infinitesimal " : "", e.name(l),
-                                           shown(decision.kind == "rattler" ? e.infinitesimal()[l] : e.forces[l]))};
+        const Range& force = decision.kind == "rattler" ? e.infinitesimal()[l] : e.forces[l];
+        // At first order only: what is 0 as far as is seen here, the run may have told from 0 with more digits.
+        return Objection{force.negative(),
+                         fmt::format("no equilibrium: the {}force of {} is in {}",
+                                     decision.kind == "rattler" ? "infinitesimal " : "", e.name(l), shown(force))};
     }
     const int contacts = e.problem.contacts();
     const auto zeros = static_cast<int>(place.zeros.size());

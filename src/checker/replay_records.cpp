@@ -235,12 +235,15 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
         return open;
     }
     if (!decision.kind.empty()) {
-        const auto l = static_cast<std::size_t>(decision.candidates[0]);
-        const Range& force = decision.kind == "rattler" ? e.infinitesimal()[l] : e.forces[l];
-        // At first order only: what is 0 as far as is seen here, the run may have told from 0 with more digits.
-        return Objection{force.negative(),
+        const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
+        // What is 0 as far as is seen here, the run may have told from 0 with more digits; the others refute.
+        const auto told = [&](int l) { return !forces[static_cast<std::size_t>(l)].has_zero(); };
+        const auto first = std::find_if(decision.candidates.begin(), decision.candidates.end(), told);
+        const bool wrong = first != decision.candidates.end();
+        const auto l = static_cast<std::size_t>(wrong ? *first : decision.candidates[0]);
+        return Objection{wrong,
                          fmt::format("no equilibrium: the {}force of {} is in {}",
-                                     decision.kind == "rattler" ? "infinitesimal " : "", e.name(l), shown(force))};
+                                     decision.kind == "rattler" ? "infinitesimal " : "", e.name(l), shown(forces[l]))};
     }
     const int contacts = e.problem.contacts();
     const auto zeros = static_cast<int>(place.zeros.size());

@@ -121,6 +121,44 @@ Alteration in_row(const std::string& csv, int line, const std::string& column, c
     return {"equilibria.csv", line, text, text.substr(0, begin) + value + text.substr(end), ""};
 }
 
+/// A row one arc too early, where the contact that `line` of the events opens still pulls.
+void refutes_a_row_before(const std::filesystem::path& folder, int line) {
+    const std::string events = scratch::read(folder / "events.jsonl");
+    const std::string csv = scratch::read(folder / "equilibria.csv");
+    const std::string summary = scratch::read(folder / "summary.json");
+    const auto head_of = [](const std::string& text, int lines) {
+        std::string head;
+        for (int k = 1; k <= lines; ++k) {
+            head += line_of(text, k) + "\n";
+        }
+        return head;
+    };
+    const auto towards = [&events](int k) {
+        return json::Json::parse(line_of(events, k)).at("equilibrium").get<int>();
+    };
+    const int reached = towards(line);
+    int arcs = 0;
+    for (int k = 1; k < line; ++k) {
+        arcs += towards(k) == reached ? 1 : 0;
+    }
+    BOOST_REQUIRE(arcs > 0);
+    const Alteration row = in_row(csv, reached + 2, "arcs", std::to_string(arcs));
+    scratch::write(folder / "events.jsonl", head_of(events, line - 1));
+    scratch::write(folder / "equilibria.csv", scratch::replaced(head_of(csv, reached + 2), row.from, row.to));
+    json::Json counted = json::Json::parse(summary);
+    counted["counters"]["arcs"] = line - 1;
+    counted["last_equilibrium"] = reached;
+    scratch::write(folder / "summary.json", counted.dump());
+    forger::seal(folder);
+    const RunVerification early = verify_run(folder);
+    BOOST_TEST((early.verdict == Verdict::refuted));
+    BOOST_TEST((early.wrong.find("no equilibrium") != std::string::npos), early.wrong);
+    scratch::write(folder / "events.jsonl", events);
+    scratch::write(folder / "equilibria.csv", csv);
+    scratch::write(folder / "summary.json", summary);
+    forger::seal(folder);
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(checker)
@@ -305,6 +343,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     BOOST_TEST((verify_run(folder / "run").verdict == Verdict::refuted));
     scratch::write(folder / "run/events.jsonl", events);
     forger::seal(folder / "run");
+    refutes_a_row_before(folder / "run", tension);
     // Another stored state, by a coordinate and by a contact.
     const std::filesystem::path stored = folder / "run/states/eq_000001.json";
     const State<2> state = read_state<2>(stored).state;

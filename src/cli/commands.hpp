@@ -97,6 +97,7 @@ struct ForeignArguments {
     std::string format, radius, diameter, walls, box, columns;
     std::string frame = "last";
     bool periodic = false, not_periodic = false;
+    bool walls_unless_periodic = false; ///< `walls` were not stated
     bool cells = false; ///< the command takes periodic cells
 };
 
@@ -115,10 +116,11 @@ struct ImportArguments {
     Common common;
     std::string file, output;
     ForeignArguments foreign;
-    std::string contacts = "plateau"; ///< or "nearest", or a file
+    std::string contacts; ///< "plateau", "nearest", or a file; none: plateau in walls, nearest in a cell
     std::string contact_columns;
     std::optional<double> threshold;
     std::string stress, load, moved;
+    std::string cell; ///< what of a cell moves: "rectangular" or "tilted"; none: as the file is
     std::uint64_t seed = 1;
     double jitter = 0;
 };

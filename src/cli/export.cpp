@@ -61,7 +61,7 @@ std::string series(const std::vector<fs::path>& files) {
     std::string text;
     std::vector<double> first;
     for (const fs::path& file : files) {
-        const Packing<2> packing = read_state<2>(file).state.packing;
+        const Packing<2> packing = read_any_state<2>(file).state.packing;
         if (first.empty()) {
             first = packing.q;
         }
@@ -84,7 +84,7 @@ int export_states(const ExportArguments& arguments) {
         text = series(files);
     } else {
         files = {files.back()};
-        const Packing<2> packing = read_state<2>(files.front()).state.packing;
+        const Packing<2> packing = read_any_state<2>(files.front()).state.packing;
         text =
             format == "csv"
                 ? csv_text(packing)

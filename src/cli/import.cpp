@@ -45,7 +45,7 @@ struct Imported {
 
 /// Stresses and kind of load of a state, which were not stated anew.
 void keep_load(ImportArguments& a) {
-    const State<2> state = read_state<2>(a.file).state;
+    const State<2> state = read_any_state<2>(a.file).state;
     if (!state.load.disk_force.empty() || state.load.loaded_axis != 1) {
         refuse(a.file, "has forces on disks or another loaded axis than 1: expected a load on the walls alone");
     }
@@ -162,6 +162,49 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     return out;
 }
 
+/// Both axes repeat, and the periods move; the tilt if it is asked for, or the file has one.
+void set_cell(ImportArguments& a, bool own, Packing<2>& packing) {
+    if (!packing.cell.all()) {
+        refuse(a.file, "is periodic along one axis only: expected both or none (--not-periodic looks at the disks as "
+                       "they lie)");
+    }
+    if (a.threshold || (a.contacts != "nearest" && !a.contacts.empty())) {
+        throw Error(ErrorKind::usage, fmt::format("{} is periodic: expected --contacts nearest, other lists are for "
+                                                  "packings in walls",
+                                                  a.file));
+    }
+    a.contacts = "nearest";
+    packing.cell.period_moves.fill(true);
+    if (!own || !a.cell.empty()) {
+        packing.cell.tilt_moves.fill(a.cell == "tilted" || (a.cell.empty() && packing.lattice(0, 1) != 0));
+    }
+    validate(packing, a.file);
+}
+
+/// What is read, with walls unless it is periodic.
+ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
+    if (!crafted && !own && a.foreign.walls.empty()) {
+        a.foreign.walls = "box";
+        a.foreign.walls_unless_periodic = true;
+    }
+    if (!crafted && !own && a.foreign.walls != "box") {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
+    }
+    a.foreign.cells = !crafted;
+    ReadPacking file = read_any_packing(a.file, a.foreign);
+    if (file.packing.cell.any()) {
+        set_cell(a, own, file.packing);
+    } else if (!a.cell.empty()) {
+        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
+                                                  "(--periodic says so where the file leaves it open)",
+                                                  a.cell, a.file));
+    } else if (a.contacts.empty()) {
+        a.contacts = "plateau";
+    }
+    return file;
+}
+
 /// A crafted packing as it is: exact contacts, doubles next to its numbers, its load.
 Result<Imported> from_crafted(const ImportArguments& a, const std::string& text) {
     const crafted::PackingFile file = crafted::parse_packing(text, a.file);
@@ -225,7 +268,9 @@ Moves moves_of(const Imported& found) {
         double& largest = moves.rattler[i] != 0 ? moves.rattlers : moves.backbone;
         largest = std::max(largest, moves.disk[i]);
     }
-    moves.walls = std::max(way(2 * n), way(2 * n + 1));
+    for (std::size_t k = 2 * n; k < packing.q.size(); ++k) {
+        moves.walls = std::max(moves.walls, way(k));
+    }
     return moves;
 }
 
@@ -260,8 +305,8 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
     }
     const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
     fmt::print("contacts  {}\n", found.contacts);
-    fmt::print("moved     disks with a force at most {}, walls {}", rounded_up(moves.backbone, 3),
-               rounded_up(moves.walls, 3));
+    fmt::print("moved     disks with a force at most {}, {} {}", rounded_up(moves.backbone, 3),
+               state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
     fmt::print("{}\n", rattlers == 0 ? ""
                                      : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
                                                    rounded_up(moves.rattlers, 3)));
@@ -293,14 +338,7 @@ int import(const ImportArguments& arguments) {
                            "it is {}",
                            a.jitter));
     }
-    if (!crafted && !own && a.foreign.walls.empty()) {
-        a.foreign.walls = "box";
-    }
-    if (!crafted && !own && a.foreign.walls != "box") {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--walls is '{}': expected box, two fixed and two movable walls", a.foreign.walls));
-    }
-    ReadPacking file = read_any_packing(a.file, a.foreign);
+    ReadPacking file = read_imported(a, crafted, own);
     auto found = crafted ? from_crafted(a, text) : from_foreign(a, file);
     const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
     if (!found.ok() || refuted) {

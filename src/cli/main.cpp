@@ -347,6 +347,13 @@ struct Program {
                          "take periodic boundaries for open ones: contacts across them are not looked for");
     }
 
+    static void add_periodic(CLI::App& command, ForeignArguments& a) {
+        command
+            .add_flag("--periodic", a.periodic,
+                      "boundaries that the file leaves open are periodic (LAMMPS data files say nothing of them)")
+            ->excludes("--not-periodic");
+    }
+
     void add_import(const std::string& line) {
         ImportArguments& a = import_arguments;
         CLI::App& command = add(
@@ -358,6 +365,7 @@ struct Program {
             "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local. A "
             "crafted packing (TOML) is\n"
             "rounded to doubles and keeps its contacts and its load. With --jitter a state is taken as well.\n"
+            "Periodic along both axes: the vertex downhill whatever its contacts, in a cell whose periods move.\n"
             "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
             "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
             "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
@@ -368,7 +376,7 @@ struct Program {
             command
                 .add_option("--contacts", a.contacts,
                             "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; "
-                            "or a dump of style local with forces (default: plateau)")
+                            "or a dump of style local with forces (default: plateau; nearest in a periodic cell)")
                 ->type_name("plateau|nearest|FILE");
         command.add_option("--contact-columns", a.contact_columns, "columns of that dump: two ids and the force")
             ->type_name("I,J,FORCE");
@@ -383,7 +391,13 @@ struct Program {
             ->check(CLI::Range(0.0, 0.1));
         command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
             ->type_name("FILE.csv");
+        command
+            .add_option("--cell", a.cell,
+                        "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt "
+                        "too (default: tilted if the file's is)")
+            ->check(CLI::IsMember({"rectangular", "tilted"}));
         add_foreign(command, a.foreign);
+        add_periodic(command, a.foreign);
         add_threads(command, a.common);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
@@ -550,10 +564,7 @@ struct Program {
                         "pressure), diagonal, full (default: isotropic)")
             ->check(CLI::IsMember({"fixed", "isotropic", "diagonal", "full"}));
         add_foreign(command, a.foreign);
-        command
-            .add_flag("--periodic", a.foreign.periodic,
-                      "boundaries that the file leaves open are periodic (LAMMPS data files say nothing of them)")
-            ->excludes("--not-periodic");
+        add_periodic(command, a.foreign);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;

@@ -88,6 +88,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
     out.not_periodic = a.not_periodic;
     out.periodic = a.periodic;
     out.cells = a.cells;
+    out.walls_unless_periodic = a.walls_unless_periodic;
     return out;
 }
 

@@ -1,3 +1,4 @@
+#include "io/cell_wrap.hpp"
 #include "io/foreign_source.hpp"
 
 #include <isostat/core/error.hpp>
@@ -77,36 +78,13 @@ double shifted(double x, double origin, double& worst) {
     return d;
 }
 
-/// How far the disks are moved so that they lie in the cell, by whole periods; larger of the roundings and `worst`.
-double wrap(Packing<2>& packing, double worst) {
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        for (const std::size_t a : {1U, 0U}) { // a step along the second period moves x too
-            const double periods =
-                packing.cell.periodic[a]
-                    ? std::floor((packing.q[2 * i + a] -
-                                  (a == 0 && packing.cell.all()
-                                       ? packing.q[2 * i + 1] / packing.lattice(1, 1) * packing.lattice(0, 1)
-                                       : 0)) /
-                                 packing.lattice(a, a))
-                    : 0;
-            for (std::size_t b = 0; b <= a && periods != 0; ++b) {
-                double& x = packing.q[2 * i + b];
-                const double before = x;
-                x -= periods * packing.lattice(b, a);
-                worst = std::max(worst, 0x1p-51 * (std::abs(before) + std::abs(x)));
-            }
-        }
-    }
-    return worst;
-}
-
 /// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it.
 void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     Packing<2>& packing = out.packing;
     if (!raw.box) {
         refuse(source, "periodic, and the file has no bounds of a box: expected some");
     }
-    if (options.walls != ForeignWalls::none || options.box) {
+    if ((options.walls != ForeignWalls::none && !options.walls_unless_periodic) || options.box) {
         refuse(source, "walls or a box were stated of a periodic packing: expected none (--not-periodic looks at the "
                        "disks as they lie)");
     }
@@ -128,7 +106,7 @@ void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, co
                                        a == 0 ? 'x' : 'y'));
         }
     }
-    worst = wrap(packing, worst);
+    worst = std::max(worst, wrap_into_cell(packing).rounding);
     out.notes.push_back(fmt::format("periodic along {}: periods {} and {}, tilt {}",
                                     packing.cell.all()         ? "x and y"
                                     : packing.cell.periodic[0] ? "x, open along y"

@@ -51,13 +51,14 @@ std::optional<std::vector<double>> mechanism(std::size_t columns, const std::vec
 
 template <int Dim>
 bool ContactProgramme<Dim>::complete(Packing<Dim>& packing, double eps, std::vector<Contact>& contacts) const {
-    const std::size_t wanted = packing.q.size();
+    const Rows none(packing);
+    const std::size_t wanted = none.columns();
     if (contacts.size() + most_missing < wanted) {
         return false;
     }
     while (contacts.size() < wanted) {
-        Rows closed;
-        Rows open;
+        Rows closed(packing);
+        Rows open(packing);
         for (const Contact& contact : row_contact_) {
             const bool listed = std::binary_search(contacts.begin(), contacts.end(), contact);
             (listed ? closed : open).add(packing, contact);
@@ -88,7 +89,8 @@ bool ContactProgramme<Dim>::complete(Packing<Dim>& packing, double eps, std::vec
             return false;
         }
         for (std::size_t k = 0; k < wanted; ++k) {
-            packing.q[k] += (rise > 0 ? -time : time) * (*velocity)[k];
+            const auto at = static_cast<std::size_t>(none.dofs.coordinate_of(static_cast<int>(k)));
+            packing.q[at] += (rise > 0 ? -time : time) * (*velocity)[k];
         }
         contacts.insert(std::upper_bound(contacts.begin(), contacts.end(), open.contact[first]), open.contact[first]);
     }

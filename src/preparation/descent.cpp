@@ -118,7 +118,7 @@ InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, co
     const double first = method_ == ProgrammeMethod::interior ? first_slack_late : first_slack;
     const double centre = work / static_cast<double>(rows.contact.size()) * first;
     const double force = centre / first; // of order of the mean one, as distances are of order 1
-    const bool dense = static_cast<double>(closed) >= dense_enough * static_cast<double>(packing.q.size());
+    const bool dense = static_cast<double>(closed) >= dense_enough * static_cast<double>(rows.columns());
     InteriorPoint point;
     for (const double h : rows.gap) {
         if (h < 0 && dense) {
@@ -137,7 +137,7 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
                                              const std::function<void(const ProgrammeStep&)>& watch) {
     const std::size_t disks = infinitesimal_->size();
     ProgrammeStep step;
-    Rows rows;
+    Rows rows(packing);
     InteriorPoint point;
     ActiveSet active;
     std::optional<InteriorDescent> descent;
@@ -150,7 +150,7 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
             step.outcome = ProgrammeStep::Outcome::interrupted;
             return step;
         }
-        Rows next;
+        Rows next(packing);
         const bool renew = !descent || moved_since(anchor, packing.q, disks) > renewal * trust_;
         if (renew) {
             collect(packing, next);
@@ -180,11 +180,12 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
         }
         ++step.iterations;
         step.largest = 0;
-        for (std::size_t k = 0; k < packing.q.size(); ++k) {
-            packing.q[k] += made.x[k];
-            step.largest = k < disks ? std::max(step.largest, std::abs(made.x[k])) : step.largest;
+        for (std::size_t c = 0; c < rows.columns(); ++c) {
+            const auto k = static_cast<std::size_t>(rows.dofs.coordinate_of(static_cast<int>(c)));
+            packing.q[k] += made.x[c];
+            step.largest = k < disks ? std::max(step.largest, std::abs(made.x[c])) : step.largest;
         }
-        count_changes(active, made.active, packing.q.size(), step);
+        count_changes(active, made.active, rows.columns(), step);
         active = std::move(made.active);
         const bool low = made.product < settled_product && made.violation < feasible;
         below += low ? 1 : 0;
@@ -192,14 +193,12 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
         watch(step);
     }
     if (settled >= settled_steps || below >= most_below) {
-        keep_basis(std::move(rows), active, packing.q.size(), step);
+        keep_basis(std::move(rows), active, step);
     }
     return step;
 }
 
-template <int Dim>
-void ContactProgramme<Dim>::keep_basis(Rows rows, const ActiveSet& active, std::size_t coordinates,
-                                       ProgrammeStep& step) {
+template <int Dim> void ContactProgramme<Dim>::keep_basis(Rows rows, const ActiveSet& active, ProgrammeStep& step) {
     step.outcome = ProgrammeStep::Outcome::optimal;
     row_contact_ = std::move(rows.contact);
     row_status_.resize(row_contact_.size());
@@ -209,12 +208,12 @@ void ContactProgramme<Dim>::keep_basis(Rows rows, const ActiveSet& active, std::
             step.contacts.push_back(row_contact_[l]);
         }
     }
-    column_status_.assign(coordinates, ClpSimplex::basic);
+    column_status_.assign(rows.columns(), ClpSimplex::basic);
     first_ = false;
     inside_ = step.bounds != 0 || step.changes > few_changes;
 }
 
-template void ContactProgramme<2>::keep_basis(Rows, const ActiveSet&, std::size_t, ProgrammeStep&);
+template void ContactProgramme<2>::keep_basis(Rows, const ActiveSet&, ProgrammeStep&);
 template ProgrammeStep ContactProgramme<2>::descend(Packing<2>&, double,
                                                     const std::function<void(const ProgrammeStep&)>&);
 template InteriorPoint ContactProgramme<2>::first_point(const Packing<2>&, const Rows&) const;

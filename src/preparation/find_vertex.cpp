@@ -1,5 +1,6 @@
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "preparation/neighbours.hpp"
 #include "preparation/pivots.hpp"
 #include "preparation/polish.hpp"
 #include "preparation/programme.hpp"
@@ -35,6 +36,8 @@ constexpr long settled_pivots = 2;
 constexpr double converged_below = 1e-8;
 /// The finite weight of the infinitesimal loads may tip a weak backbone contact; then it is divided by this, once.
 constexpr double weight_divisor = 10;
+/// Of the smallest radius: what counts as touching where the pinned disk is chosen.
+constexpr double near_enough = 1e-3;
 
 /// Relative dilation about the lower corner that parts every overlapping pair.
 template <int Dim> double dilation_needed(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
@@ -49,6 +52,16 @@ template <int Dim> double dilation_needed(const Packing<Dim>& packing, const std
     return needed;
 }
 
+/// The disk with the most overlaps: hardly ever a rattler.
+template <int Dim> int best_held(const Packing<Dim>& packing) {
+    std::vector<int> touching(packing.radius.size(), 0);
+    for (const Contact& c : near_contacts(packing, near_enough * packing.min_radius(), 0)) {
+        ++touching[static_cast<std::size_t>(c.i)];
+        ++touching[static_cast<std::size_t>(c.j)];
+    }
+    return static_cast<int>(std::max_element(touching.begin(), touching.end()) - touching.begin());
+}
+
 template <int Dim> void require_sensible(const Packing<Dim>& start, const PreparationOptions& options) {
     Packing<Dim> checked = start; // a soft packing may overlap its box a little
     for (int a = 0; a < Dim && !start.radius.empty() && start.q.size() == Dim * (start.radius.size() + 1); ++a) {
@@ -56,10 +69,18 @@ template <int Dim> void require_sensible(const Packing<Dim>& start, const Prepar
     }
     validate(checked, "start of the linear programmes");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
-    if (!(start.walls == Walls<Dim>::box()) || std::any_of(start.fixed.begin(), start.fixed.end(), is_fixed)) {
-        throw Error(
-            ErrorKind::bad_input,
-            "start of the linear programmes: expected a box with two fixed and two movable walls and no fixed disk");
+    const Cell<Dim>& cell = start.cell;
+    const bool repeats = cell.all() && cell.period_moves == cell.periodic;
+    if (!(start.walls == Walls<Dim>::box() || repeats) ||
+        std::any_of(start.fixed.begin(), start.fixed.end(), is_fixed)) {
+        throw Error(ErrorKind::bad_input,
+                    "start of the linear programmes: expected a box with two fixed and two movable walls, or a "
+                    "periodic cell whose periods move, and no fixed disk");
+    }
+    if (repeats && (start.disk_count() > options.large_above || options.load != LoadKind::nominal)) {
+        throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected nominal stresses and "
+                                                      "at most {} disks in a periodic cell",
+                                                      options.large_above));
     }
     for (const auto& [name, value] : {std::pair{"stress", options.stress},
                                       {"ratio of the stresses", options.ratio},
@@ -81,11 +102,14 @@ template <int Dim> class VertexSearch {
         load_.kind = options.load;
         load_.stress.fill(options.stress);
         load_.stress[Dim - 1] *= options.ratio;
-        load_.infinitesimal = generic_infinitesimal<Dim>(radius_, report_.infinitesimal_seed);
+        if (packing_.cell.any()) {
+            packing_.cell.pin = best_held(packing_);
+        }
+        load_.infinitesimal = infinitesimal_loads(radius_);
     }
 
     Result<State<Dim>> run() {
-        const std::vector<double> g = generic_infinitesimal<Dim>(packing_.radius, report_.infinitesimal_seed);
+        const std::vector<double> g = infinitesimal_loads(packing_.radius);
         const bool large = packing_.disk_count() > options_.large_above;
         const ProgrammeMethod method = !large ? ProgrammeMethod::simplex
                                        : packing_.disk_count() > options_.newton_above
@@ -142,6 +166,12 @@ template <int Dim> class VertexSearch {
     }
 
   private:
+    /// In a cell they sum to zero: the pinned disk bears those of the others.
+    [[nodiscard]] std::vector<double> infinitesimal_loads(const std::vector<double>& radius) const {
+        std::vector<double> g = generic_infinitesimal<Dim>(radius, report_.infinitesimal_seed);
+        balance(g, packing_.cell);
+        return g;
+    }
     /// The descent, then Newton and the proofs. Nothing: the programmes go on from where it ended.
     std::optional<Polished<Dim>> descend(ContactProgramme<Dim>& programme, double weight) {
         const Stage stage("interior descent", options_);
@@ -167,7 +197,8 @@ template <int Dim> class VertexSearch {
 
     /// Contacts that an interior-point method left open.
     bool complete(ContactProgramme<Dim>& programme, double weight, std::vector<Contact>& contacts) {
-        return contacts.size() < packing_.q.size() && programme.complete(packing_, weight, contacts);
+        return contacts.size() < static_cast<std::size_t>(DofMap<Dim>(packing_).dof_count()) &&
+               programme.complete(packing_, weight, contacts);
     }
 
     Result<Polished<Dim>> attempt(const std::vector<Contact>& contacts) {
@@ -222,7 +253,7 @@ template <int Dim> class VertexSearch {
         const double relative = step.largest / scale_.mean_radius();
         stage_.progress(std::clamp(std::log(relative + converged_below) / std::log(converged_below), 0.0, 1.0),
                         fmt::format("programme {}: {} changes, {} of {} contacts, step {:.1e} radii", programmes_,
-                                    step.changes, contacts_, packing_.q.size(), relative));
+                                    step.changes, contacts_, DofMap<Dim>(packing_).dof_count(), relative));
     }
 
     [[nodiscard]] bool worth_an_attempt(const ProgrammeStep& step) const {

@@ -1,5 +1,6 @@
 #include "preparation/neighbours.hpp"
 
+#include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 
 #include <algorithm>
@@ -122,6 +123,11 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
 }
 
 template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach) {
+    if (packing.cell.all()) {
+        std::vector<Contact> all = near_pairs(packing, reach + upper_reach).pairs;
+        std::erase_if(all, [&](const Contact& c) { return c.image.is_here() && !(gap(packing, c) < reach); });
+        return all;
+    }
     PairList pairs;
     find_pairs<Dim>(packing.q, packing.radius, reach, pairs);
     std::vector<Contact> near;

@@ -22,7 +22,8 @@ template <int Dim>
 void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs);
 
 /// The same with the disks near walls: pairs and lower walls with gap < `reach`, upper walls with gap < `upper_reach`,
-/// sorted.
+/// sorted. In a cell: pairs with the images of another disk too, those with gap < `reach` + `upper_reach`, as a period
+/// moves as far as an upper wall.
 template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach);
 
 extern template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);

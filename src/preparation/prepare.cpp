@@ -46,6 +46,8 @@ constexpr long most_newton_steps = 500;
 /// Strain rate of the compression per sqrt(mass / stiffness) : slow against the time that forces need to spread over a
 /// diameter.
 constexpr double compression_rate = 1e-4;
+/// Least period of the loose cell, in largest radii: of the dense one more than four diameters are left.
+constexpr double narrowest_cell = 12;
 /// Overlap left by the random start, in diameters.
 constexpr double start_overlap = 1e-2;
 
@@ -61,24 +63,34 @@ void require_positive(const char* field, double value) {
 
 /// Random positions in a box of the wanted solid fraction and aspect, never narrower than the largest disk.
 template <int Dim>
-Packing<Dim> scatter(std::vector<double> radius, double fraction, double aspect, std::uint64_t seed) {
+Packing<Dim> scatter(std::vector<double> radius, const PreparationOptions& options, std::uint64_t seed) {
     static_assert(Dim == 2);
+    const double fraction = options.loose_fraction;
+    const double aspect = options.aspect;
+    const bool periodic = options.cell != PreparedCell::none;
     Packing<Dim> packing;
     packing.radius = std::move(radius);
     double area = 0;
     for (const double r : packing.radius) {
         area += std::numbers::pi * r * r;
     }
-    const double narrowest = 2.2 * packing.max_radius();
+    const double narrowest = (periodic ? narrowest_cell : 2.2) * packing.max_radius();
     const double lx = std::max(narrowest, std::sqrt(area / (fraction * aspect)));
     const std::array<double, Dim> length{lx, std::max(narrowest, lx * aspect)};
     Uniform uniform(seed);
     for (const double r : packing.radius) {
         for (std::size_t a = 0; a < Dim; ++a) {
-            packing.q.push_back(r + uniform() * (length[a] - 2 * r));
+            packing.q.push_back(periodic ? uniform() * length[a] : r + uniform() * (length[a] - 2 * r));
         }
     }
     packing.q.insert(packing.q.end(), length.begin(), length.end());
+    if (periodic) {
+        packing.walls = Walls<Dim>::none();
+        packing.cell.periodic.fill(true);
+        packing.cell.period_moves.fill(true);
+        packing.cell.tilt_moves.fill(options.cell == PreparedCell::tilted);
+        packing.q.resize(packing.coordinate_count(), 0.0);
+    }
     return packing;
 }
 
@@ -99,6 +111,15 @@ void check(const PreparationOptions& options) {
     if (options.ratio != 1) {
         bad(fmt::format("ratio of the stresses is {}: expected 1, the packing is compressed isotropically",
                         options.ratio));
+    }
+    const std::size_t disks =
+        options.radii.empty() ? static_cast<std::size_t>(std::max(options.disks, 0)) : options.radii.size();
+    const bool periodic = options.cell != PreparedCell::none;
+    if (periodic && disks > static_cast<std::size_t>(options.large_above)) {
+        bad(fmt::format("{} disks in a periodic cell: expected at most {}", disks, options.large_above));
+    }
+    if (periodic && options.load != LoadKind::nominal) {
+        bad("true stresses in a periodic cell: expected nominal ones");
     }
     if (!(options.jitter >= 0 && options.jitter < 1)) {
         bad(fmt::format("jitter is {}: expected a number from 0 to below 1", options.jitter));
@@ -200,8 +221,7 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
     const Scale scale(radius);
     std::vector<double> internal = radius;
     scale.to_internal(internal);
-    Packing<Dim> packing = scatter<Dim>(std::move(internal), options.loose_fraction, options.aspect,
-                                        derived_seed(options.seed, Stream::positions));
+    Packing<Dim> packing = scatter<Dim>(std::move(internal), options, derived_seed(options.seed, Stream::positions));
     if (!SoftStages<Dim>(packing, options, report).run()) {
         report.last = scale.to_user(packing, radius);
         report.solid_fraction = packing.solid_fraction();

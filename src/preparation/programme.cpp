@@ -49,15 +49,18 @@ ContactProgramme<Dim>::ContactProgramme(const std::vector<double>& infinitesimal
 template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packing, Rows& rows) const {
     // Two disks approach by at most 2 sqrt(Dim) trust: a pair farther apart cannot overlap after the step.
     const double reach = 2 * std::sqrt(static_cast<double>(Dim)) * trust_ * (1 + 1e-9);
-    // A wall moves farther than a disk: look as far as both together can go.
-    const double wall_reach = (wall_trust + 1) * trust_ * (1 + 1e-9);
+    // A wall moves farther than a disk: look as far as both together can go. Across a corner of a cell two periods
+    // move, one of them with the tilt.
+    const bool tilted = packing.cell.any() && packing.cell.tilt_moves[0];
+    const double lengths = !packing.cell.any() ? 1 : tilted ? std::sqrt(5.0) : std::sqrt(2.0);
+    const double wall_reach = (lengths * wall_trust + 1) * trust_ * (1 + 1e-9);
     for (const Contact& contact : near_contacts(packing, reach, wall_reach)) {
         rows.add(packing, contact);
     }
 }
 
 template <int Dim> std::vector<Contact> ContactProgramme<Dim>::candidates(const Packing<Dim>& packing) const {
-    Rows rows;
+    Rows rows(packing);
     collect(packing, rows);
     return std::move(rows.contact);
 }
@@ -69,17 +72,22 @@ BoxedProgramme ContactProgramme<Dim>::boxed(const Packing<Dim>& packing, const R
     programme.column = rows.column;
     programme.value = rows.value;
     const std::size_t disks = infinitesimal_->size();
-    programme.bound.assign(packing.q.size(), trust_);
-    programme.cost.assign(packing.q.size(), 0.0);
-    for (std::size_t k = 0; k < disks; ++k) {
-        programme.cost[k] = -objective_scale * eps * (*infinitesimal_)[k];
-    }
-    for (int a = 0; a < Dim; ++a) {
-        const std::size_t k = disks + static_cast<std::size_t>(a);
-        programme.bound[k] *= wall_trust;
-        programme.cost[k] = a == Dim - 1 ? objective_scale * ratio_ : objective_scale;
+    programme.bound.assign(rows.columns(), trust_);
+    programme.cost.assign(rows.columns(), 0.0);
+    for (std::size_t c = 0; c < rows.columns(); ++c) {
+        const auto k = static_cast<std::size_t>(rows.dofs.coordinate_of(static_cast<int>(c)));
+        if (k < disks) {
+            programme.cost[c] = -objective_scale * eps * (*infinitesimal_)[k];
+            continue;
+        }
+        const int a = static_cast<int>(k - disks);
+        programme.bound[c] *= wall_trust;
+        if (a >= Dim) {
+            continue; // a tilt, which bears no stress
+        }
+        programme.cost[c] = a == Dim - 1 ? objective_scale * ratio_ : objective_scale;
         for (int b = 0; b < Dim; ++b) {
-            programme.cost[k] *= b == a ? 1.0 : packing.length(b);
+            programme.cost[c] *= b == a ? 1.0 : packing.length(b);
         }
     }
     programme.lower.resize(rows.gap.size());
@@ -94,7 +102,7 @@ template <int Dim> bool ContactProgramme<Dim>::stopped() const {
 }
 
 template <int Dim> ProgrammeStep ContactProgramme<Dim>::solve(const Packing<Dim>& packing, double eps) {
-    Rows rows;
+    Rows rows(packing);
     collect(packing, rows);
     const BoxedProgramme programme = boxed(packing, rows, eps);
     ProgrammeStep step;
@@ -168,7 +176,7 @@ void ContactProgramme<Dim>::load(ClpSimplex& simplex, const Rows& rows, const Bo
 /// Overlapping pairs as the first basis, if they are enough; the point 0 is feasible then.
 template <int Dim>
 bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packing<Dim>& packing, const Rows& rows) {
-    const auto columns = static_cast<int>(packing.q.size());
+    const auto columns = static_cast<int>(rows.columns());
     const auto count = static_cast<int>(rows.contact.size());
     const int disks = Dim * packing.disk_count();
     std::vector<int> degree(static_cast<std::size_t>(packing.disk_count()), 0);
@@ -191,7 +199,8 @@ bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packi
                              rows.gap[static_cast<std::size_t>(k)] <= 0 ? ClpSimplex::atLowerBound : ClpSimplex::basic);
     }
     for (int k = 0; k < columns; ++k) {
-        const bool loose = k < disks && degree[static_cast<std::size_t>(k / Dim)] < Dim;
+        const int at = rows.dofs.coordinate_of(k);
+        const bool loose = at < disks && degree[static_cast<std::size_t>(at / Dim)] < Dim;
         simplex.setColumnStatus(k, loose ? ClpSimplex::superBasic : ClpSimplex::basic);
     }
     std::fill_n(simplex.primalColumnSolution(), columns, 0.0);
@@ -221,7 +230,7 @@ template <int Dim>
 void ContactProgramme<Dim>::take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step) {
     const std::size_t columns = static_cast<std::size_t>(simplex.numberColumns());
     const double* const solution = simplex.primalColumnSolution();
-    step.displacement.assign(solution, solution + columns);
+    step.displacement = rows.on_coordinates(solution);
     for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {
         step.largest = std::max(step.largest, std::abs(step.displacement[k]));
     }
@@ -252,7 +261,7 @@ bool ContactProgramme<Dim>::solve_inside(Rows& rows, const BoxedProgramme& progr
         return false; // infeasible, or beyond double: the simplex method says which
     }
     step.outcome = ProgrammeStep::Outcome::optimal;
-    step.displacement = std::move(active.x);
+    step.displacement = rows.on_coordinates(active.x.data());
     for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {
         step.largest = std::max(step.largest, std::abs(step.displacement[k]));
     }

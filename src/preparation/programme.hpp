@@ -86,7 +86,7 @@ template <int Dim> class ContactProgramme {
     [[nodiscard]] InteriorPoint first_point(const Packing<Dim>& packing, const Rows& rows) const;
     [[nodiscard]] bool stopped() const;
     /// What the simplex method starts from after a descent, and the contacts of the step.
-    void keep_basis(Rows rows, const ActiveSet& active, std::size_t coordinates, ProgrammeStep& step);
+    void keep_basis(Rows rows, const ActiveSet& active, ProgrammeStep& step);
     bool solve_inside(Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
     void solve_simplex(const Packing<Dim>& packing, Rows& rows, const BoxedProgramme& programme, ProgrammeStep& step);
     static void load(ClpSimplex& simplex, const Rows& rows, const BoxedProgramme& programme);

@@ -20,6 +20,8 @@ inline constexpr double objective_scale = 256;
 inline constexpr long few_changes = 200;
 
 template <int Dim> struct ContactProgramme<Dim>::Rows {
+    explicit Rows(const Packing<Dim>& packing) : dofs(packing) {}
+    DofMap<Dim> dofs; ///< the columns
     std::vector<Contact> contact;
     std::vector<double> gap;
     std::vector<int> row, column;
@@ -28,12 +30,24 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
     void add(const Packing<Dim>& packing, const Contact& c) {
         const GapGradient<Dim> g = gap_gradient(packing, c);
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
-            row.push_back(static_cast<int>(contact.size()));
-            column.push_back(g.coordinate[k]);
-            value.push_back(g.value[k]);
+            if (const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k])); dof >= 0) {
+                row.push_back(static_cast<int>(contact.size()));
+                column.push_back(dof);
+                value.push_back(g.value[k]);
+            }
         }
         contact.push_back(c);
         gap.push_back(isostat::gap(packing, c));
+    }
+
+    [[nodiscard]] std::size_t columns() const { return static_cast<std::size_t>(dofs.dof_count()); }
+    /// A displacement of the columns as one of all coordinates.
+    [[nodiscard]] std::vector<double> on_coordinates(const double* x) const {
+        std::vector<double> all(static_cast<std::size_t>(dofs.coordinate_count()), 0.0);
+        for (std::size_t c = 0; c < columns(); ++c) {
+            all[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(c)))] = x[c];
+        }
+        return all;
     }
 
     /// Distance of the centres, or of the centre from the wall, at contact.

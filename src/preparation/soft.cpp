@@ -3,6 +3,7 @@
 #include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/core/threads.hpp>
 
 #include <algorithm>
@@ -55,7 +56,7 @@ void store(double* xy, const Plane& value) {
 template <int Dim>
 SoftDynamics<Dim>::SoftDynamics(Packing<Dim>& packing, bool in_patches, const std::atomic<bool>* stop,
                                 std::function<void(double)> progress)
-    : packing_(packing), n_(packing.radius.size()), velocity_(packing.q.size(), 0.0), force_(packing.q.size(), 0.0),
+    : packing_(packing), n_(packing.radius.size()), velocity_(Dim * (n_ + 1), 0.0), force_(Dim * (n_ + 1), 0.0),
       stop_(stop), progress_(std::move(progress)) {
     double sum = 0;
     for (const double r : packing.radius) {
@@ -92,7 +93,7 @@ template <int Dim> void SoftDynamics<Dim>::renumber(bool in_patches) {
         }
         patches_.push_back({Dim * n_, Dim * (n_ + 1)});
     }
-    q_.resize(packing_.q.size());
+    q_.resize(Dim * (n_ + 1));
     radius_.resize(n_);
     for (std::size_t k = 0; k < n_; ++k) {
         const auto i = static_cast<std::size_t>(order_[k]);
@@ -101,11 +102,81 @@ template <int Dim> void SoftDynamics<Dim>::renumber(bool in_patches) {
             q_[Dim * k + a] = packing_.q[Dim * i + a];
         }
     }
-    std::copy(packing_.q.end() - Dim, packing_.q.end(), q_.end() - Dim);
+    for (std::size_t a = 0; a < Dim; ++a) {
+        q_[Dim * n_ + a] = packing_.q[Dim * n_ + a];
+    }
+}
+
+/// Every disk into the cell, and the images that a disk in it may touch before the next search.
+template <int Dim> void SoftDynamics<Dim>::place_images() {
+    static_assert(Dim == 2);
+    const double margin = 2 * max_radius_ + skin_;
+    images_.clear();
+    q_.resize(Dim * (n_ + 1));
+    const double* const length = q_.data() + Dim * n_;
+    if (!(std::min(length[0], length[1]) >= 2 * margin)) {
+        throw Error(ErrorKind::bad_input,
+                    "preparation: a periodic cell became narrower than four disks: expected more disks");
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+            q_[Dim * i + a] -= length[a] * std::floor(q_[Dim * i + a] / length[a]);
+        }
+        for (int m = -1; m <= 1; ++m) {
+            for (int p = -1; p <= 1; ++p) {
+                const double x = q_[Dim * i] + m * length[0];
+                const double y = q_[Dim * i + 1] + p * length[1];
+                if ((m != 0 || p != 0) && x > -margin && x < length[0] + margin && y > -margin &&
+                    y < length[1] + margin) {
+                    images_.push_back({i, {m, p}});
+                }
+            }
+        }
+    }
+    q_.resize(Dim * (n_ + 1 + images_.size()));
+    follow_images();
+}
+
+template <int Dim> void SoftDynamics<Dim>::follow_images() {
+    double* image = q_.data() + Dim * (n_ + 1);
+    for (const GhostImage& g : images_) {
+        for (std::size_t a = 0; a < Dim; ++a) {
+            *image++ = q_[Dim * g.disk + a] + g.periods[a] * q_[Dim * n_ + a];
+        }
+    }
+}
+
+/// Each pair once: of two images the one behind the disk of lower number.
+template <int Dim> void SoftDynamics<Dim>::find_pairs_in_cell() {
+    place_images();
+    std::vector<double> x(q_.begin(), q_.begin() + static_cast<std::ptrdiff_t>(Dim * n_));
+    x.insert(x.end(), q_.begin() + static_cast<std::ptrdiff_t>(Dim * (n_ + 1)), q_.end());
+    std::vector<double> radius = radius_;
+    for (const GhostImage& g : images_) {
+        radius.push_back(radius_[g.disk]);
+    }
+    PairList all;
+    find_pairs<Dim>(x, radius, skin_, all);
+    pairs_.start.assign(1, 0);
+    pairs_.partner.clear();
+    pair_second_.clear();
+    for (std::size_t i = 0; i < n_; ++i) {
+        for (auto k = static_cast<std::size_t>(all.start[i]); k < static_cast<std::size_t>(all.start[i + 1]); ++k) {
+            const auto j = static_cast<std::size_t>(all.partner[k]);
+            const std::size_t disk = j < n_ ? j : images_[j - n_].disk;
+            if (disk > i) {
+                pairs_.partner.push_back(static_cast<int>(disk));
+                pair_second_.push_back(static_cast<int>(j < n_ ? j : j + 1));
+            }
+        }
+        pairs_.start.push_back(static_cast<int>(pairs_.partner.size()));
+    }
 }
 
 template <int Dim> void SoftDynamics<Dim>::publish_lengths() {
-    std::copy(q_.end() - Dim, q_.end(), packing_.q.end() - Dim);
+    for (std::size_t a = 0; a < Dim; ++a) {
+        packing_.q[Dim * n_ + a] = q_[Dim * n_ + a];
+    }
 }
 
 template <int Dim> SoftMeasures SoftDynamics<Dim>::finish(SoftMeasures result) {
@@ -122,7 +193,12 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::finish(SoftMeasures result) {
 }
 
 template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
-    find_pairs<Dim>(q_, radius_, skin_, pairs_);
+    const bool repeats = packing_.cell.any();
+    if (repeats) {
+        find_pairs_in_cell();
+    } else {
+        find_pairs<Dim>(q_, radius_, skin_, pairs_);
+    }
     allowance_ = skin_;
     age_ = 0;
     const std::size_t count = pairs_.partner.size();
@@ -151,7 +227,7 @@ template <int Dim> void SoftDynamics<Dim>::refresh_pairs() {
         }
     }
     wall_disks_.clear();
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < n_ && !repeats; ++i) {
         bool near = false;
         for (std::size_t a = 0; a < Dim; ++a) {
             const double x = q_[Dim * i + a];
@@ -233,7 +309,8 @@ template <int Dim> void SoftDynamics<Dim>::compute_forces(double pressure) {
     const Pieces stretches{pairs_.partner.size(), pair_stretch};
     parallel_pieces(stretches.count(), [&](std::size_t piece) {
         const std::size_t from = stretches.first(piece);
-        const PairStretch stretch{stretches.last(piece) - from, pair_first_.data() + from, pairs_.partner.data() + from,
+        const std::vector<int>& second = packing_.cell.any() ? pair_second_ : pairs_.partner;
+        const PairStretch stretch{stretches.last(piece) - from, pair_first_.data() + from, second.data() + from,
                                   pair_range_.data() + from};
         pair_forces(stretch, q_.data(), q_.data() + Dim * n_, overlap_of_.data() + from, push_.data() + Dim * from,
                     virial_.data() + Dim * from);
@@ -315,6 +392,7 @@ template <int Dim> void SoftDynamics<Dim>::advance(double dt, bool walls) {
     parallel_pieces(blocks.count(), [&](std::size_t piece) {
         move(blocks.first(piece), blocks.last(piece), dt, stretch, fastest[piece]);
     });
+    follow_images();
     // Two disks that are not listed approach by at most twice the largest peculiar displacement plus the homogeneous
     // shortening; so do a disk and a wall.
     allowance_ -=

@@ -87,6 +87,9 @@ template <int Dim> class SoftDynamics {
     void advance(double dt, bool walls);
     void move(std::size_t first, std::size_t last, double dt, const std::array<double, Dim>& stretch, double& fastest);
     void refresh_pairs();
+    void place_images();
+    void follow_images();
+    void find_pairs_in_cell();
     void renumber(bool in_patches);
     [[nodiscard]] Sums sums_of(const Patch& patch) const;
     void turn(Patch& patch, Sums sums, double dt);
@@ -108,6 +111,13 @@ template <int Dim> class SoftDynamics {
     std::vector<double> force_;    ///< the same layout
     Sums sums_;                    ///< of the disks
     PairList pairs_;
+    /// In a rectangular cell: copies of the disks near a side, behind the lengths in `q_`.
+    struct GhostImage {
+        std::size_t disk = 0;
+        std::array<int, Dim> periods{};
+    };
+    std::vector<GhostImage> images_;
+    std::vector<int> pair_second_;   ///< where in `q_` the second of each pair is: `pairs_.partner`, or an image of it
     std::vector<int> pair_first_;    ///< the other index of each pair
     std::vector<double> pair_range_; ///< sum of the radii
     std::vector<int> pair_target_;   ///< partner, or where a block keeps what goes to a disk of another block

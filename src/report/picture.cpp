@@ -1,10 +1,14 @@
+#include "io/cell_wrap.hpp"
+
 #include <isostat/report/picture.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <vector>
@@ -41,13 +45,89 @@ double mean_force(std::span<const double> forces) {
     return count > 0 ? sum / count : 1;
 }
 
-/// Writes shapes in picture units: 1000 across the box, y downwards.
+/// The same packing with its disks in the cell, and the images that its contacts then name.
+State<2> in_cell(State<2> state) {
+    if (!state.packing.cell.any()) {
+        return state;
+    }
+    const Wrapped wrapped = wrap_into_cell(state.packing);
+    for (Contact& contact : state.contacts) {
+        for (std::size_t a = 0; a < 2 && contact.kind == ContactKind::disk_disk; ++a) {
+            const double m = contact.image.m[a] + wrapped.periods[static_cast<std::size_t>(contact.j)][a] -
+                             wrapped.periods[static_cast<std::size_t>(contact.i)][a];
+            contact.image.m[a] = static_cast<std::int8_t>(std::clamp(m, -100.0, 100.0)); // more: no contact
+        }
+    }
+    return state;
+}
+
+/// m_x and m_y periods of a cell.
+Point periods(const Packing<2>& packing, double mx, double my) {
+    return {mx * packing.lattice(0, 0) + my * packing.lattice(0, 1), my * packing.lattice(1, 1)};
+}
+
+Point operator+(Point a, Point b) {
+    return {a.x + b.x, a.y + b.y};
+}
+
+Point operator-(Point a, Point b) {
+    return {a.x - b.x, a.y - b.y};
+}
+
+/// Centre of the image of the second disk that a contact names. \pre two disks
+Point second_centre(const State<2>& state, const Contact& contact) {
+    const Point j = centre(state, contact.j);
+    return contact.image.is_here() ? j : j + periods(state.packing, contact.image.m[0], contact.image.m[1]);
+}
+
+/// Corners of the cell, in order. Along an axis with walls it goes from wall to wall.
+std::array<Point, 4> corners(const Packing<2>& packing) {
+    return {periods(packing, 0, 0), periods(packing, 1, 0), periods(packing, 1, 1), periods(packing, 0, 1)};
+}
+
+/// What is drawn: the box, or the cell with room for images.
+struct Frame {
+    Point low, high;
+};
+
+Frame frame_of(const State<2>& state) {
+    Frame frame;
+    if (state.packing.cell.any()) {
+        const double room = state.packing.max_radius();
+        frame = {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+        for (const Point& p : corners(state.packing)) {
+            frame.low = {std::min(frame.low.x, p.x - room), std::min(frame.low.y, p.y - room)};
+            frame.high = {std::max(frame.high.x, p.x + room), std::max(frame.high.y, p.y + room)};
+        }
+        return frame;
+    }
+    const auto extent = [&](int axis) {
+        double most = state.packing.walls.upper[static_cast<std::size_t>(axis)] == WallKind::absent
+                          ? 0
+                          : state.packing.length(axis);
+        for (int i = 0; i < state.packing.disk_count(); ++i) {
+            most = std::max(most, state.packing.coordinate(DiskId(i), axis) +
+                                      state.packing.radius[static_cast<std::size_t>(i)]);
+        }
+        return most > 0 ? most : 1;
+    };
+    frame.high = {extent(0), extent(1)};
+    return frame;
+}
+
+/// Writes shapes in picture units: 1000 across what is drawn, y downwards.
 class Canvas {
   public:
-    explicit Canvas(const State<2>& state) : height_(extent(state, 1)), scale_(1000 / extent(state, 0)) {}
+    explicit Canvas(const State<2>& state) : frame_(frame_of(state)), scale_(1000 / (frame_.high.x - frame_.low.x)) {}
 
     [[nodiscard]] double scale() const { return scale_; }
-    [[nodiscard]] double height() const { return height_ * scale_; }
+    [[nodiscard]] double height() const { return (frame_.high.y - frame_.low.y) * scale_; }
+    [[nodiscard]] Point low() const { return frame_.low; }
+    /// Whether some of a disk is in the picture.
+    [[nodiscard]] bool shows(Point at, double radius) const {
+        return at.x > frame_.low.x - radius && at.x < frame_.high.x + radius && at.y > frame_.low.y - radius &&
+               at.y < frame_.high.y + radius;
+    }
     void circle(Point at, double radius, const char* style) {
         add(R"(<circle cx="{:.3f}" cy="{:.3f}" r="{:.3f}" class="{}"/>)", x(at), y(at), radius * scale_, style);
     }
@@ -61,23 +141,14 @@ class Canvas {
     std::string take() { return std::move(text_); }
 
   private:
-    static double extent(const State<2>& state, int axis) {
-        double most = state.packing.walls.upper[static_cast<std::size_t>(axis)] == WallKind::absent
-                          ? 0
-                          : state.packing.length(axis);
-        for (int i = 0; i < state.packing.disk_count(); ++i) {
-            most = std::max(most, state.packing.coordinate(DiskId(i), axis) +
-                                      state.packing.radius[static_cast<std::size_t>(i)]);
-        }
-        return most > 0 ? most : 1;
-    }
-    [[nodiscard]] double x(Point p) const { return p.x * scale_; }
-    [[nodiscard]] double y(Point p) const { return (height_ - p.y) * scale_; }
+    [[nodiscard]] double x(Point p) const { return (p.x - frame_.low.x) * scale_; }
+    [[nodiscard]] double y(Point p) const { return (frame_.high.y - p.y) * scale_; }
     template <class... Values> void add(fmt::format_string<Values...> format, Values&&... values) {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
         text_ += '\n';
     }
-    double height_, scale_;
+    Frame frame_;
+    double scale_;
     std::string text_;
 };
 
@@ -101,6 +172,37 @@ void draw_walls(Canvas& canvas, const State<2>& state) {
     draw(walls.upper[1], {0, ly + out}, {lx, ly + out});
 }
 
+/// Dashed: the sides that repeat.
+void draw_cell(Canvas& canvas, const Packing<2>& packing) {
+    const std::array<Point, 4> corner = corners(packing);
+    for (std::size_t k = 0; k < 4 && packing.cell.any(); ++k) {
+        if (packing.cell.periodic[(k + 1) % 2]) { // sides 0 and 2 are along x: they repeat along y
+            canvas.line(corner[k], corner[(k + 1) % 4], 2.5, "cell");
+        }
+    }
+}
+
+/// The disks, and in a cell their images: those beyond it are fainter.
+void draw_disks(Canvas& canvas, const State<2>& state, const std::vector<unsigned char>& rattler) {
+    const Packing<2>& packing = state.packing;
+    constexpr int around = 1; // images: the disks were put into the cell
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        const auto s = static_cast<std::size_t>(i);
+        for (int m = -around; m <= around; ++m) {
+            for (int p = -around; p <= around; ++p) {
+                const bool here = m == 0 && p == 0;
+                const bool there = (m == 0 || packing.cell.periodic[0]) && (p == 0 || packing.cell.periodic[1]);
+                const Point at = here || !there ? centre(state, i) : centre(state, i) + periods(packing, m, p);
+                if (here) {
+                    canvas.circle(at, packing.radius[s], rattler[s] != 0 ? "rattler" : "disk");
+                } else if (there && canvas.shows(at, packing.radius[s])) {
+                    canvas.circle(at, packing.radius[s], rattler[s] != 0 ? "rattler image" : "disk image");
+                }
+            }
+        }
+    }
+}
+
 /// Width of the line of a force 1.
 double width_of_force(const Canvas& canvas, const State<2>& state, std::span<const double> forces) {
     constexpr double width_at_mean = 0.2; // of the mean radius
@@ -120,13 +222,15 @@ void draw_contacts(Canvas& canvas, const State<2>& state, std::span<const double
             continue;
         }
         const double force = forces.empty() ? 0 : forces[l];
-        const Point end =
-            foot(state, contact).value_or(contact.kind == ContactKind::disk_disk ? centre(state, contact.j) : Point{});
-        const char* const style = contact.kind == ContactKind::disk_disk ? "force" : "force wall";
-        canvas.line(centre(state, contact.i), end, force == 0 ? hairline : std::abs(force) * unit,
-                    force > 0   ? style
-                    : force < 0 ? "traction"
-                                : "contact");
+        const bool pair = contact.kind == ContactKind::disk_disk;
+        const Point end = pair ? second_centre(state, contact) : foot(state, contact).value_or(Point{});
+        const char* const style = force == 0 ? "contact" : force < 0 ? "traction" : pair ? "force" : "force wall";
+        const double width = force == 0 ? hairline : std::abs(force) * unit;
+        canvas.line(centre(state, contact.i), end, width, style);
+        if (!contact.image.is_here()) { // from the other side too
+            canvas.line(centre(state, contact.i) - (end - centre(state, contact.j)), centre(state, contact.j), width,
+                        style);
+        }
     }
 }
 
@@ -163,9 +267,9 @@ void draw_stresses(Canvas& canvas, const State<2>& state) {
 void draw_scale(Canvas& canvas, const State<2>& state, std::span<const double> forces) {
     const double unit = width_of_force(canvas, state, forces);
     const double mean = mean_force(forces);
-    double at = 0;
+    double at = canvas.low().x;
     for (const double times : {1.0, 3.0}) {
-        const double low = -34 / canvas.scale();
+        const double low = canvas.low().y - 34 / canvas.scale();
         canvas.line({at, low}, {at + 60 / canvas.scale(), low}, times * mean * unit, "force scale");
         at += 70 / canvas.scale();
         const std::string name = times == 1 ? "mean force" : "3 times";
@@ -200,18 +304,17 @@ std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const 
     return flags;
 }
 
-std::string force_picture(const State<2>& state, std::span<const double> forces, const std::string& caption) {
+std::string force_picture(const State<2>& stored, std::span<const double> forces, const std::string& caption) {
+    const State<2> state = in_cell(stored);
     Canvas canvas(state);
     std::vector<unsigned char> rattler(state.packing.radius.size(), 0);
     if (!forces.empty()) {
         rattler = rattler_flags(state, forces);
     }
-    for (int i = 0; i < state.packing.disk_count(); ++i) {
-        const auto s = static_cast<std::size_t>(i);
-        canvas.circle(centre(state, i), state.packing.radius[s], rattler[s] != 0 ? "rattler" : "disk");
-    }
+    draw_disks(canvas, state, rattler);
     draw_contacts(canvas, state, forces);
     draw_walls(canvas, state);
+    draw_cell(canvas, state.packing);
     draw_stresses(canvas, state);
     if (!forces.empty()) {
         draw_scale(canvas, state, forces);
@@ -232,7 +335,11 @@ std::string force_picture(const State<2>& state, std::span<const double> forces,
         ".force{stroke:#8c1c13;stroke-linecap:round}.wall,.scale{stroke-linecap:butt}"
         ".traction{stroke:#1b5fbf;stroke-dasharray:6 3}.contact{stroke:#777}.stress{stroke:#222;stroke-linecap:round}"
         ".fixed{stroke:#222;stroke-linecap:square}.movable{stroke:#8f8f8f;stroke-linecap:square}"
-        "text{font-family:sans-serif;font-size:20px;fill:#222}</style>\n";
+        "text{font-family:sans-serif;font-size:20px;fill:#222}";
+    if (state.packing.cell.any()) {
+        text += ".image{opacity:0.4}.cell{stroke:#222;stroke-dasharray:12 8}";
+    }
+    text += "</style>\n";
     text += fmt::format(
         "<title>{}</title>\n<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#ffffff\"/>\n",
         escaped(caption), -border, -above, width, height);
@@ -261,10 +368,24 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
         if (const auto on_wall = foot(state, contact)) {
             end = points.size();
             points.push_back(*on_wall);
+        } else if (!contact.image.is_here()) {
+            end = points.size();
+            points.push_back(second_centre(state, contact));
         }
         lines += fmt::format("2 {} {}\n", contact.i, end);
         line_force += fmt::format("{:.17g}\n", forces.empty() ? 0 : forces[l]);
         ++line_count;
+    }
+    std::size_t ends = 2 * line_count;
+    if (state.packing.cell.any()) {
+        const std::size_t first = points.size();
+        for (const Point& p : corners(state.packing)) {
+            points.push_back(p);
+        }
+        lines += fmt::format("5 {} {} {} {} {}\n", first, first + 1, first + 2, first + 3, first);
+        line_force += "0\n";
+        ++line_count;
+        ends += 5;
     }
     std::vector<unsigned char> rattler(disks, 0);
     if (!forces.empty()) {
@@ -281,7 +402,7 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
     for (std::size_t i = 0; i < disks; ++i) {
         text += fmt::format("1 {}\n", i);
     }
-    text += fmt::format("LINES {} {}\n{}", line_count, 3 * line_count, lines);
+    text += fmt::format("LINES {} {}\n{}", line_count, line_count + ends, lines);
     text += fmt::format("POINT_DATA {}\nSCALARS radius double 1\nLOOKUP_TABLE default\n", points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         text += fmt::format("{:.17g}\n", i < disks ? state.packing.radius[i] : 0.0);

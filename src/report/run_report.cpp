@@ -43,7 +43,7 @@ class Writer {
         }
     }
     void picture(const fs::path& path, const std::string& name) {
-        StateFile<2> file = read_state<2>(path);
+        StateFile<2> file = read_any_state<2>(path);
         if (file.forces.empty()) {
             file.forces = solve_forces(file.state, path);
         }

@@ -92,6 +92,21 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     options.aspect = section.number("aspect", options.aspect, 0.01, 100, "a number from 0.01 to 100");
 }
 
+/// [cell]: there is one, so there are no walls.
+void read_cell(Section& section, Scene& scene) {
+    PreparationOptions& options = scene.preparation;
+    if (!scene.start.empty()) {
+        section.refuse("", "[cell] is of a preparation: a packing read from a file has its own");
+    }
+    options.cell =
+        section.word("kind", 0, {"rectangular", "tilted"}) == 0 ? PreparedCell::rectangular : PreparedCell::tilted;
+    const std::size_t count = options.radii.empty() ? static_cast<std::size_t>(options.disks) : options.radii.size();
+    if (count > static_cast<std::size_t>(options.large_above)) {
+        section.refuse(
+            "", fmt::format("[cell] and {} disks: expected at most {} in a periodic cell", count, options.large_above));
+    }
+}
+
 void read_preparation(Section& section, Scene& scene) {
     PreparationOptions& options = scene.preparation;
     options.loose_fraction =
@@ -127,6 +142,10 @@ void read_load(Section& section, Scene& scene) {
     if (!has_file) {
         if (sigma1 && !(*sigma1 > 0)) {
             section.fail("sigma1", "a positive stress");
+        }
+        if (scene.preparation.cell != PreparedCell::none && scene.preparation.load != LoadKind::nominal) {
+            section.refuse("kind", "'kind' in [load] is \"true\" and there is a [cell]: expected \"nominal\" (true "
+                                   "stresses are not written for periodic cells)");
         }
         scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
     }
@@ -206,8 +225,8 @@ const toml::table* table_of(const toml::table& document, const char* name, const
 }
 
 void check_sections(const toml::table& document, const std::string& source) {
-    static constexpr std::array<std::string_view, 6> sections{"packing",   "preparation", "load",
-                                                              "programme", "run",         "output"};
+    static constexpr std::array<std::string_view, 7> sections{"packing",   "cell", "preparation", "load",
+                                                              "programme", "run",  "output"};
     for (const auto& [key, node] : document) {
         if (std::find(sections.begin(), sections.end(), key.str()) == sections.end()) {
             throw Error(ErrorKind::bad_input,
@@ -235,6 +254,11 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     Section packing = section("packing");
     read_packing(packing, scene, folder);
     packing.finish();
+    if (table_of(document, "cell", source) != nullptr) {
+        Section cell = section("cell");
+        read_cell(cell, scene);
+        cell.finish();
+    }
     Section preparation = section("preparation");
     if (scene.start.empty()) {
         read_preparation(preparation, scene);

@@ -1,4 +1,5 @@
 #include "io/bad_input.hpp"
+#include "io/cell_wrap.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
 
@@ -133,6 +134,79 @@ BOOST_AUTO_TEST_CASE(extended_xyz_with_a_lattice_makes_a_cell) {
     const Packing<2> q = read(strip).packing;
     BOOST_TEST(q.cell.periodic[0]);
     BOOST_TEST(!q.cell.periodic[1]);
+}
+
+BOOST_AUTO_TEST_CASE(disks_are_put_into_the_cell_by_whole_periods) {
+    State<2> state = cells::in_cell({{0.25, -0.5, 4.25}, {0.25, 0.75, 0.5}}, {2, 1.75, 1}, true, 1, 1, {});
+    const Wrapped wrapped = wrap_into_cell(state.packing);
+    // (-0.5, 4.25) less two periods (1, 1.75) is (-2.5, 0.75), in fractions (-2.93 / 2, 0.43): two more along x.
+    BOOST_TEST(state.packing.q == (std::vector<double>{1.5, 0.75, 0.75, 0.5, 2, 1.75, 1}));
+    BOOST_TEST((wrapped.periods[0] == std::array<double, 2>{-2, 2}));
+    BOOST_TEST((wrapped.periods[1] == std::array<double, 2>{0, 0}));
+    BOOST_TEST(wrap_into_cell(state.packing).rounding == 0);
+    state.packing.cell.periodic = {false, true}; // nothing moves along x, nor does the tilt count
+    state.packing.q = {-5, 4.25, 9, 0.5, 2, 1.75, 0};
+    (void)wrap_into_cell(state.packing);
+    BOOST_TEST(state.packing.q == (std::vector<double>{-5, 0.75, 9, 0.5, 2, 1.75, 0}));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
+    for (const char* name : {"rect_16", "tilt_16", "channel_16"}) {
+        const Packing<2> stored =
+            read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state.packing;
+        Packing<2> wrapped = stored;
+        BOOST_TEST(wrap_into_cell(wrapped).rounding > 0);
+        for (const std::string format : {"lammps-data", "xyz"}) {
+            BOOST_TEST_CONTEXT(name << " " << format) {
+                ForeignOptions options;
+                options.periodic = format == "lammps-data"; // says nothing where no disk was moved
+                const bool channel = !stored.cell.periodic[1];
+                if (options.periodic && channel) {
+                    continue; // of a data file either both axes repeat or what its image flags say
+                }
+                const auto file =
+                    read(options.periodic ? lammps_data_text(stored, name) : xyz_text(stored, {}), options);
+                BOOST_TEST(file.format == format);
+                BOOST_TEST((file.packing.cell.periodic == stored.cell.periodic));
+                BOOST_TEST(file.packing.radius == stored.radius, boost::test_tools::per_element());
+                std::vector<double> wanted = wrapped.q;
+                wanted[wanted.size() - 2] = channel ? 0 : wanted[wanted.size() - 2]; // no wall is read
+                BOOST_TEST(file.packing.q == wanted, boost::test_tools::per_element());
+            }
+        }
+    }
+    const State<2> one = cells::one_tilted_disk(2, 1, 0.25);
+    BOOST_TEST(lammps_data_text(one.packing, "t").find("\n0 2 xlo xhi\n") != std::string::npos);
+    BOOST_TEST(lammps_data_text(one.packing, "t").find("\n1 0 0 xy xz yz\n") != std::string::npos);
+    State<2> out = cells::one_disk(1, 1);
+    BOOST_TEST(lammps_data_text(out.packing, "t").find("xy xz yz") == std::string::npos);
+    out.packing.q[0] = -3.75; // two periods left of 0.25
+    BOOST_TEST(lammps_data_text(out.packing, "t").ends_with("\n1 1 2 1 0.25 0.5 0 -2 0 0\n"));
+    BOOST_TEST(
+        csv_text(one.packing).starts_with("# box 0:2,0:1.7320508075688772, tilt 1, periodic along xy\nid,x,y,r\n"));
+    const Packing<2> box = ::crafted::two_disks(1, 2, 1, 1).packing;
+    BOOST_TEST(lammps_data_text(box, "t").find("xy xz yz") == std::string::npos);
+    BOOST_TEST(xyz_text(box, {}).find("pbc=\"F F F\"") != std::string::npos);
+    BOOST_TEST(csv_text(box).find("periodic") == std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(foreign_cells_that_are_none_are_named) {
+    expect_bad_input([] { (void)read(dump("pp pp pp\n1 1\n0 4\n0 1", "1 0 0 0.5\n", 1)); },
+                     {"file: period 0 along x", "positive"});
+    expect_bad_input([] { (void)read(dump("pp pp pp\n1 0\n0 4\n0 1", "1 0 0 0.5\n", 1)); },
+                     {"file:6", "upper bound", "above the lower bound"});
+    expect_bad_input([] { (void)read(dump("xy xz yz pp ff pp\n0 2 1\n0 4 0\n0 1 0", "1 0 0 0.5\n", 1)); },
+                     {"tilted by 1", "both axes periodic"});
+    const auto lattice = [](const std::string& vectors) {
+        return "1\nLattice=\"" + vectors + "\" Properties=pos:R:3:radius:R:1\n0 0 0 0.5\n";
+    };
+    expect_bad_input([&] { (void)read(lattice("-2 0 0 0 2 0 0 0 1")); }, {"file:2", "positive lengths"});
+    expect_bad_input([&] { (void)read(lattice("2 1 0 0 2 0 0 0 1")); }, {"file:2", "a first vector along x"});
+    ForeignOptions walls;
+    walls.walls = ForeignWalls::box;
+    expect_bad_input([&] { (void)read(lattice("2 0 0 0 2 0 0 0 1"), walls); }, {"walls or a box were stated"});
+    walls.walls_unless_periodic = true;
+    BOOST_TEST(read(lattice("2 0 0 0 2 0 0 0 1"), walls).packing.cell.all());
 }
 
 BOOST_AUTO_TEST_CASE(a_packing_that_is_isostatic_under_pressure_is_found_so) {

@@ -1,3 +1,4 @@
+#include "support/cells.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/report/picture.hpp>
@@ -88,6 +89,46 @@ BOOST_AUTO_TEST_CASE(a_picture_has_a_scale_of_its_forces_and_the_stresses_on_mov
     fixed.packing.walls.upper = {WallKind::fixed, WallKind::fixed};
     BOOST_TEST(count(force_picture(fixed, {}, ""), "class=\"stress\"") == 0);
     BOOST_TEST(count(force_picture(fixed, {}, ""), "class=\"force scale\"") == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_cell_is_drawn_with_its_images_and_contacts_from_both_sides) {
+    const State<2> one = cells::one_tilted_disk(2, 1, 0.25);
+    const std::string svg = force_picture(one, std::vector<double>{1, 2, 3}, "");
+    BOOST_TEST(count(svg, "class=\"cell\"") == 4);
+    BOOST_TEST(count(svg, "class=\"disk\"") == 1);
+    BOOST_TEST(count(svg, "class=\"disk image\"") == 8);
+    BOOST_TEST(widths(svg, "force") ==
+               (std::vector<double>{widths(svg, "force")[0], widths(svg, "force")[0], widths(svg, "force")[2],
+                                    widths(svg, "force")[2], widths(svg, "force")[4], widths(svg, "force")[4]}));
+    BOOST_TEST(widths(svg, "force")[4] > 2.9 * widths(svg, "force")[0]);
+    // Other representatives, the same picture.
+    const State<2> moved =
+        cells::with_other_representatives(cells::two_disks(false, 1, 1), {cells::image(1, 0), cells::image(-1, 2)});
+    const std::vector<double> forces{1, 2, 3, 4};
+    BOOST_TEST(count(force_picture(moved, forces, ""), "<circle") ==
+               count(force_picture(cells::two_disks(false, 1, 1), forces, ""), "<circle"));
+    BOOST_TEST(widths(force_picture(moved, forces, ""), "force") ==
+                   widths(force_picture(cells::two_disks(false, 1, 1), forces, ""), "force"),
+               boost::test_tools::per_element());
+    State<2> channel = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
+                                      {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
+    channel.packing.cell = {{true, false}, {true, false}, {false}, 0};
+    channel.packing.walls.lower[1] = WallKind::fixed;
+    channel.packing.walls.upper[1] = WallKind::movable;
+    const std::string strip = force_picture(channel, std::vector<double>{1, 2, 3}, "");
+    BOOST_TEST(count(strip, "class=\"cell\"") == 2);
+    BOOST_TEST(count(strip, "class=\"fixed\"") == 1);
+    BOOST_TEST(count(strip, "class=\"disk image\"") == 2);
+    const std::string box = force_picture(state, std::vector<double>{1, 2, 3, 4, 5, 6}, "");
+    BOOST_TEST(count(box, "cell") + count(box, "image") == 0);
+}
+
+BOOST_AUTO_TEST_CASE(vtk_of_a_cell_has_its_outline_and_ends_of_contacts_at_images) {
+    const std::string vtk = vtk_text(cells::one_tilted_disk(2, 1, 0.25), std::vector<double>{1, 2, 3}, "title");
+    BOOST_TEST(vtk.find("POINTS 8 double\n0.25 0.5 0\n1.25 2.232") != std::string::npos); // one period up
+    BOOST_TEST(vtk.find("LINES 4 15\n2 0 1\n2 0 2\n2 0 3\n5 4 5 6 7 4\n") != std::string::npos);
+    BOOST_TEST(vtk.find("CELL_DATA 5\nSCALARS force double 1\nLOOKUP_TABLE default\n0\n1\n2\n3\n0\n") !=
+               std::string::npos);
 }
 
 BOOST_AUTO_TEST_CASE(displacements_are_vectors_of_the_disks) {

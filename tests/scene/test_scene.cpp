@@ -145,6 +145,19 @@ vtk = true
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_table_of_the_cell_takes_the_walls_away) {
+    BOOST_TEST((parse(head).preparation.cell == PreparedCell::none));
+    BOOST_TEST((parse(head + "[cell]\n").preparation.cell == PreparedCell::rectangular));
+    const Scene tilted = parse(head + "[cell]\nkind = \"tilted\"\n");
+    BOOST_TEST((tilted.preparation.cell == PreparedCell::tilted));
+    BOOST_TEST(value_of(tilted, "cell", "kind") == "\"tilted\"");
+    refuses(head + "[cell]\nkind = \"cubic\"\n", {"s.toml:4:", "kind", "cubic", "rectangular"});
+    refuses(head + "[cell]\nwalls = 2\n", {"s.toml:4:", "walls"});
+    refuses("[packing]\nfile = \"v.txt\"\n[cell]\n", {"s.toml:3:", "[cell] is of a preparation"});
+    refuses("[packing]\ndisks = 8193\n[cell]\n", {"s.toml:3:", "8193 disks", "at most 8192"});
+    refuses(head + "[cell]\n[load]\nkind = \"true\"\n", {"s.toml:5:", "kind", "[cell]", "nominal"});
+}
+
 BOOST_AUTO_TEST_CASE(a_law_has_its_own_keys_and_no_others) {
     const DiameterLaw mixture =
         parse(head + "law = \"bidisperse\"\nratio = 2\nfraction = 0.25\n").preparation.diameters;

@@ -33,6 +33,7 @@ struct ForeignOptions {
     std::string format; ///< a name of `foreign_formats()`, or empty: recognised from the content
     std::optional<SizeStatement> size;
     ForeignWalls walls = ForeignWalls::none;
+    bool walls_unless_periodic = false;       ///< `walls` are for packings without a periodic axis
     std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi instead of the bounds in the file
     std::optional<long> frame;                ///< of a file with several, from 0; the last one otherwise
     std::vector<std::string> columns;         ///< of a table without a header; "-" is a column to leave out
@@ -88,8 +89,9 @@ std::vector<Contact> read_local_dump(const std::filesystem::path& path, const Pa
 
 /// The texts that other programs read, every number in the shortest form that gives the same double back: a LAMMPS
 /// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (Dim*n
-/// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls.
-/// Contacts and loads have no place there.
+/// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls, or the
+/// cell: with its tilt, `pbc` in XYZ, and in LAMMPS data the disks moved into it, with image flags (LAMMPS wants them
+/// there; the moves are exact on the grid). Contacts and loads have no place there.
 std::string lammps_data_text(const Packing<2>& packing, const std::string& title);
 std::string xyz_text(const Packing<2>& packing, const std::vector<double>& displacement);
 std::string csv_text(const Packing<2>& packing);

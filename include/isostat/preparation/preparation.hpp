@@ -23,6 +23,11 @@ struct PreparationProgress {
     std::string text;
 };
 
+/// What holds the disks together: two fixed and two movable walls; a rectangular cell whose two periods move; such a
+/// cell whose tilt moves too, without a shear stress on it. The soft disks are compressed in a rectangle in any case,
+/// and the tilt is set free with the linear programmes.
+enum class PreparedCell { none, rectangular, tilted };
+
 /// What to prepare. The defaults of the last group suit sizes 1 ... 10^5; they change the way and the cost, never the
 /// validity.
 struct PreparationOptions {
@@ -35,6 +40,8 @@ struct PreparationOptions {
     double ratio = 1;          ///< sigma_2 / sigma_1 > 0 of `find_vertex`; `prepare` takes 1 only
     double aspect = 1;         ///< Ly / Lx of the loose box; the final box is free
     LoadKind load = LoadKind::nominal;
+    /// A cell instead of walls: at most `large_above` disks, and enough for periods of four diameters.
+    PreparedCell cell = PreparedCell::none;
 
     const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
     std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept
@@ -100,8 +107,10 @@ template <int Dim> struct PreparationReport {
 /// tests/bench/preparation.cpp; the dynamics takes most of it.
 template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report);
 
-/// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls (small
-/// overlaps are allowed).
+/// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or in a
+/// periodic cell whose periods move (small overlaps are allowed). In the cell the disk with the most overlaps or
+/// contacts is pinned, and N_f = 2n, or 2n + 1 with a tilt that moves; no shear stress is on it. A tilt that does not
+/// move changes only where overlaps need a dilation of everything.
 ///
 /// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma_1 Ly, F2 = sigma_2 Lx of the
 /// current box, subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step within the trust bounds can bring

@@ -1,0 +1,141 @@
+// Periodic packings from random disks: proved vertices, and what may not change them.
+
+#include "preparation/neighbours.hpp"
+#include "preparation/soft.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+using namespace isostat;
+
+PreparationOptions periodic(int disks, std::uint64_t seed) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    options.cell = PreparedCell::rectangular;
+    return options;
+}
+
+State<2> prepared(const PreparationOptions& options) {
+    PreparationReport<2> report;
+    const Result<State<2>> result = prepare<2>(options, report);
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.failure().message()));
+    return result.value();
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(preparation)
+
+BOOST_AUTO_TEST_CASE(periodic_packings_are_proved_equilibria) {
+    for (const auto& [disks, seeds] : {std::pair{30, 5}, {100, 2}}) {
+        for (int seed = 1; seed <= seeds; ++seed) {
+            BOOST_TEST_CONTEXT("n = " << disks << ", seed " << seed) {
+                const State<2> state = prepared(periodic(disks, static_cast<std::uint64_t>(seed)));
+                const Packing<2>& packing = state.packing;
+                BOOST_TEST(packing.cell.all());
+                BOOST_TEST(packing.lattice(0, 1) == 0);
+                BOOST_TEST(state.contacts.size() == 2 * packing.radius.size());
+                BOOST_TEST(state.load.reference_length[0] == packing.length(0));
+                BOOST_TEST(state.load.reference_length[1] == packing.length(1));
+                for (std::size_t a = 0; a < 2; ++a) {
+                    double sum = 0;
+                    for (std::size_t k = a; k < state.load.infinitesimal.size(); k += 2) {
+                        sum += state.load.infinitesimal[k];
+                    }
+                    BOOST_TEST(sum == 0);
+                }
+                const Certification proof = certify(state);
+                BOOST_TEST((proof.verdict == Verdict::proved));
+                BOOST_TEST(packing.solid_fraction() > 0.75);
+                BOOST_TEST(packing.solid_fraction() < 0.9);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_tilt_that_moves_bears_no_shear_and_has_its_contact) {
+    PreparationOptions options = periodic(60, 1);
+    options.cell = PreparedCell::tilted;
+    const State<2> state = prepared(options);
+    BOOST_TEST(state.contacts.size() == 2 * state.packing.radius.size() + 1);
+    BOOST_TEST(state.packing.lattice(0, 1) != 0);
+    BOOST_TEST(std::abs(state.packing.lattice(0, 1)) < 0.1 * state.packing.length(0));
+    BOOST_TEST((state.load.shear == std::array<double, 1>{0}));
+    BOOST_TEST((certify(state).verdict == Verdict::proved));
+}
+
+// The vertex of the cell that is stored, found again with overlaps everywhere: all pairs across the sides count.
+BOOST_AUTO_TEST_CASE(a_vertex_is_found_again_in_its_cell) {
+    const State<2> state = prepared(periodic(30, 3));
+    Packing<2> soft = state.packing;
+    for (double& x : soft.q) {
+        x *= 1 - 1e-6;
+    }
+    PreparationOptions options = periodic(30, 3);
+    PreparationReport<2> report;
+    const Result<State<2>> again = find_vertex(soft, options, report);
+    BOOST_REQUIRE(again.ok());
+    BOOST_TEST(std::abs(again.value().packing.length(0) - state.packing.length(0)) < 1e-11);
+    BOOST_TEST(std::abs(again.value().packing.length(1) - state.packing.length(1)) < 1e-11);
+    soft.cell.period_moves = {true, false};
+    BOOST_CHECK_THROW((void)find_vertex(soft, options, report), Error);
+}
+
+BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_cell_and_units_do_not_matter) {
+    const State<2> one = prepared(periodic(30, 2));
+    const State<2> other = prepared(periodic(30, 2));
+    BOOST_TEST(one.packing.q == other.packing.q, boost::test_tools::per_element());
+    PreparationOptions large = periodic(30, 2);
+    large.radii = one.packing.radius;
+    for (double& r : large.radii) {
+        r *= 1024;
+    }
+    const State<2> scaled = prepared(large);
+    BOOST_TEST((scaled.contacts == one.contacts));
+    for (std::size_t k = 0; k < one.packing.q.size(); ++k) {
+        BOOST_TEST(scaled.packing.q[k] == 1024 * one.packing.q[k]);
+    }
+}
+
+// Where the disks are drawn must not matter for the forces: all pairs across the sides are there. A cell shifted by
+// half a period has other images, and relaxes to the same pressure and number of contacts.
+BOOST_AUTO_TEST_CASE(soft_disks_feel_their_images) {
+    Packing<2> packing;
+    packing.walls = Walls<2>::none();
+    packing.cell.periodic = packing.cell.period_moves = {true, true};
+    for (int y = 0; y < 6; ++y) {
+        for (int x = 0; x < 6; ++x) {
+            packing.radius.push_back(1);
+            packing.q.insert(packing.q.end(), {1.99 * x + 0.3, 1.99 * y - 0.7});
+        }
+    }
+    packing.q.insert(packing.q.end(), {6 * 1.99, 6 * 1.99, 0});
+    // A square lattice under the pressure of its overlaps, 0.01 / 1.99: every disk balanced, every contact there.
+    isostat::preparation::SoftDynamics<2> dynamics(packing, false, nullptr, [](double) {});
+    const auto measures = dynamics.relax(0.01 / 1.99, 1e-6, 0);
+    BOOST_TEST(measures.contacts == 72);
+    BOOST_TEST(measures.residual < 1e-9);
+    BOOST_TEST(measures.pressure_error < 1e-9);
+    BOOST_TEST(std::abs(measures.overlap - 0.005) < 1e-12);
+}
+
+BOOST_AUTO_TEST_CASE(too_few_or_too_many_disks_are_refused) {
+    PreparationReport<2> report;
+    BOOST_CHECK_THROW((void)prepare<2>(periodic(9000, 1), report), Error);
+    PreparationOptions options = periodic(30, 1);
+    options.load = LoadKind::true_stress;
+    BOOST_CHECK_THROW((void)prepare<2>(options, report), Error);
+    PreparationOptions few = periodic(3, 1); // the cell becomes narrower than four diameters
+    BOOST_CHECK_THROW((void)prepare<2>(few, report), Error);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

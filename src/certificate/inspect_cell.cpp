@@ -9,9 +9,46 @@ namespace isostat {
 
 namespace {
 
+/// N = N_f of full strain, h = k = 0: the forces under an isotropic pressure are unique, and say whether it is jammed
+/// strictly (C7). They are those of the load at one value of the loaded stress, where the tilt bears no shear.
+Answer strictly(const State<2>& state, const CertificateClaims& claims) {
+    if (state.load.shear[0] != 0 || !claims.load_interval) {
+        return {Verdict::undecided,
+                "k = 0 for full strain; its forces under an isotropic pressure are not those of its "
+                "load at any stress that was looked at"};
+    }
+    constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
+    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
+    const std::size_t other = 1 - loaded;
+    const auto stress_at = [&](double off) { // lengths of the true vertex: within the radius
+        const double across = state.packing.lattice(other, other) + off;
+        const double along = state.packing.lattice(loaded, loaded) - off;
+        return state.load.stress[other] * state.load.reference_length[loaded] * across /
+               (state.load.reference_length[other] * along);
+    };
+    const double low = stress_at(-claims.vertex->radius) * (1 - rounded);
+    const double high = stress_at(claims.vertex->radius) * (1 + rounded);
+    const LoadEndClaim& from = claims.load_interval->low;
+    const LoadEndClaim& to = claims.load_interval->high;
+    if (!(low > 0)) {
+        return {Verdict::undecided, "k = 0 for full strain; the stress that is not changed is no pressure"};
+    }
+    if ((from.unbounded || from.stress.upper < low) && (to.unbounded || high < to.stress.lower)) {
+        return {Verdict::proved, fmt::format("k = 0 for full strain, and every force of the backbone is positive under "
+                                             "an isotropic pressure (sigma_{} = {:.12g})",
+                                             loaded + 1, high)};
+    }
+    if ((!from.unbounded && high < from.stress.lower) || (!to.unbounded && low > to.stress.upper)) {
+        return {Verdict::refuted, fmt::format("a force is negative under an isotropic pressure (sigma_{} = {:.12g}): "
+                                              "its contact opens alone while the volume falls",
+                                              loaded + 1, high)};
+    }
+    return {Verdict::undecided, "k = 0 for full strain; an isotropic pressure is at the end of the supported interval"};
+}
+
 /// An isostatic equilibrium has no mechanism while its own cell moves, so none while the cell stays; and it has too few
-/// contacts for a cell that strains in more ways (C5, C6).
-template <int Dim> void judge(const State<Dim>& state, CellInspection& out) {
+/// contacts for a cell that strains in more ways (C6, C7).
+template <int Dim> void judge(const State<Dim>& state, const CertificateClaims& claims, CellInspection& out) {
     const auto moving =
         std::count(state.packing.cell.period_moves.begin(), state.packing.cell.period_moves.end(), true) +
         std::count(state.packing.cell.tilt_moves.begin(), state.packing.cell.tilt_moves.end(), true);
@@ -24,8 +61,7 @@ template <int Dim> void judge(const State<Dim>& state, CellInspection& out) {
                                   "closing while the volume does not grow",
                                   missing)};
     } else {
-        out.strict = {Verdict::undecided, "k = 0 for full strain; whether some positive self-stress is an isotropic "
-                                          "pressure is not decided"};
+        out.strict = strictly(state, claims);
     }
 }
 
@@ -55,7 +91,7 @@ template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Ce
     out.backbone_disks = state.packing.disk_count() - static_cast<int>(rattlers.size());
     if (out.backbone_disks > 0) {
         out.backbone = count_strains(without_disks(state.packing, rattlers), carrying);
-        judge(state, out);
+        judge(state, truth.claims, out);
     }
     return out;
 }

@@ -133,6 +133,52 @@ BOOST_AUTO_TEST_CASE(one_disk_in_a_channel) {
     BOOST_TEST(certify(state).counting.dof_count == 3);
 }
 
+// Two disks R1 > R2 in a channel: one rests in the gap that the images of the other leave, or stands on it. Between the
+// ratios F2/F1 = (R1 - R2)/sqrt(R1 R2) and 2h/R1 both are equilibria.
+BOOST_AUTO_TEST_CASE(two_disks_in_a_channel_have_the_two_states_of_a_loop) {
+    for (const auto& [large, small] : {std::pair(2.0, 1.0), {1.5, 0.8}, {1.0, 0.75}}) {
+        BOOST_TEST_CONTEXT("radii " << large << ", " << small) {
+            const auto channel = [&](double period, double height, double x, double y, std::vector<Contact> contacts) {
+                State<2> state = cells::in_cell({{large, 0, large}, {small, x, y}}, {period, height, 0}, false, 1, 1,
+                                                std::move(contacts));
+                state.packing.cell = {{true, false}, {true, false}, {false}, 0};
+                state.packing.walls.lower[1] = isostat::WallKind::fixed;
+                state.packing.walls.upper[1] = isostat::WallKind::movable;
+                return state;
+            };
+            const double width = 2 * std::sqrt(large * small);
+            const State<2> low = channel(2 * width, 2 * large, width, small,
+                                         {crafted::bottom(0), crafted::top(0), crafted::bottom(1),
+                                          cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
+            const double tilt = (large - small) / (large + small); // of the line of centres
+            const double pair = 1 / std::sqrt(1 - tilt * tilt);    // of which F1 is the part along x
+            State<2> pressed = low;
+            pressed.load.stress[1] = 4;
+            check_forces(pressed, {4 - 2 * pair * tilt, 4, 2 * pair * tilt, pair, pair});
+            const double opens = (large - small) / std::sqrt(large * small);
+            pressed.load.stress[1] = opens * 1.001;
+            BOOST_TEST((certify(pressed).verdict == Verdict::proved));
+            pressed.load.stress[1] = opens * 0.999;
+            BOOST_TEST((certify(pressed).verdict == Verdict::refuted));
+
+            const double reach = large + small;
+            const double rise = std::sqrt(reach * reach - large * large);
+            State<2> high = channel(2 * large, large + rise + small, large, large + rise,
+                                    {crafted::bottom(0), crafted::top(1), cells::across(0, 1, 0, 0),
+                                     cells::across(0, 1, -1, 0), cells::across(0, 0, 1, 0)});
+            const double back = 2 * rise / large;
+            const double f2 = 0.5 * back;
+            high.load.stress[1] = f2;
+            const double bears = f2 * reach / (2 * rise);
+            check_forces(high, {f2, f2, bears, bears, 1 - bears * large / reach});
+            high.load.stress[1] = back * 0.999;
+            BOOST_TEST((certify(high).verdict == Verdict::proved));
+            high.load.stress[1] = back * 1.001;
+            BOOST_TEST((certify(high).verdict == Verdict::refuted));
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(first_equilibria_of_an_independent_program) {
     struct Known {
         const char* name;
@@ -260,12 +306,37 @@ BOOST_AUTO_TEST_CASE(jammed_in_words_that_the_counts_prove) {
     const State<2> tilt = first_equilibrium("tilt").state;
     const isostat::CellInspection t = isostat::inspect_cell(tilt, certify(tilt));
     BOOST_TEST((t.collective.verdict == Verdict::proved));
-    BOOST_TEST((t.strict.verdict == Verdict::undecided));
+    BOOST_TEST((t.strict.verdict == Verdict::proved)); // sigma_2 = 1 is a pressure, between 0.993 and 1.803
     BOOST_TEST(t.all[3].mechanisms == 0);
     const State<2> square = cells::square_lattice(3, false);
     const isostat::CellInspection s = isostat::inspect_cell(square, certify(square));
     BOOST_TEST((s.collective.verdict == Verdict::undecided));
     BOOST_TEST(!s.backbone.has_value());
+}
+
+BOOST_AUTO_TEST_CASE(jammed_strictly_is_told_by_the_forces_under_a_pressure) {
+    const auto strict = [](const State<2>& state) {
+        return isostat::inspect_cell(state, certify(state)).strict.verdict;
+    };
+    // L = (2, sqrt 3), t = 1: under a pressure F1/F2 = sqrt 3/2, whatever the load of the state.
+    BOOST_TEST((strict(cells::one_tilted_disk(1, 2 / std::sqrt(3.0), 0)) == Verdict::proved));
+    BOOST_TEST((strict(cells::one_tilted_disk(1, 0.125, 0)) == Verdict::proved));
+    BOOST_TEST((strict(cells::one_tilted_disk(1, 0.5, 0.125)) == Verdict::undecided)); // a shear
+    BOOST_TEST((strict(cells::one_disk(1, 1)) == Verdict::refuted));                   // no tilt
+    // Own image in a centred rectangle, X = 1.2, Y = 1.6: f = F1 - F2 X/Y, at F1/F2 = Y/X. With the image along the
+    // longer period in its place, X = 1.6 and Y = 1.2 do not touch.
+    State<2> state = cells::two_disks(true, 5, 2);
+    state.contacts.push_back(cells::across(0, 0, 1, 0));
+    state.load.shear = {0.25};
+    BOOST_TEST((strict(state) == Verdict::undecided));
+    // The tilted equilibrium at the end of its interval, above the pressure: the forces at the pressure are the same.
+    State<2> tilt = first_equilibrium("tilt").state;
+    tilt.load.stress[1] = 1.75;
+    BOOST_TEST((strict(tilt) == Verdict::proved));
+    // Other reference lengths: the pressure is at another nominal stress.
+    tilt.load.stress[1] = 3.5;
+    tilt.load.reference_length[0] /= 2;
+    BOOST_TEST((strict(tilt) == Verdict::proved));
 }
 
 BOOST_AUTO_TEST_CASE(states_with_a_mechanism_are_counted_not_followed) {

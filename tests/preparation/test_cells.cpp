@@ -4,6 +4,7 @@
 #include "preparation/soft.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/certificate/inspect_cell.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/preparation/preparation.hpp>
 
@@ -70,7 +71,16 @@ BOOST_AUTO_TEST_CASE(a_tilt_that_moves_bears_no_shear_and_has_its_contact) {
     BOOST_TEST(state.packing.lattice(0, 1) != 0);
     BOOST_TEST(std::abs(state.packing.lattice(0, 1)) < 0.1 * state.packing.length(0));
     BOOST_TEST((state.load.shear == std::array<double, 1>{0}));
-    BOOST_TEST((certify(state).verdict == Verdict::proved));
+    const Certification proof = certify(state);
+    BOOST_TEST((proof.verdict == Verdict::proved));
+    BOOST_TEST((inspect_cell(state, proof).strict.verdict == Verdict::proved));
+    // Downhill under three times the stress along y: at an isotropic pressure a force would be negative.
+    options.ratio = 3;
+    PreparationReport<2> report;
+    const Result<State<2>> pressed = find_vertex(state.packing, options, report);
+    BOOST_REQUIRE(pressed.ok());
+    BOOST_TEST(pressed.value().packing.length(1) < state.packing.length(1));
+    BOOST_TEST((inspect_cell(pressed.value(), certify(pressed.value())).strict.verdict == Verdict::refuted));
 }
 
 // The vertex of the cell that is stored, found again with overlaps everywhere: all pairs across the sides count.

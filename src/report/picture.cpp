@@ -93,11 +93,14 @@ struct Frame {
 Frame frame_of(const State<2>& state) {
     Frame frame;
     if (state.packing.cell.any()) {
-        const double room = state.packing.max_radius();
+        constexpr double radii = 2.5; // a disk that touches one in the cell is shown
+        const std::array<bool, 2>& periodic = state.packing.cell.periodic;
+        const Point room{periodic[0] ? radii * state.packing.max_radius() : 0,
+                         periodic[1] ? radii * state.packing.max_radius() : 0};
         frame = {{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
         for (const Point& p : corners(state.packing)) {
-            frame.low = {std::min(frame.low.x, p.x - room), std::min(frame.low.y, p.y - room)};
-            frame.high = {std::max(frame.high.x, p.x + room), std::max(frame.high.y, p.y + room)};
+            frame.low = {std::min(frame.low.x, p.x - room.x), std::min(frame.low.y, p.y - room.y)};
+            frame.high = {std::max(frame.high.x, p.x + room.x), std::max(frame.high.y, p.y + room.y)};
         }
         return frame;
     }
@@ -123,10 +126,11 @@ class Canvas {
     [[nodiscard]] double scale() const { return scale_; }
     [[nodiscard]] double height() const { return (frame_.high.y - frame_.low.y) * scale_; }
     [[nodiscard]] Point low() const { return frame_.low; }
-    /// Whether some of a disk is in the picture.
+    /// Whether most of a disk is in what is drawn.
     [[nodiscard]] bool shows(Point at, double radius) const {
-        return at.x > frame_.low.x - radius && at.x < frame_.high.x + radius && at.y > frame_.low.y - radius &&
-               at.y < frame_.high.y + radius;
+        const double in = radius / 2;
+        return at.x >= frame_.low.x + in && at.x <= frame_.high.x - in && at.y >= frame_.low.y + in &&
+               at.y <= frame_.high.y - in;
     }
     void circle(Point at, double radius, const char* style) {
         add(R"(<circle cx="{:.3f}" cy="{:.3f}" r="{:.3f}" class="{}"/>)", x(at), y(at), radius * scale_, style);

@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
                     continue; // of a data file either both axes repeat or what its image flags say
                 }
                 const auto file =
-                    read(options.periodic ? lammps_data_text(stored, name) : xyz_text(stored, {}), options);
+                    read_foreign(options.periodic ? lammps_data_text(stored, name) : xyz_text(stored, {}), options);
                 BOOST_TEST(file.format == format);
                 BOOST_TEST((file.packing.cell.periodic == stored.cell.periodic));
                 BOOST_TEST(file.packing.radius == stored.radius, boost::test_tools::per_element());
@@ -192,22 +192,22 @@ BOOST_AUTO_TEST_CASE(what_is_written_of_a_cell_is_read_bit_for_bit) {
 }
 
 BOOST_AUTO_TEST_CASE(foreign_cells_that_are_none_are_named) {
-    expect_bad_input([] { (void)read(dump("pp pp pp\n1 1\n0 4\n0 1", "1 0 0 0.5\n", 1)); },
+    expect_bad_input([] { (void)read_foreign(dump_of("pp pp pp\n1 1\n0 4\n0 1", "1 0 0 0.5\n", 1)); },
                      {"file: period 0 along x", "positive"});
-    expect_bad_input([] { (void)read(dump("pp pp pp\n1 0\n0 4\n0 1", "1 0 0 0.5\n", 1)); },
+    expect_bad_input([] { (void)read_foreign(dump_of("pp pp pp\n1 0\n0 4\n0 1", "1 0 0 0.5\n", 1)); },
                      {"file:6", "upper bound", "above the lower bound"});
-    expect_bad_input([] { (void)read(dump("xy xz yz pp ff pp\n0 2 1\n0 4 0\n0 1 0", "1 0 0 0.5\n", 1)); },
+    expect_bad_input([] { (void)read_foreign(dump_of("xy xz yz pp ff pp\n0 2 1\n0 4 0\n0 1 0", "1 0 0 0.5\n", 1)); },
                      {"tilted by 1", "both axes periodic"});
     const auto lattice = [](const std::string& vectors) {
         return "1\nLattice=\"" + vectors + "\" Properties=pos:R:3:radius:R:1\n0 0 0 0.5\n";
     };
-    expect_bad_input([&] { (void)read(lattice("-2 0 0 0 2 0 0 0 1")); }, {"file:2", "positive lengths"});
-    expect_bad_input([&] { (void)read(lattice("2 1 0 0 2 0 0 0 1")); }, {"file:2", "a first vector along x"});
+    expect_bad_input([&] { (void)read_foreign(lattice("-2 0 0 0 2 0 0 0 1")); }, {"file:2", "positive lengths"});
+    expect_bad_input([&] { (void)read_foreign(lattice("2 1 0 0 2 0 0 0 1")); }, {"file:2", "a first vector along x"});
     ForeignOptions walls;
     walls.walls = ForeignWalls::box;
-    expect_bad_input([&] { (void)read(lattice("2 0 0 0 2 0 0 0 1"), walls); }, {"walls or a box were stated"});
+    expect_bad_input([&] { (void)read_foreign(lattice("2 0 0 0 2 0 0 0 1"), walls); }, {"walls or a box were stated"});
     walls.walls_unless_periodic = true;
-    BOOST_TEST(read(lattice("2 0 0 0 2 0 0 0 1"), walls).packing.cell.all());
+    BOOST_TEST(read_foreign(lattice("2 0 0 0 2 0 0 0 1"), walls).packing.cell.all());
 }
 
 BOOST_AUTO_TEST_CASE(a_packing_that_is_isostatic_under_pressure_is_found_so) {

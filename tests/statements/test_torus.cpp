@@ -119,8 +119,8 @@ ExactCell strip_of_triangles(int columns, int rows) {
     packing.q.resize(2 * static_cast<std::size_t>(n));
     packing.q.insert(packing.q.end(), {period, 0, tilts});
     for (int i = 0; i < columns; ++i) {
-        kept.push_back(crafted::bottom(i));
-        kept.push_back(crafted::top(n - 1 - i));
+        kept.push_back(::crafted::bottom(i));
+        kept.push_back(::crafted::top(n - 1 - i));
     }
     cell.state.contacts = kept;
     return cell;

@@ -12,7 +12,7 @@
 
 namespace cells {
 
-using crafted::DiskAt;
+using ::crafted::DiskAt;
 using isostat::Contact;
 using isostat::Image;
 using isostat::State;

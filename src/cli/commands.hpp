@@ -98,7 +98,7 @@ struct ForeignArguments {
     std::string frame = "last";
     bool periodic = false, not_periodic = false;
     bool walls_unless_periodic = false; ///< `walls` were not stated
-    bool cells = false; ///< the command takes periodic cells
+    bool cells = false;                 ///< the command takes periodic cells
 };
 
 struct PlateauArguments {

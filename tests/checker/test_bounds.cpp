@@ -143,9 +143,9 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
     BOOST_REQUIRE(vertex.found);
     const isostat::checker::Rational radius = isostat::checker::power_of_two(-12);
     vertex.moved_most += radius;
-    vertex.column_residual =
-        inverse.residual_column +
-        inverse.column_sum_max * isostat::checker::Rational(problem.column_curvature()) * vertex.moved_most;
+    vertex.column_residual = inverse.residual_column + inverse.column_sum_max *
+                                                           isostat::checker::Rational(problem.column_curvature()) *
+                                                           vertex.moved_most;
     const auto forces_at = [&](const isostat::checker::TrueVertex& at) {
         return isostat::checker::contact_forces(problem, solver, inverse, at,
                                                 isostat::checker::finite_load(problem, state, at));

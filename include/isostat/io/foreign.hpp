@@ -89,9 +89,9 @@ std::vector<Contact> read_local_dump(const std::filesystem::path& path, const Pa
 
 /// The texts that other programs read, every number in the shortest form that gives the same double back: a LAMMPS
 /// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (Dim*n
-/// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls, or the
-/// cell: with its tilt, `pbc` in XYZ, and in LAMMPS data the disks moved into it, with image flags (LAMMPS wants them
-/// there; the moves are exact on the grid). Contacts and loads have no place there.
+/// numbers, or none) as a column; rows id, x, y, r under a header (CSV, ids from 0). The box is that of the walls, or
+/// the cell: with its tilt, `pbc` in XYZ, and in LAMMPS data the disks moved into it, with image flags (LAMMPS wants
+/// them there; the moves are exact on the grid). Contacts and loads have no place there.
 std::string lammps_data_text(const Packing<2>& packing, const std::string& title);
 std::string xyz_text(const Packing<2>& packing, const std::vector<double>& displacement);
 std::string csv_text(const Packing<2>& packing);

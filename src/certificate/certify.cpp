@@ -387,12 +387,11 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
         absent("gaps", "a disk may touch an image more than 3 periods away: put the disks into the cell");
         return false;
     }
-    const Contact none = state_.packing.cell.any() ? Contact(ContactKind::disk_disk, -1, -1) : Contact();
     std::string doubtful;
     do {
         // Pairs that are not listed: their gap changes by at most so much times the distance to the true vertex.
         const double weight = far_weight(centre_->packing, pairs.reach);
-        GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), none, vertex_->rung()};
+        GapsClaim claim{(pairs.reach - weight * vertex_->distance()) * (1 - 0x1p-50), Contact(), vertex_->rung()};
         Interval nearest{infinity, infinity};
         std::vector<Interval> gaps;
         doubtful.clear();

@@ -30,9 +30,9 @@ struct Motion {
         for (std::size_t l = 0; l < result.size(); ++l) {
             const Row& row = problem.rows[l];
             const auto coordinate = [&row](std::size_t k) { return static_cast<std::size_t>(row.coordinate[k]); };
-            for (std::size_t k = 0; row.quadratic && k < 2; ++k) {
-                difference = at[coordinate(k)] - at[coordinate(k + 2)];
-                change = v[coordinate(k)] - v[coordinate(k + 2)];
+            for (std::size_t a = 0; row.quadratic && a < 2; ++a) {
+                row.separate(at, a, difference);
+                row.separate(v, a, change);
                 result[l] -= difference * change;
             }
             for (std::size_t k = 0; !row.quadratic && k < static_cast<std::size_t>(row.count); ++k) {
@@ -89,7 +89,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
         result.middle[k] = dyadic(motion.v[k], -shift);
     }
     result.radius = short_above(e_.inverse.row_sum / (1 - e_.vertex.row_residual) *
-                                (open + row_curvature * e_.vertex.radius * fastest));
+                                (open + problem.row_curvature() * e_.vertex.radius * fastest));
     return result;
 }
 
@@ -104,11 +104,16 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
     if (pair.kind == ContactKind::disk_disk) {
-        Range sum(Rational(0));
-        for (std::size_t a = 0; a < 2; ++a) {
-            const Range x = place(e_.problem, e_.vertex, 2 * i + a) - place(e_.problem, e_.vertex, 2 * j + a);
-            sum = sum + x * (component(e_.problem, v, 2 * i + a) - component(e_.problem, v, 2 * j + a));
+        const Row row(pair, e_.problem.disks);
+        std::array<Range, 2> x;
+        std::array<Range, 2> change;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+            const auto coordinate = static_cast<std::size_t>(row.coordinate[k]);
+            const Range sign(Rational(row.sign[k]));
+            x[row.axis[k]] = x[row.axis[k]] + sign * place(e_.problem, e_.vertex, coordinate);
+            change[row.axis[k]] = change[row.axis[k]] + sign * component(e_.problem, v, coordinate);
         }
+        const Range sum = x[0] * change[0] + x[1] * change[1];
         const Rational distance = Rational(e_.state.packing.radius[i]) + Rational(e_.state.packing.radius[j]);
         return sum / Range(distance);
     }
@@ -155,12 +160,15 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
             continue;
         }
         const Range g = f0[l] / Range(e_.problem.force_factor(static_cast<int>(l)));
-        for (std::size_t a = 0; a < 2; ++a) {
-            const std::size_t i = 2 * static_cast<std::size_t>(c.i) + a;
-            const std::size_t j = 2 * static_cast<std::size_t>(c.j) + a;
-            const Range turn = g * (component(e_.problem, change_, i) - component(e_.problem, change_, j));
-            add(i, turn);
-            add(j, Range(Rational(0)) - turn);
+        const Row& row = e_.problem.rows[l];
+        std::array<Range, 2> turn;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+            const Range sign(Rational(row.sign[k]));
+            turn[row.axis[k]] =
+                turn[row.axis[k]] + sign * component(e_.problem, change_, static_cast<std::size_t>(row.coordinate[k]));
+        }
+        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+            add(static_cast<std::size_t>(row.coordinate[k]), Range(Rational(row.sign[k])) * g * turn[row.axis[k]]);
         }
     }
     if (e_.state.load.kind == LoadKind::true_stress) { // the force of a wall follows the other length

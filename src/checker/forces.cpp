@@ -40,6 +40,12 @@ Forces finite_load(const Problem& problem, const State<2>& state, const TrueVert
                 Range(Rational(state.load.stress[a])) * wall_force(problem, state, vertex, a);
         }
     }
+    if (state.packing.cell.any()) { // on the tilt: the shear stress times the reference length that it acts on
+        if (const int dof = problem.dof_of[state.packing.tilt_at(0, 1)]; dof >= 0) {
+            load[static_cast<std::size_t>(dof)] =
+                Range(-Rational(state.load.shear[0]) * Rational(state.load.reference_length[0]));
+        }
+    }
     return load;
 }
 
@@ -63,6 +69,17 @@ std::size_t at(int k) {
     return static_cast<std::size_t>(k);
 }
 
+/// target += times * value; times is seldom other than +-1.
+void add_multiple(Integer& target, int times, const Integer& value) {
+    if (times == 1) {
+        target += value;
+    } else if (times == -1) {
+        target -= value;
+    } else {
+        target += times * value;
+    }
+}
+
 /// The balance A^T g = -load in integers: g in multiples of 2^-shift per unit of length, forces of 2^(fine - shift).
 class Balance {
   public:
@@ -73,9 +90,8 @@ class Balance {
             unknown_.push_back(ceiling_of(-force.lower, shift - problem.fine) - target_.back());
         }
         for (const Row& row : problem.rows) {
-            for (int a = 0; row.quadratic && a < 2; ++a) {
-                difference_.push_back(vertex.middle[at(row.coordinate[at(a)])] -
-                                      vertex.middle[at(row.coordinate[at(a + 2)])]);
+            for (std::size_t a = 0; row.quadratic && a < 2; ++a) {
+                row.separate(vertex.middle, a, difference_.emplace_back());
             }
         }
         find_residual();
@@ -106,17 +122,22 @@ class Balance {
         }
     }
 
-    /// At least the residual at the true vertex (K6): entries of contacts of two disks differ by twice the radius.
+    /// At least the residual at the true vertex (K6): entries of contacts of two disks differ by twice the radius, or
+    /// more where periods are between them.
     [[nodiscard]] Integer residual_at_vertex() const {
-        Integer worst = 0;
-        for (std::size_t j = 0; j < residual_.size(); ++j) {
-            Integer sum = 0;
-            for (const int l : problem_.contacts_of[j]) {
-                if (problem_.rows[at(l)].quadratic) {
-                    sum += abs(sought_[at(l)]);
+        std::vector<Integer> unsure(residual_.size());
+        for (std::size_t l = 0; l < sought_.size(); ++l) {
+            const Row& row = problem_.rows[l];
+            for (std::size_t k = 0; row.quadratic && k < at(row.count); ++k) {
+                if (const int dof = problem_.dof_of[at(row.coordinate[k])]; dof >= 0) {
+                    const int weight = (std::abs(row.sign[k]) * row.spread(row.axis[k]) + 1) / 2; // of twice the radius
+                    unsure[at(dof)] += weight * abs(sought_[l]);
                 }
             }
-            sum = abs(residual_[j]) + unknown_[j] + blur_ * sum;
+        }
+        Integer worst = 0;
+        for (std::size_t j = 0; j < residual_.size(); ++j) {
+            const Integer sum = abs(residual_[j]) + unknown_[j] + blur_ * unsure[j];
             worst = std::max(worst, sum);
         }
         return worst;
@@ -128,27 +149,18 @@ class Balance {
     /// -load - A^T g at the middle of the vertex and the lower end of -load.
     void find_residual() {
         residual_ = target_;
-        Integer product;
         auto difference = difference_.begin();
         for (std::size_t l = 0; l < sought_.size(); ++l) {
             const Row& row = problem_.rows[l];
-            const auto subtract = [&](int k, bool negative) {
-                if (const int dof = problem_.dof_of[at(row.coordinate[at(k)])]; dof >= 0) {
-                    Integer& r = residual_[at(dof)];
-                    negative ? r += product : r -= product;
-                }
-            };
-            if (row.quadratic) {
-                for (int a = 0; a < 2; ++a) {
-                    product = *difference++ * sought_[l];
-                    subtract(a, false);
-                    subtract(a + 2, true);
-                }
-                continue;
+            std::array<Integer, 2> products;
+            for (Integer& along : products) {
+                along = row.quadratic ? Integer(*difference++ * sought_[l])
+                                      : shifted_left(sought_[l], problem_.weight_bits);
             }
-            product = shifted_left(sought_[l], problem_.weight_bits);
-            for (int k = 0; k < row.count; ++k) {
-                subtract(k, row.sign[at(k)] < 0);
+            for (std::size_t k = 0; k < at(row.count); ++k) {
+                if (const int dof = problem_.dof_of[at(row.coordinate[k])]; dof >= 0) {
+                    add_multiple(residual_[at(dof)], -row.sign[k], products[row.axis[k]]);
+                }
             }
         }
     }

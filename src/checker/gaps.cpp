@@ -1,7 +1,8 @@
 #include "checker/gaps.hpp"
 
+#include "checker/images.hpp"
+
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 namespace isostat::checker {
@@ -12,8 +13,18 @@ bool is_fixed(const Packing<2>& packing, int disk) {
     return !packing.fixed.empty() && packing.fixed[static_cast<std::size_t>(disk)] != 0;
 }
 
+/// The periods between a disk and its own image move.
+bool own_image_moves(const Packing<2>& packing, const Contact& pair) {
+    const Cell<2>& cell = packing.cell;
+    const auto& m = pair.image.m;
+    return (m[0] != 0 && cell.period_moves[0]) || (m[1] != 0 && (cell.period_moves[1] || cell.tilt_moves[0]));
+}
+
 bool exists_and_moves(const Packing<2>& packing, const Contact& pair) {
     const auto axis = static_cast<std::size_t>(pair.j);
+    if (pair.kind == ContactKind::disk_disk && packing.cell.any()) { // no disk is fixed there
+        return pair.i != pair.j || own_image_moves(packing, pair);
+    }
     switch (pair.kind) {
     case ContactKind::disk_disk: return !is_fixed(packing, pair.i) || !is_fixed(packing, pair.j);
     case ContactKind::lower_wall: return packing.walls.lower[axis] != WallKind::absent && !is_fixed(packing, pair.i);
@@ -53,8 +64,12 @@ struct Approximation {
         const auto i = static_cast<std::size_t>(pair.i);
         const auto j = static_cast<std::size_t>(pair.j);
         if (pair.kind == ContactKind::disk_disk) {
-            const double dx = q[2 * i] - q[2 * j];
-            const double dy = q[2 * i + 1] - q[2 * j + 1];
+            double dx = q[2 * i] - q[2 * j];
+            double dy = q[2 * i + 1] - q[2 * j + 1];
+            if (!pair.image.is_here()) {
+                dx -= pair.image.m[0] * q[2 * disks] + pair.image.m[1] * q[2 * disks + 2];
+                dy -= pair.image.m[1] * q[2 * disks + 1];
+            }
             return std::sqrt(dx * dx + dy * dy) - (radius[i] + radius[j]);
         }
         const double x = q[2 * i + j];
@@ -67,10 +82,13 @@ Range exact_gap(const Problem& problem, const TrueVertex& vertex, const Contact&
     const auto i = static_cast<std::size_t>(pair.i);
     const auto j = static_cast<std::size_t>(pair.j);
     const std::vector<Integer>& q = vertex.middle;
-    const Range blur = Range::around(0, 3 * vertex.radius);
+    const Row row(pair, problem.disks);
+    const Range blur = Range::around(0, (3 * std::max(2, row.spread()) + 1) / 2 * vertex.radius);
     if (pair.kind == ContactKind::disk_disk) {
-        const Integer dx = q[2 * i] - q[2 * j];
-        const Integer dy = q[2 * i + 1] - q[2 * j + 1];
+        Integer dx;
+        Integer dy;
+        row.separate(q, 0, dx);
+        row.separate(q, 1, dy);
         const Integer root = sqrt(Integer(dx * dx + dy * dy));
         const Integer distance = problem.radius[i] + problem.radius[j];
         return Range(problem.length(root - distance), problem.length(root + 1 - distance)) + blur;
@@ -118,7 +136,46 @@ class Collector {
 
 } // namespace
 
+namespace {
+
+/// An own image that cannot move, nearer than a diameter: the largest disk has one if any has.
+std::optional<Contact> overlapping_image(const Problem& problem, const State<2>& state) {
+    const auto widest = std::max_element(problem.radius.begin(), problem.radius.end());
+    const auto disk = static_cast<int>(widest - problem.radius.begin());
+    std::vector<double> q;
+    for (const Integer& x : problem.stored) {
+        q.push_back(approximate(x, problem.fine));
+    }
+    const CellImages images(state.packing, q);
+    const auto range = images.range(2.5 * approximate(*widest, problem.fine));
+    if (!images.usable() || !range) {
+        return Contact{ContactKind::disk_disk, -1, -1};
+    }
+    for (int m = -(*range)[0]; m <= (*range)[0]; ++m) {
+        for (int p = 0; p <= (*range)[1]; ++p) {
+            const Contact pair = pair_of(disk, disk, {{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}});
+            if (pair.image.is_here() || own_image_moves(state.packing, pair)) {
+                continue;
+            }
+            const Row row(pair, problem.disks);
+            Integer dx;
+            Integer dy;
+            row.separate(problem.stored, 0, dx);
+            row.separate(problem.stored, 1, dy);
+            if (dx * dx + dy * dy < 4 * *widest * *widest) {
+                return pair;
+            }
+        }
+    }
+    return {};
+}
+
+} // namespace
+
 std::optional<Contact> fixed_overlap(const Problem& problem, const State<2>& state) {
+    if (state.packing.cell.any()) {
+        return overlapping_image(problem, state);
+    }
     std::vector<int> fixed;
     for (int i = 0; i < problem.disks; ++i) {
         if (is_fixed(state.packing, i)) {
@@ -166,31 +223,83 @@ bool is_free_pair(const State<2>& state, const Contact& pair) {
            std::find(state.contacts.begin(), state.contacts.end(), pair) == state.contacts.end();
 }
 
-std::vector<Gap> smallest_gaps(const Problem& problem, const State<2>& state, const TrueVertex& vertex) {
-    const Approximation at(problem, vertex);
-    Collector collector(state, at);
+namespace {
+
+/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart in x alone
+/// cannot be nearer.
+void sweep(std::vector<Placed> places, const Approximation& at, double widest, Collector& collector) {
+    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) {
+        return a.x < b.x || (a.x == b.x && (a.disk < b.disk || (a.disk == b.disk && a.image < b.image)));
+    });
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        const Placed& one = places[p];
+        for (std::size_t k = p + 1; k < places.size(); ++k) {
+            const Placed& two = places[k];
+            if (two.x - one.x - widest > collector.limit() + at.error) {
+                break;
+            }
+            if (one.central || two.central) {
+                Image m;
+                for (std::size_t a = 0; a < 2; ++a) {
+                    m.m[a] = static_cast<std::int8_t>(two.image.m[a] - one.image.m[a]);
+                }
+                collector.offer(pair_of(one.disk, two.disk, m));
+            }
+        }
+    }
+}
+
+void sweep_walls(const Problem& problem, Collector& collector) {
     for (int i = 0; i < problem.disks; ++i) {
         for (int a = 0; a < 2; ++a) {
             collector.offer({ContactKind::lower_wall, i, a});
             collector.offer({ContactKind::upper_wall, i, a});
         }
     }
-    // Sweep along x: a pair whose centres are further apart in x alone cannot be nearer.
-    std::vector<int> order(static_cast<std::size_t>(problem.disks));
-    std::iota(order.begin(), order.end(), 0);
-    const auto x = [&at](int disk) { return at.q[2 * static_cast<std::size_t>(disk)]; };
-    std::sort(order.begin(), order.end(), [&x](int i, int j) { return x(i) < x(j) || (x(i) == x(j) && i < j); });
+}
+
+/// The pairs that come nearest; nothing: there are too many images to tell.
+std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const State<2>& state, Approximation at) {
     const double widest = 2 * *std::max_element(at.radius.begin(), at.radius.end());
-    for (std::size_t p = 0; p < order.size(); ++p) {
-        for (std::size_t k = p + 1; k < order.size(); ++k) {
-            if (x(order[k]) - x(order[p]) - widest > collector.limit() + at.error) {
-                break;
-            }
-            collector.offer({ContactKind::disk_disk, std::min(order[p], order[k]), std::max(order[p], order[k])});
+    if (!state.packing.cell.any()) {
+        std::vector<Placed> places;
+        for (int i = 0; i < problem.disks; ++i) {
+            places.push_back({i, {}, true, at.q[2 * static_cast<std::size_t>(i)]});
         }
+        Collector collector(state, at);
+        sweep_walls(problem, collector);
+        sweep(std::move(places), at, widest, collector);
+        return collector.nearest();
+    }
+    const CellImages images(state.packing, at.q);
+    const double error = at.error;
+    std::optional<std::array<int, 2>> range = images.range(0);
+    while (range && images.usable()) {
+        at.error = error * (1 + images.periods(*range)); // K9 with images
+        Collector collector(state, at);
+        sweep_walls(problem, collector);
+        sweep(images.places(*range), at, widest, collector);
+        // Another sweep when a pair farther away could be as near as the nearest found.
+        const double reach =
+            std::isfinite(collector.limit()) ? widest + collector.limit() + at.error : 2 * (widest + images.longest());
+        const auto needed = images.range(reach);
+        if (needed && (*needed)[0] <= (*range)[0] && (*needed)[1] <= (*range)[1]) {
+            return collector.nearest();
+        }
+        range = needed;
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+std::vector<Gap> smallest_gaps(const Problem& problem, const State<2>& state, const TrueVertex& vertex) {
+    const auto nearest = nearest_pairs(problem, state, Approximation(problem, vertex));
+    if (!nearest) {
+        return {{Contact{ContactKind::disk_disk, -1, -1}, Range::around(0, power_of_two(2000))}};
     }
     std::vector<Gap> gaps;
-    for (const Contact& pair : collector.nearest()) {
+    for (const Contact& pair : *nearest) {
         gaps.push_back({pair, exact_gap(problem, vertex, pair)});
     }
     return gaps;

@@ -80,7 +80,7 @@ struct Sums {
         result.column_sum_max = *std::max_element(result.column_sum.begin(), result.column_sum.end());
         result.found = result.residual_row < 1 && result.residual_column < 1;
         if (result.quadratic_sum != 0) {
-            result.regular_within = (1 - result.residual_row) / (row_curvature * result.quadratic_sum);
+            result.regular_within = (1 - result.residual_row) / (problem.row_curvature() * result.quadratic_sum);
         }
         return result;
     }
@@ -344,10 +344,9 @@ InverseBound bound_by_singular_value(const Problem& problem) {
     bound.row_sum = short_above(root(size) / *sigma);
     bound.column_sum_max = bound.row_sum;
     bound.column_sum.assign(size, bound.row_sum);
-    const unsigned long touching = problem.most_quadratic();
-    if (touching > 0) {
+    if (problem.column_curvature() > 0) {
         bound.quadratic_sum = bound.row_sum;
-        bound.regular_within = *sigma / (4 * root(touching));
+        bound.regular_within = *sigma / root(problem.row_curvature() * problem.column_curvature());
     }
     return bound;
 }

@@ -17,7 +17,8 @@ Rational equally_near(const State<2>& state) {
     const Packing<2>& packing = state.packing;
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
         const std::size_t axis = k % 2;
-        const bool exists = k < 2 * packing.radius.size() || packing.walls.upper[axis] != WallKind::absent;
+        const bool exists =
+            k < 2 * packing.radius.size() || packing.cell.any() || packing.walls.upper[axis] != WallKind::absent;
         largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
     }
     for (const double r : packing.radius) {
@@ -26,17 +27,24 @@ Rational equally_near(const State<2>& state) {
     return Rational(largest) * power_of_two(-46);
 }
 
+constexpr const char* too_far = "the cell is too sheared, or a disk too far from it, for a search among its images";
+
 } // namespace
 
 ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
     ClaimCheck check{.claim = "gaps", .claimed = true};
     if (const auto pair = fixed_overlap(evidence.problem, evidence.state)) {
-        return answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string<2>(*pair)));
+        return pair->i < 0
+                   ? answer(check, Verdict::undecided, too_far)
+                   : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string<2>(*pair)));
     }
     const std::vector<Gap> near = smallest_gaps(evidence.problem, evidence.state, evidence.vertex);
     if (near.empty()) {
         return answer(check, std::isinf(claim.smallest) ? Verdict::proved : Verdict::refuted,
                       "there is no pair besides the contacts");
+    }
+    if (near[0].pair.i < 0) {
+        return answer(check, Verdict::undecided, too_far);
     }
     const Gap* nearest = near.data();
     const Gap* named = nullptr;

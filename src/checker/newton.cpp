@@ -27,8 +27,11 @@ double System::value(const std::vector<double>& q, const Contact& c) const {
         return weight_ * (q[i] - held_value(c));
     }
     if (c.kind == ContactKind::disk_disk) {
-        const double dx = q[2 * i] - q[2 * j];
-        const double dy = q[2 * i + 1] - q[2 * j + 1];
+        const Row row(c, packing_.disk_count());
+        double dx = 0;
+        double dy = 0;
+        row.separate(q, 0, dx);
+        row.separate(q, 1, dy);
         const double sum = r[i] + r[j];
         return (dx * dx + dy * dy - sum * sum) / 2;
     }
@@ -54,10 +57,14 @@ Eigen::VectorXd System::product(const std::vector<double>& q, const Eigen::Vecto
         const Row& row = structure_.rows[l];
         double sum = 0;
         if (row.quadratic) {
-            for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
-                const double difference =
-                    q[static_cast<std::size_t>(row.coordinate[k])] - q[static_cast<std::size_t>(row.coordinate[k + 2])];
-                sum += difference * (at(row.coordinate[k]) - at(row.coordinate[k + 2]));
+            std::array<double, 2> change{};
+            for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+                change[row.axis[k]] += row.sign[k] * at(row.coordinate[k]);
+            }
+            for (const std::size_t a : {std::size_t{0}, std::size_t{1}}) {
+                double difference = 0;
+                row.separate(q, a, difference);
+                sum += difference * change[a];
             }
         } else {
             for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {

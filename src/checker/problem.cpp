@@ -65,44 +65,88 @@ std::vector<Known> known_coordinates(const State<2>& state, const std::vector<In
     return known;
 }
 
-Row row_of(const Contact& contact, int disks) {
-    Row row;
-    const int i = 2 * contact.i;
-    if (contact.kind == ContactKind::disk_disk) {
-        const int j = 2 * contact.j;
-        row.quadratic = true;
-        row.count = 4;
-        row.coordinate = {i, i + 1, j, j + 1};
-        return row;
+/// Whether a coordinate is a degree of freedom (proofs/definition.md).
+bool moves(const Packing<2>& packing, std::size_t k) {
+    const std::size_t disk = k / 2;
+    const Cell<2>& cell = packing.cell;
+    if (disk < packing.radius.size()) {
+        const bool pinned = disk == static_cast<std::size_t>(cell.pin) && cell.periodic[k % 2];
+        return !pinned && (packing.fixed.empty() || packing.fixed[disk] == 0);
     }
-    if (contact.kind == ContactKind::held) {
-        row.count = 1;
-        row.coordinate = {contact.i, 0, 0, 0};
-        row.sign = {1, 0, 0, 0};
-        return row;
+    const std::size_t behind = k - 2 * packing.radius.size();
+    if (behind >= 2) {
+        return cell.tilt_moves[0];
     }
-    const bool lower = contact.kind == ContactKind::lower_wall;
-    row.count = lower ? 1 : 2;
-    row.coordinate = {i + contact.j, 2 * disks + contact.j, 0, 0};
-    row.sign = {lower ? 1 : -1, 1, 0, 0};
-    return row;
+    return cell.periodic[behind] ? cell.period_moves[behind] : packing.walls.upper[behind] == WallKind::movable;
+}
+
+/// Why the checker does not handle a cell; empty: it does.
+std::string unsupported_cell(const State<2>& state) {
+    const Packing<2>& packing = state.packing;
+    if (state.load.kind != LoadKind::nominal) {
+        return "true stresses in a periodic cell: not checked";
+    }
+    for (const std::vector<double>* load : {&state.load.disk_force, &state.load.infinitesimal}) {
+        for (std::size_t a = 0; a < 2; ++a) {
+            Rational sum = 0;
+            for (std::size_t k = a; k < load->size() && packing.cell.periodic[a]; k += 2) {
+                sum += Rational((*load)[k]);
+            }
+            if (sum != 0) {
+                return "loads on the disks do not sum to 0 along a periodic axis: not checked";
+            }
+        }
+    }
+    return "";
 }
 
 } // namespace
 
+Row::Row(const Contact& contact, int disks) {
+    const auto add = [this](int at, int times, int along) {
+        const auto k = static_cast<std::size_t>(count++);
+        coordinate[k] = at;
+        sign[k] = times;
+        axis[k] = static_cast<std::uint8_t>(along);
+    };
+    const int behind = 2 * disks;
+    const int i = 2 * contact.i;
+    if (contact.kind == ContactKind::held) {
+        add(contact.i, 1, 0);
+        return;
+    }
+    if (contact.kind != ContactKind::disk_disk) {
+        const bool lower = contact.kind == ContactKind::lower_wall;
+        add(i + contact.j, lower ? 1 : -1, contact.j);
+        if (!lower) {
+            add(behind + contact.j, 1, contact.j);
+        }
+        return;
+    }
+    quadratic = true;
+    for (int a = 0; a < 4 && contact.i != contact.j; ++a) {
+        add((a < 2 ? i : 2 * contact.j) + a % 2, a < 2 ? 1 : -1, a % 2);
+    }
+    for (int a = 0; a < 2; ++a) {
+        if (const int m = contact.image.m[static_cast<std::size_t>(a)]; m != 0) {
+            add(behind + a, -m, a);
+        }
+    }
+    if (contact.image.m[1] != 0) { // the tilt moves the images along the second axis sideways
+        add(behind + 2, -contact.image.m[1], 0);
+    }
+}
+
 Structure::Structure(const Packing<2>& packing, const std::vector<Contact>& contacts) {
     dof_of.assign(packing.q.size(), -1);
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        const std::size_t disk = k / 2;
-        const bool moves = disk < packing.radius.size() ? packing.fixed.empty() || packing.fixed[disk] == 0
-                                                        : packing.walls.upper[k % 2] == WallKind::movable;
-        if (moves) {
+        if (moves(packing, k)) {
             dof_of[k] = static_cast<int>(coordinate_of.size());
             coordinate_of.push_back(static_cast<int>(k));
         }
     }
     for (const Contact& contact : contacts) {
-        rows.push_back(row_of(contact, packing.disk_count()));
+        rows.emplace_back(contact, packing.disk_count());
     }
     double mean = 0;
     for (const double r : packing.radius) {
@@ -115,9 +159,21 @@ Problem::Problem(const State<2>& state, bool held_allowed, int asked)
     : Structure(state.packing, state.contacts), digits(asked) {
     const Packing<2>& packing = state.packing;
     disks = packing.disk_count();
+    if (packing.cell.any()) {
+        unsupported = unsupported_cell(state);
+        if (!unsupported.empty()) {
+            return;
+        }
+    }
     for (const Contact& contact : state.contacts) {
         if (contact.kind == ContactKind::held && held_allowed) {
             continue;
+        }
+        for (std::size_t a = 0; a < contact.image.m.size(); ++a) {
+            if (contact.image.m[a] != 0 && (a >= 2 || !packing.cell.periodic[a])) {
+                unsupported = "the contact " + to_string<2>(contact) + " is with an image along an axis with walls";
+                return;
+            }
         }
         if (contact.kind == ContactKind::held) {
             unsupported = "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
@@ -150,26 +206,9 @@ Problem::Problem(const State<2>& state, bool held_allowed, int asked)
         radius.push_back(in_units(r, fine));
     }
 
-    const std::vector<Known> known = known_coordinates(state, stored, radius);
-    const auto level = [&known](int i, int j, int axis) {
-        const Known& at_i = known[static_cast<std::size_t>(2 * i + axis)];
-        const Known& at_j = known[static_cast<std::size_t>(2 * j + axis)];
-        return at_i.from != Known::nothing && at_i.from == at_j.from && at_i.value == at_j.value;
-    };
-    contacts_of.resize(coordinate_of.size());
-    acting_on.resize(coordinate_of.size());
-    for (std::size_t l = 0; l < rows.size(); ++l) {
-        const Row& row = rows[l];
-        const Contact& contact = state.contacts[l];
-        for (int k = 0; k < row.count; ++k) {
-            const int dof = dof_of[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-            if (dof >= 0) {
-                contacts_of[static_cast<std::size_t>(dof)].push_back(static_cast<int>(l));
-                if (!row.quadratic || !level(contact.i, contact.j, k % 2)) {
-                    acting_on[static_cast<std::size_t>(dof)].push_back(static_cast<int>(l));
-                }
-            }
-        }
+    find_contacts_of(state);
+    for (const Contact& contact : state.contacts) {
+        const Row& row = rows[sum.size()];
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::held) {
             sum.push_back(stored[i]);
@@ -180,16 +219,38 @@ Problem::Problem(const State<2>& state, bool held_allowed, int asked)
     }
 }
 
-unsigned long Problem::most_quadratic() const {
-    unsigned long most = 0;
-    for (const std::vector<int>& touching : contacts_of) {
-        unsigned long quadratic = 0;
-        for (const int l : touching) {
-            quadratic += rows[static_cast<std::size_t>(l)].quadratic ? 1 : 0;
+void Problem::find_contacts_of(const State<2>& state) {
+    const std::vector<Known> known = known_coordinates(state, stored, radius);
+    const auto level = [&known](const Contact& pair, const Row& row, std::size_t a) {
+        const Known& at_i = known[2 * static_cast<std::size_t>(pair.i) + a];
+        const Known& at_j = known[2 * static_cast<std::size_t>(pair.j) + a];
+        return at_i.from != Known::nothing && at_i.from == at_j.from && at_i.value == at_j.value &&
+               row.spread(a) == 2; // no period is in between
+    };
+    contacts_of.resize(coordinate_of.size());
+    acting_on.resize(coordinate_of.size());
+    std::vector<unsigned long> change(coordinate_of.size(), 0);
+    for (std::size_t l = 0; l < rows.size(); ++l) {
+        const Row& row = rows[l];
+        const std::array<int, 2> spread{row.spread(0), row.spread(1)};
+        row_curvature_ =
+            row.quadratic
+                ? std::max(row_curvature_, static_cast<unsigned long>(spread[0] * spread[0] + spread[1] * spread[1]))
+                : row_curvature_;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+            const int dof = dof_of[static_cast<std::size_t>(row.coordinate[k])];
+            if (dof < 0) {
+                continue;
+            }
+            const auto j = static_cast<std::size_t>(dof);
+            contacts_of[j].push_back(static_cast<int>(l));
+            if (!row.quadratic || !level(state.contacts[l], row, row.axis[k])) {
+                acting_on[j].push_back(static_cast<int>(l));
+            }
+            change[j] += row.quadratic ? static_cast<unsigned long>(std::abs(row.sign[k]) * spread[row.axis[k]]) : 0UL;
         }
-        most = std::max(most, quadratic);
     }
-    return most;
+    column_curvature_ = change.empty() ? 0 : *std::max_element(change.begin(), change.end());
 }
 
 Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const {
@@ -198,9 +259,9 @@ Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const 
     if (!row.quadratic) {
         return row.sign[slot] * weight();
     }
-    const auto own = static_cast<std::size_t>(row.coordinate[slot]);
-    const auto other = static_cast<std::size_t>(row.coordinate[(slot + 2) % 4]);
-    return q[own] - q[other];
+    Integer d;
+    row.separate(q, row.axis[slot], d);
+    return row.sign[slot] * d;
 }
 
 std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q) const {
@@ -209,21 +270,19 @@ std::vector<Integer> Problem::twice_residuals(const std::vector<Integer>& q) con
     Integer difference;
     for (std::size_t l = 0; l < rows.size(); ++l) {
         const Row& row = rows[l];
-        const auto at = [&](int k) -> const Integer& {
-            return q[static_cast<std::size_t>(row.coordinate[static_cast<std::size_t>(k)])];
-        };
         Integer& value = residuals.emplace_back();
         if (row.quadratic) {
             mpz_neg(value.get_mpz_t(), sum_square[l].get_mpz_t());
-            for (const int k : {0, 1}) {
-                difference = at(k) - at(k + 2);
+            for (const std::size_t a : {std::size_t{0}, std::size_t{1}}) {
+                row.separate(q, a, difference);
                 mpz_addmul(value.get_mpz_t(), difference.get_mpz_t(), difference.get_mpz_t());
             }
             continue;
         }
         value = -sum[l];
         for (int k = 0; k < row.count; ++k) {
-            value += row.sign[static_cast<std::size_t>(k)] * at(k);
+            const auto slot = static_cast<std::size_t>(k);
+            value += row.sign[slot] * q[static_cast<std::size_t>(row.coordinate[slot])];
         }
         value = shifted_left(value, weight_bits + 1);
     }

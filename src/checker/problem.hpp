@@ -7,22 +7,53 @@
 #include <isostat/contact/state.hpp>
 
 #include <array>
+#include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
 namespace isostat::checker {
 
-/// One row of the derivative: the coordinates that the contact depends on. For two disks the entries are (x_i - x_j,
-/// x_j - x_i), for walls +-weight on the coordinates, independent of the configuration.
+/// One row of the derivative: the coordinates that the contact depends on, and how. Of two disks the separation d = x_i
+/// - x_j - A m has d_a = sum of `sign` times coordinate over the entries of axis a, and the entries of the row are
+/// `sign` times d_axis; for walls they are +-weight on the coordinates, independent of the configuration.
 struct Row {
+    static constexpr std::size_t most = 7; ///< two disks and the three entries of a cell
     bool quadratic = false;
     int count = 0;
-    std::array<int, 4> coordinate{}; ///< quadratic: x_i, y_i, x_j, y_j
-    std::array<int, 4> sign{};       ///< walls only
-};
+    std::array<int, most>
+        coordinate{};             ///< quadratic: x_i, y_i, x_j, y_j, then the cell; of an own image the cell alone
+    std::array<int, most> sign{}; ///< of the cell -m_b
+    std::array<std::uint8_t, most> axis{};
 
-/// K1 (b): a row times a vector changes by at most this, times the distance, times the largest component.
-inline constexpr int row_curvature = 8;
+    Row(const Contact& contact, int disks);
+    /// d_a of anything that has one number per coordinate. \pre quadratic
+    template <class Number> void separate(const std::vector<Number>& of, std::size_t a, Number& d) const {
+        d = 0;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            if (axis[k] != a) {
+                continue;
+            }
+            const Number& x = of[static_cast<std::size_t>(coordinate[k])];
+            if (sign[k] == 1) {
+                d += x;
+            } else if (sign[k] == -1) {
+                d -= x;
+            } else {
+                d += sign[k] * x;
+            }
+        }
+    }
+    /// The most by which d_a changes when no coordinate does by more than 1.
+    [[nodiscard]] int spread(std::size_t a) const {
+        int sum = 0;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
+            sum += axis[k] == a ? std::abs(sign[k]) : 0;
+        }
+        return sum;
+    }
+    [[nodiscard]] int spread() const { return std::max(spread(0), spread(1)); }
+};
 
 /// `Problem::digits` when more are not asked for.
 inline constexpr int usual_digits = 80;
@@ -64,8 +95,12 @@ class Problem : public Structure {
 
     [[nodiscard]] int dofs() const { return static_cast<int>(coordinate_of.size()); }
     [[nodiscard]] int contacts() const { return static_cast<int>(rows.size()); }
-    /// Most contacts of two disks that touch one degree of freedom.
-    [[nodiscard]] unsigned long most_quadratic() const;
+    /// K1 (b): a row times a vector changes by at most this, times the distance, times the largest component. 8 in a
+    /// box.
+    [[nodiscard]] unsigned long row_curvature() const { return row_curvature_; }
+    /// K2: the magnitudes of a column change together by at most this times the distance: in a box twice the most
+    /// contacts of two disks that touch one degree of freedom.
+    [[nodiscard]] unsigned long column_curvature() const { return column_curvature_; }
     [[nodiscard]] Integer weight() const { return shifted_left(1, weight_bits); }
     /// Entry k of row l of A at a configuration, k < row.count.
     [[nodiscard]] Integer entry(int contact, int k, const std::vector<Integer>& q) const;
@@ -76,6 +111,11 @@ class Problem : public Structure {
     [[nodiscard]] Integer force_units(int contact) const;
     /// A length in units as a rational.
     [[nodiscard]] Rational length(const Integer& units) const { return Rational(units) * power_of_two(fine); }
+
+  private:
+    void find_contacts_of(const State<2>& state);
+    unsigned long row_curvature_ = 0;
+    unsigned long column_curvature_ = 0;
 };
 
 } // namespace isostat::checker

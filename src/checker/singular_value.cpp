@@ -54,7 +54,7 @@ struct Normal {
         if (n > most_rows) {
             return;
         }
-        std::vector<std::array<Integer, 4>> exact(problem.rows.size());
+        std::vector<std::array<Integer, Row::most>> exact(problem.rows.size());
         for (int l = 0; l < n; ++l) {
             for (int k = 0; k < problem.rows[at(l)].count; ++k) {
                 exact[at(l)][at(k)] = problem.entry(l, k, problem.stored);

@@ -89,8 +89,11 @@ Solver::Solver(const Structure& structure, const std::vector<double>& q) {
             if (structure.dof_of[own] < 0) {
                 continue;
             }
-            const double entry = row.quadratic ? q[own] - q[static_cast<std::size_t>(row.coordinate[(k + 2) % 4])]
-                                               : std::ldexp(row.sign[k], structure.wall_exponent);
+            double entry = std::ldexp(row.sign[k], structure.wall_exponent);
+            if (row.quadratic) {
+                row.separate(q, row.axis[k], entry);
+                entry *= row.sign[k];
+            }
             largest = std::max(largest, std::abs(entry));
             entries.emplace_back(static_cast<int>(l), structure.dof_of[own], entry);
         }

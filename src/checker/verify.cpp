@@ -73,7 +73,6 @@ bool leaves_open(const Verification& result, std::string_view claim) {
 
 Verification verify(const Certificate& certificate, CheckerArithmetic arithmetic) {
     require_floating_point();
-    require_box(certificate.state.packing, "certificate", "the checker");
     const auto judged = [&certificate](const Evidence& evidence) { return judge(certificate.claims, evidence); };
     std::optional<Verification> first;
     {

@@ -45,7 +45,7 @@ Integer largest_move(const Problem& problem, const std::vector<Integer>& q) {
 
 TrueVertex find_vertex(const Problem& problem, const Solver& solver, const InverseBound& inverse) {
     TrueVertex vertex;
-    const Rational slope = row_curvature * inverse.quadratic_sum;
+    const Rational slope = problem.row_curvature() * inverse.quadratic_sum;
     std::vector<std::vector<Integer>> starts{problem.stored};
     if (solver.usable()) {
         starts.insert(starts.begin(), improved(problem, solver));
@@ -64,8 +64,8 @@ TrueVertex find_vertex(const Problem& problem, const Solver& solver, const Inver
         vertex.moved_least = std::max<Rational>(0, moved - vertex.radius);
         vertex.moved_most = moved + vertex.radius;
         vertex.row_residual = inverse.residual_row + slope * vertex.moved_most;
-        vertex.column_residual = inverse.residual_column +
-                                 inverse.column_sum_max * 2 * Rational(problem.most_quadratic()) * vertex.moved_most;
+        vertex.column_residual =
+            inverse.residual_column + inverse.column_sum_max * Rational(problem.column_curvature()) * vertex.moved_most;
         // K4 with radius 2 step / room: a row residual below 1 on all of the cube is 2 slope step < room^2.
         vertex.found = vertex.row_residual < 1 && vertex.column_residual < 1;
         if (vertex.found) {

@@ -18,7 +18,7 @@ int certify(const CertifyArguments& arguments) {
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
     certificate.program = program_name();
-    certificate.state = read_state<2>(input).state;
+    certificate.state = read_any_state<2>(input).state;
     Certification result = isostat::certify(certificate.state);
     certificate.claims = result.claims;
     write_certificate(arguments.output, certificate);

@@ -156,10 +156,10 @@ template <int Dim>
 NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
                           const std::shared_ptr<const RegularTriangulation<Dim>>& from) {
     using Triangulation = RegularTriangulation<Dim>;
-    assert(reach > 0 && reach <= largest_reach * packing.min_radius());
     if (packing.cell.any()) {
         return {near_pairs_in_cell(packing, reach), nullptr};
     }
+    assert(reach > 0 && reach <= largest_reach * packing.min_radius());
     if (packing.disk_count() > 0 && lengths_are_plain(packing) &&
         packing.max_radius() <= largest_ratio * packing.min_radius()) {
         auto triangulation =

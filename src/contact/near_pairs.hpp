@@ -22,7 +22,7 @@ template <int Dim> struct NearPairs {
 /// the packing. The pairs are a function of the packing and the reach alone: neither `from`, a triangulation of the
 /// same disks elsewhere that is carried to these places if it is there, nor what finds them makes a difference.
 /// In a cell: every pair of a disk and an image, each once; found among finitely many images, without a triangulation
-/// that could be carried. \pre 0 < reach <= 0.82 R_min.
+/// that could be carried. \pre 0 < reach <= 0.82 R_min; in a cell any reach > 0
 template <int Dim>
 NearPairs<Dim> near_pairs(const Packing<Dim>& packing, double reach,
                           const std::shared_ptr<const RegularTriangulation<Dim>>& from = nullptr);

@@ -1,20 +1,23 @@
 #include "contact/other_pairs.hpp"
 
 #include "contact/contact_set.hpp"
+#include "contact/near_pairs.hpp"
 
 #include <isostat/contact/candidates.hpp>
 
+#include <cmath>
 #include <limits>
 
 namespace isostat {
 
 namespace {
 
+/// Those with walls, and without images those of two disks.
 template <int Dim> std::vector<Contact> all_pairs(const Packing<Dim>& packing) {
     std::vector<Contact> pairs;
     const int n = packing.disk_count();
     for (int i = 0; i < n; ++i) {
-        for (int j = i + 1; j < n; ++j) {
+        for (int j = i + 1; j < n && !packing.cell.any(); ++j) {
             pairs.push_back({ContactKind::disk_disk, i, j});
         }
         for (int a = 0; a < Dim; ++a) {
@@ -42,8 +45,19 @@ std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Conta
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     CandidateList<Dim> candidates = find_candidates(packing, largest_candidate_fraction);
     OtherPairs pairs{without(std::move(candidates.contacts), contacts, packing.disk_count()), candidates.reach};
-    if (pairs.near.empty() && !packing.cell.any()) { // of images there is no list of all
-        pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};
+    if (!pairs.near.empty()) {
+        return pairs;
+    }
+    pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};
+    const bool any = packing.cell.any() && DofMap<Dim>(packing).dof_count() > 0; // else nothing ever comes near
+    for (double reach = packing.min_radius(); any && std::isinf(pairs.reach); reach *= 2) {
+        std::vector<Contact> images = near_pairs(packing, reach).pairs;
+        std::erase_if(images, [&packing](const Contact& pair) { return !can_move(packing, pair); });
+        images = without(std::move(images), contacts, packing.disk_count());
+        if (!images.empty()) {
+            pairs.near.insert(pairs.near.end(), images.begin(), images.end());
+            pairs.reach = reach;
+        }
     }
     return pairs;
 }

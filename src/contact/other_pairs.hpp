@@ -10,7 +10,7 @@ namespace isostat {
 
 /// Pairs that are not contacts, and a bound for those that were left out.
 struct OtherPairs {
-    std::vector<Contact> near; ///< in a box not empty when there is any pair at all
+    std::vector<Contact> near; ///< not empty when there is any pair at all
     double reach =
         0; ///< every pair that is not in `near` has a gap >= reach in the packing; infinity: none was left out
 };
@@ -19,7 +19,7 @@ struct OtherPairs {
 std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Contact>& contacts, int disk_count);
 
 /// Candidates of the triangulation (T5, T6) without the contacts; when that leaves none, all pairs (O(n^2), in small
-/// packings only). Pairs that cannot move relative to each other do not count.
+/// packings only), in a cell those of a longer and longer reach. Pairs that cannot move relative to each other do not count.
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
 
 extern template OtherPairs other_pairs<2>(const Packing<2>&, const std::vector<Contact>&);

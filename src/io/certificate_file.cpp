@@ -204,7 +204,6 @@ Certificate parse_certificate(const std::string& text, const std::string& source
         state.at("forces").fail("no such field in a certificate: forces are claims");
     }
     certificate.state = json::state_from_json<2>(state, source).state;
-    require_box(certificate.state.packing, source, "a certificate");
     certificate.claims = claims_of(document.at("claims"), certificate.state);
     return certificate;
 }

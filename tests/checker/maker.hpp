@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -32,8 +33,14 @@ struct Approximation {
         const auto& packing = s.packing;
         for (std::size_t k = 0; k < packing.q.size(); ++k) {
             const std::size_t disk = k / 2;
-            const bool moves = disk < packing.radius.size() ? packing.fixed.empty() || packing.fixed[disk] == 0
-                                                            : packing.walls.upper[k % 2] == isostat::WallKind::movable;
+            const std::size_t behind = k - 2 * packing.radius.size();
+            const auto& cell = packing.cell;
+            const bool pinned = cell.any() && disk == static_cast<std::size_t>(cell.pin) && cell.periodic[k % 2];
+            const bool moves = disk < packing.radius.size()
+                                   ? !pinned && (packing.fixed.empty() || packing.fixed[disk] == 0)
+                               : behind == 2           ? cell.tilt_moves[0]
+                               : cell.periodic[behind] ? cell.period_moves[behind]
+                                                       : packing.walls.upper[behind] == isostat::WallKind::movable;
             if (moves) {
                 dof_coordinate.push_back(static_cast<int>(k));
             }
@@ -43,12 +50,25 @@ struct Approximation {
     std::vector<Real> q;
     std::vector<int> dof_coordinate;
 
+    /// From the second disk, or its image, to the first.
+    [[nodiscard]] std::array<Real, 2> between(const Contact& c) const {
+        const auto i = static_cast<std::size_t>(c.i);
+        const auto j = static_cast<std::size_t>(c.j);
+        std::array<Real, 2> d{q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]};
+        if (state.packing.cell.any()) {
+            const std::size_t cell = 2 * state.packing.radius.size();
+            d[0] -= c.image.m[0] * q[cell] + c.image.m[1] * q[cell + 2];
+            d[1] -= c.image.m[1] * q[cell + 1];
+        }
+        return d;
+    }
     [[nodiscard]] Real gap(const Contact& c) const {
         const auto i = static_cast<std::size_t>(c.i);
         const auto j = static_cast<std::size_t>(c.j);
         const auto& r = state.packing.radius;
         if (c.kind == ContactKind::disk_disk) {
-            return std::hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]) - (Real(r[i]) + Real(r[j]));
+            const auto d = between(c);
+            return std::hypot(d[0], d[1]) - (Real(r[i]) + Real(r[j]));
         }
         return (c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - Real(r[i]);
     }
@@ -59,12 +79,17 @@ struct Approximation {
         for (Eigen::Index l = 0; l < rows; ++l) {
             const Contact& c = state.contacts[static_cast<std::size_t>(l)];
             if (c.kind == ContactKind::disk_disk) {
+                const std::array<Real, 2> d = between(c);
+                const Real size = std::hypot(d[0], d[1]);
+                const int cell = 2 * state.packing.disk_count();
                 for (int a = 0; a < 2; ++a) {
-                    const auto i = static_cast<std::size_t>(2 * c.i + a);
-                    const auto j = static_cast<std::size_t>(2 * c.j + a);
-                    const Real d = gap(c) + Real(state.packing.radius[i / 2]) + Real(state.packing.radius[j / 2]);
-                    all(l, static_cast<Eigen::Index>(i)) = (q[i] - q[j]) / d;
-                    all(l, static_cast<Eigen::Index>(j)) = (q[j] - q[i]) / d;
+                    const Real along = d[static_cast<std::size_t>(a)] / size;
+                    all(l, 2 * c.i + a) += along;
+                    all(l, 2 * c.j + a) -= along;
+                    all(l, cell + a) -= c.image.m[static_cast<std::size_t>(a)] * along;
+                }
+                if (c.image.m[1] != 0) {
+                    all(l, cell + 2) -= c.image.m[1] * d[0] / size;
                 }
             } else if (c.kind == ContactKind::lower_wall) {
                 all(l, 2 * c.i + c.j) = 1;
@@ -112,8 +137,8 @@ struct Approximation {
     }
 };
 
-/// Every pair of grains that the box has, contacts included.
-inline std::vector<Contact> all_pairs(const State<2>& state) {
+/// Every pair of grains that the box has, contacts included; in a cell those of images up to `far` periods away.
+inline std::vector<Contact> all_pairs(const State<2>& state, int far = 4) {
     std::vector<Contact> pairs;
     const auto& walls = state.packing.walls;
     for (int i = 0; i < state.packing.disk_count(); ++i) {
@@ -125,8 +150,18 @@ inline std::vector<Contact> all_pairs(const State<2>& state) {
                 pairs.push_back({ContactKind::upper_wall, i, a});
             }
         }
-        for (int j = i + 1; j < state.packing.disk_count(); ++j) {
-            pairs.push_back({ContactKind::disk_disk, i, j});
+        const auto& periodic = state.packing.cell.periodic;
+        const int along = periodic[0] ? far : 0;
+        const int across = periodic[1] ? far : 0;
+        for (int j = i; j < state.packing.disk_count(); ++j) {
+            for (int m = -along; m <= along; ++m) {
+                for (int p = -across; p <= across; ++p) {
+                    const isostat::Image image{{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}};
+                    if (i < j || image > isostat::Image{}) {
+                        pairs.push_back({ContactKind::disk_disk, i, j, image});
+                    }
+                }
+            }
         }
     }
     return pairs;
@@ -168,7 +203,7 @@ inline Certificate certificate(const State<2>& state) {
     }
     const Matrix inverse = at.gradient().inverse();
     const Real norm = inverse.cwiseAbs().rowwise().sum().maxCoeff();
-    const Real smallest_distance = 2 * state.packing.min_radius();
+    const Real smallest_distance = (state.packing.cell.any() ? 0.5L : 2) * state.packing.min_radius();
     claims.vertex = isostat::VertexClaim{static_cast<double>(moved) * (1 + 1e-6) + 1e-15,
                                          static_cast<double>(smallest_distance / (10 * norm)), isostat::Rung::exact};
 
@@ -178,6 +213,9 @@ inline Certificate certificate(const State<2>& state) {
         const auto wall = 2 * state.packing.radius.size() + static_cast<std::size_t>(a);
         load[wall] = -Real(state.load.stress[static_cast<std::size_t>(a)]) * at.wall_force(a);
         unit[wall] = a == state.load.loaded_axis ? -at.wall_force(a) : 0;
+    }
+    if (state.packing.cell.any()) {
+        load.back() = -Real(state.load.shear[0]) * Real(state.load.reference_length[0]);
     }
     const Vector f = at.forces(load);
     const Vector u = at.forces(unit);
@@ -197,6 +235,11 @@ inline Certificate certificate(const State<2>& state) {
         isostat::LoadIntervalClaim{load_end(state, f, u, -1), load_end(state, f, u, 1), isostat::Rung::exact};
 
     claims.gaps = isostat::GapsClaim{std::numeric_limits<double>::infinity(), {}, isostat::Rung::exact};
+    const auto rigid = [&cell = state.packing.cell](const Contact& pair) { // a disk and its own image
+        return pair.i == pair.j && pair.kind == ContactKind::disk_disk &&
+               !(pair.image.m[0] != 0 && cell.period_moves[0]) &&
+               !(pair.image.m[1] != 0 && (cell.period_moves[1] || cell.tilt_moves[0]));
+    };
     const auto is_fixed = [&state](int i) {
         return !state.packing.fixed.empty() && state.packing.fixed[static_cast<std::size_t>(i)] != 0;
     };
@@ -207,7 +250,7 @@ inline Certificate certificate(const State<2>& state) {
             : pair.kind == ContactKind::upper_wall
                 ? state.packing.walls.upper[static_cast<std::size_t>(pair.j)] == isostat::WallKind::movable
                 : false;
-        if (!listed && (!is_fixed(pair.i) || other_moves) && at.gap(pair) < claims.gaps->smallest) {
+        if (!listed && !rigid(pair) && (!is_fixed(pair.i) || other_moves) && at.gap(pair) < claims.gaps->smallest) {
             claims.gaps->smallest = static_cast<double>(at.gap(pair) * (1 - 1e-9L));
             claims.gaps->where = pair;
         }

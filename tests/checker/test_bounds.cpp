@@ -140,9 +140,8 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
     BOOST_REQUIRE(vertex.found);
     const checker::Rational radius = checker::power_of_two(-12);
     vertex.moved_most += radius;
-    vertex.column_residual = inverse.residual_column + inverse.column_sum_max * 2 *
-                                                           checker::Rational(problem.most_quadratic()) *
-                                                           vertex.moved_most;
+    vertex.column_residual = inverse.residual_column +
+                             inverse.column_sum_max * checker::Rational(problem.column_curvature()) * vertex.moved_most;
     const auto forces_at = [&](const checker::TrueVertex& at) {
         return checker::contact_forces(problem, solver, inverse, at, checker::finite_load(problem, state, at));
     };
@@ -178,7 +177,7 @@ BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
     const checker::Rational radius = checker::power_of_two(-12);
     wide.vertex.radius = radius;
     wide.vertex.moved_most += radius;
-    wide.vertex.row_residual += checker::row_curvature * wide.inverse.quadratic_sum * radius;
+    wide.vertex.row_residual += wide.problem.row_curvature() * wide.inverse.quadratic_sum * radius;
     const std::vector<checker::Integer> middle = point.vertex.middle;
     checker::Rational farthest = 0; // of the way to an end
     std::mt19937_64 random(2);

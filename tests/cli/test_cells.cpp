@@ -2,6 +2,7 @@
 
 #include "cli/program.hpp"
 
+#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -65,13 +66,30 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_periodic_dump) {
     BOOST_TEST(open.status == 64);
 }
 
+BOOST_AUTO_TEST_CASE(certificates_of_a_cell_verify_and_forged_ones_do_not) {
+    const scratch::Folder folder;
+    const std::string made = (folder / "made.json").string();
+    expect(run({"certify", rectangle, "-o", made}), 0);
+    expect(run({"verify", made, "--input", rectangle}), 0);
+    // Another pin: the claims hold, but of another state than that of the file.
+    isostat::Certificate certificate = isostat::read_certificate(made);
+    certificate.state.packing.cell.pin = 3;
+    isostat::write_certificate(made, certificate);
+    const auto pinned = run({"verify", made, "--input", rectangle});
+    expect(pinned, 1);
+    BOOST_TEST(contains(pinned.out, "the cell of the state in the certificate is not that of"), pinned.out);
+    certificate.state.packing.cell.pin = 0;
+    certificate.state.contacts[0].image.m[0] = 1;
+    isostat::write_certificate(made, certificate);
+    BOOST_TEST(run({"verify", made}).status != 0);
+}
+
 BOOST_AUTO_TEST_CASE(other_commands_refuse_a_cell) {
     const scratch::Folder folder;
     const std::string out = (folder / "out").string();
     const std::string file = (folder / "disks.dump").string();
     scratch::write(file, dump());
-    for (const std::vector<std::string>& command : {std::vector<std::string>{"certify", rectangle, "-o", out},
-                                                    {"export", rectangle, "-o", out + ".xyz"},
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"export", rectangle, "-o", out + ".xyz"},
                                                     {"convert", rectangle, "-o", out},
                                                     {"snap", rectangle, "-o", out}}) {
         const auto refused = run(command);

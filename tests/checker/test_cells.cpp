@@ -1,0 +1,383 @@
+// Certificates of periodic cells: the checker against approximations of its own, against the program that proves, and
+// against forgers.
+#include "checker/forces.hpp"
+#include "checker/gaps.hpp"
+#include "checker/maker.hpp"
+#include "support/cells.hpp"
+#include "support/scale.hpp"
+
+#include <isostat/certificate/certify.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <functional>
+#include <random>
+
+using namespace isostat;
+
+namespace {
+
+State<2> channel_disk() {
+    State<2> state = cells::in_cell({{1, 0.5, 1}}, {2, 2, 0}, false, 2, 3,
+                                    {cells::across(0, 0, 1, 0), crafted::bottom(0), crafted::top(0)});
+    state.packing.cell = {{true, false}, {true, false}, {false}, 0};
+    state.packing.walls.lower[1] = WallKind::fixed;
+    state.packing.walls.upper[1] = WallKind::movable;
+    return state;
+}
+
+/// Two disks of a centred rectangle under a shear, with an own image. Inversion makes the forces equal in pairs: the
+/// ends of the interval are ties that no counting explains.
+State<2> sheared_rectangle() {
+    State<2> state = cells::two_disks(true, 5, 2);
+    state.contacts.push_back(cells::across(0, 0, 1, 0));
+    state.load.shear = {0.3};
+    return state;
+}
+
+/// A small disk that rests on another one and an image of it.
+State<2> with_a_rattler(double radius) {
+    State<2> state = cells::in_cell(
+        {{1, 0, 0}, {radius, 1, std::sqrt((2 + radius) * radius)}}, {2, 2, 0}, false, 2, 3,
+        {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0), cells::across(0, 1, 0, 0), cells::across(0, 1, -1, 0)});
+    state.load.infinitesimal = {0, 1, 0, -1};
+    return state;
+}
+
+State<2> of_file(const std::string& name) {
+    return read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + "_16.json").state;
+}
+
+std::vector<State<2>> small_cells() {
+    return {cells::one_disk(2, 3), cells::one_tilted_disk(2, 1, 0.25), channel_disk(), with_a_rattler(0.3)};
+}
+
+void is_proved(const Verification& verification) {
+    for (const ClaimCheck& check : verification.checks) {
+        BOOST_TEST((check.verdict == Verdict::proved),
+                   check.claim << ": " << to_string(check.verdict) << ": " << check.detail);
+    }
+    BOOST_TEST((verification.verdict == Verdict::proved));
+}
+
+Certificate proved(const State<2>& state) {
+    Certificate made;
+    made.state = state;
+    made.input = "state";
+    made.input_hash = sha256("state");
+    made.program = "certify";
+    const Certification result = certify(state);
+    BOOST_TEST((result.verdict == Verdict::proved));
+    made.claims = result.claims;
+    return made;
+}
+
+/// As `isostat verify` does it: read from a file whose digest is right.
+bool accepted(const Certificate& certificate) {
+    try {
+        return verify(parse_certificate(certificate_text(certificate), "forged")).verdict == Verdict::proved;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+ClaimCheck check_of(const Verification& verification, const std::string& claim) {
+    for (const ClaimCheck& check : verification.checks) {
+        if (check.claim == claim) {
+            return check;
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(every_arithmetic_proves_small_cells) {
+    for (const State<2>& state : small_cells()) {
+        for (const CheckerArithmetic arithmetic :
+             {CheckerArithmetic::automatic, CheckerArithmetic::singular_value, CheckerArithmetic::rows,
+              CheckerArithmetic::fixed64, CheckerArithmetic::gmp, CheckerArithmetic::rational}) {
+            is_proved(verify(maker::certificate(state), arithmetic));
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(ties_by_inversion_are_claimed_by_nobody) {
+    const State<2> state = sheared_rectangle();
+    Certificate made = maker::certificate(state);
+    BOOST_TEST((check_of(verify(made), "load_interval").verdict == Verdict::undecided));
+    const Certification result = certify(state);
+    BOOST_TEST((result.verdict == Verdict::undecided));
+    BOOST_TEST(!result.claims.load_interval.has_value());
+    made.claims = result.claims;
+    for (const ClaimCheck& check : verify(made).checks) {
+        BOOST_TEST((check.verdict == (check.claim == "load_interval" ? Verdict::undecided : Verdict::proved)),
+                   check.claim << ": " << check.detail);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_certified_in_a_cell_verifies) {
+    std::vector<State<2>> states = small_cells();
+    for (const char* name : {"rect", "tilt", "channel"}) {
+        states.push_back(of_file(name));
+        is_proved(verify(maker::certificate(states.back())));
+    }
+    for (const State<2>& state : states) {
+        const std::string text = certificate_text(proved(state));
+        const Certificate read = parse_certificate(text, "text");
+        BOOST_TEST(certificate_text(read) == text);
+        BOOST_TEST(state_difference(read.state, state).empty());
+        is_proved(verify(read));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(claims_do_not_depend_on_pin_or_representatives) {
+    for (const char* name : {"rect", "tilt", "channel"}) {
+        const State<2> state = of_file(name);
+        State<2> other = state;
+        other.packing.cell.pin = 5;
+        std::vector<Image> shift(state.packing.radius.size());
+        shift[3] = cells::image(1, 0);
+        shift[6] = cells::image(-1, 0);
+        other = cells::with_other_representatives(other, shift);
+        Certificate certificate = proved(other);
+        const Certificate original = proved(state);
+        is_proved(verify(certificate));
+        certificate.claims.forces = original.claims.forces;
+        certificate.claims.load_interval = original.claims.load_interval;
+        for (const std::size_t end : {0U, 1U}) { // the same contact by its new name
+            LoadEndClaim& claim =
+                end == 0 ? certificate.claims.load_interval->low : certificate.claims.load_interval->high;
+            const auto at =
+                std::find(state.contacts.begin(), state.contacts.end(), claim.opens) - state.contacts.begin();
+            claim.opens = other.contacts[static_cast<std::size_t>(at)];
+        }
+        is_proved(verify(certificate));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
+    struct Forgery {
+        const char* name;
+        std::function<void(Certificate&)> forge;
+    };
+    const std::vector<Forgery> forgeries{
+        {"an image changed", [](Certificate& c) { c.state.contacts[0].image.m[1] = 1; }},
+        {"an image left out",
+         [](Certificate& c) {
+             const auto with_image = std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
+                                                  [](const Contact& l) { return l.i != l.j && !l.image.is_here(); });
+             with_image->image = {};
+         }},
+        {"an image turned round",
+         [](Certificate& c) {
+             const auto with_image = std::find_if(c.state.contacts.begin(), c.state.contacts.end(),
+                                                  [](const Contact& l) { return l.i != l.j && !l.image.is_here(); });
+             with_image->image = with_image->image.opposite();
+         }},
+        {"a contact left out", [](Certificate& c) { c.state.contacts.pop_back(); }},
+        {"a period longer", [](Certificate& c) { c.state.packing.length(0) *= 1 + 1e-9; }},
+        {"a tilt", [](Certificate& c) { c.state.packing.q.back() += 1e-9; }},
+        {"a period that moves no more", [](Certificate& c) { c.state.packing.cell.period_moves[0] = false; }},
+        {"a tilt that moves or not",
+         [](Certificate& c) { c.state.packing.cell.tilt_moves[0] = !c.state.packing.cell.tilt_moves[0]; }},
+        {"another stress", [](Certificate& c) { c.state.load.stress[0] *= 1 + 1e-9; }},
+        {"another reference length", [](Certificate& c) { c.state.load.reference_length[1] *= 1 + 1e-9; }},
+        {"walls instead of periods",
+         [](Certificate& c) {
+             c.state.packing.cell.periodic[0] = c.state.packing.cell.period_moves[0] = false;
+             c.state.packing.walls.upper[0] = WallKind::movable;
+         }},
+        {"loads that do not sum to zero", [](Certificate& c) { c.state.load.infinitesimal[0] += 1; }},
+        {"true stresses", [](Certificate& c) { c.state.load.kind = LoadKind::true_stress; }},
+        {"a larger gap", [](Certificate& c) { c.claims.gaps->smallest *= 1 + 1e-9; }},
+        {"the gap of another image", [](Certificate& c) { c.claims.gaps->where.image.m[0] += 1; }},
+        {"a force", [](Certificate& c) { c.claims.forces->finite[0] = c.claims.forces->finite[1]; }},
+        {"the other end", [](Certificate& c) { std::swap(c.claims.load_interval->low, c.claims.load_interval->high); }},
+        {"a degree of freedom more", [](Certificate& c) { ++c.claims.counting->dof_count; }}};
+    for (const char* name : {"rect", "tilt", "channel"}) {
+        const Certificate original = proved(of_file(name));
+        for (const Forgery& forgery : forgeries) {
+            Certificate forged = original;
+            forgery.forge(forged);
+            BOOST_TEST(!accepted(forged), name << ": " << forgery.name);
+        }
+    }
+    Certificate sheared = proved(cells::one_tilted_disk(2, 1, 0.25));
+    sheared.state.load.shear[0] *= 1 + 1e-9;
+    BOOST_TEST((verify(sheared).verdict == Verdict::refuted));
+}
+
+BOOST_AUTO_TEST_CASE(another_pin_or_shear_is_another_state) {
+    const State<2> state = of_file("tilt");
+    State<2> other = state;
+    other.packing.cell.pin = 5;
+    BOOST_TEST(state_difference(state, other) == "the cell");
+    other = state;
+    other.load.shear[0] = 1e-3;
+    BOOST_TEST(state_difference(state, other) == "a shear stress");
+}
+
+BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_refuted) {
+    const auto verdict = [](double radius) { // beside it there is room up to sqrt 2 - 1
+        return check_of(verify(maker::certificate(with_a_rattler(radius))), "gaps").verdict;
+    };
+    BOOST_TEST((verdict(0.41) == Verdict::proved));
+    BOOST_TEST((verdict(0.42) == Verdict::refuted));
+}
+
+// An own image that cannot move is no pair for the smallest gap, but must not overlap.
+BOOST_AUTO_TEST_CASE(own_images_at_rest_must_not_overlap) {
+    const auto gaps_of = [](double period) {
+        State<2> state = cells::in_cell({{1, 0, 0}}, {2, period, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
+        state.packing.cell.period_moves = {true, false};
+        return check_of(verify(maker::certificate(state)), "gaps");
+    };
+    BOOST_TEST((gaps_of(2).verdict == Verdict::proved)); // they touch
+    const ClaimCheck overlap = gaps_of(2 - 0x1p-40);
+    BOOST_TEST((overlap.verdict == Verdict::refuted));
+    BOOST_TEST(overlap.detail == "0-0(0,1) overlap, and cannot move");
+}
+
+BOOST_AUTO_TEST_CASE(cells_with_too_many_images_are_left_undecided) {
+    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    Certificate certificate = proved(state);
+    certificate.state.packing.q.back() += 60 * certificate.state.packing.lattice(0, 0); // another basis of the lattice
+    for (Contact& c : certificate.state.contacts) {
+        c.image.m[0] = static_cast<std::int8_t>(c.image.m[0] - 60 * c.image.m[1]);
+        c = pair_of(c.i, c.j, c.image);
+    }
+    const ClaimCheck check = check_of(verify(certificate), "gaps");
+    BOOST_TEST((check.verdict == Verdict::undecided));
+    BOOST_TEST(check.detail.find("too sheared") != std::string::npos, check.detail);
+}
+
+// Brute force over all pairs and images, for configurations that need not be anything.
+BOOST_AUTO_TEST_CASE(the_sweep_finds_the_smallest_gap_among_images) {
+    using namespace isostat::checker;
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> from(-1, 2);
+    for (int sample = 0; sample < testing::scaled(200); ++sample) {
+        const int n = 1 + static_cast<int>(random() % 5);
+        std::vector<cells::DiskAt> disks;
+        const double lx = 1 + from(random) + 0.5;
+        const double ly = 1.2 + from(random) / 2;
+        for (int i = 0; i < n; ++i) {
+            disks.push_back({0.05 + 0.1 * (1 + from(random)), lx * from(random), ly * from(random)});
+        }
+        State<2> state = cells::in_cell(disks, {lx, ly, from(random)}, sample % 3 == 0, 1, 1, {});
+        if (sample % 4 == 3) {
+            state.packing.cell = {{sample % 8 == 3, sample % 8 != 3}, {false, false}, {false}, 0};
+            state.packing.cell.period_moves = state.packing.cell.periodic;
+            state.packing.q.back() = 0;
+            const std::size_t walled = sample % 8 == 3 ? 1 : 0;
+            state.packing.walls.lower[walled] = WallKind::fixed;
+            state.packing.walls.upper[walled] = WallKind::movable;
+        }
+        const std::vector<Contact> pairs = maker::all_pairs(state, 12);
+        state.contacts = {pairs[random() % pairs.size()]};
+        const Problem problem(state);
+        TrueVertex vertex;
+        vertex.middle = problem.stored;
+        vertex.radius = 0;
+        const std::vector<Gap> near = smallest_gaps(problem, state, vertex);
+        const maker::Approximation at(state);
+        double smallest = std::numeric_limits<double>::infinity();
+        for (const Contact& pair : pairs) {
+            if (is_free_pair(state, pair)) {
+                smallest = std::min(smallest, static_cast<double>(at.gap(pair)));
+            }
+        }
+        BOOST_REQUIRE(!near.empty());
+        BOOST_REQUIRE(near[0].pair.i >= 0);
+        double found = std::numeric_limits<double>::infinity();
+        for (const Gap& gap : near) {
+            BOOST_TEST(is_free_pair(state, gap.pair));
+            BOOST_TEST(std::abs(gap.value.lower.get_d() - static_cast<double>(at.gap(gap.pair))) < 1e-12);
+            found = std::min(found, gap.value.lower.get_d());
+        }
+        BOOST_TEST(std::abs(found - smallest) < 1e-12);
+    }
+}
+
+// The vertex may be anywhere in its enclosure, the cell too.
+BOOST_AUTO_TEST_CASE(forces_in_a_cell_hold_at_every_point_of_the_enclosure) {
+    namespace checker = isostat::checker;
+    for (const State<2>& state : {cells::one_tilted_disk(2, 1, 0.25), sheared_rectangle(), of_file("tilt")}) {
+        const checker::Problem problem(state);
+        const checker::Solver solver(problem);
+        const checker::InverseBound inverse = checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
+        checker::TrueVertex vertex = checker::find_vertex(problem, solver, inverse);
+        BOOST_REQUIRE(vertex.found);
+        const checker::Rational radius = checker::power_of_two(-20);
+        vertex.moved_most += radius;
+        vertex.column_residual = inverse.residual_column + inverse.column_sum_max *
+                                                               checker::Rational(problem.column_curvature()) *
+                                                               vertex.moved_most;
+        const auto forces_at = [&](const checker::TrueVertex& at) {
+            return checker::contact_forces(problem, solver, inverse, at, checker::finite_load(problem, state, at));
+        };
+        vertex.radius = radius;
+        const std::vector<checker::Range> enclosed = forces_at(vertex);
+        std::mt19937_64 random(1);
+        for (int sample = 0; sample < testing::scaled(50); ++sample) {
+            checker::TrueVertex point = vertex;
+            point.radius = 0;
+            for (const int k : problem.coordinate_of) {
+                const int sign = random() % 2 == 0 ? 1 : -1;
+                point.middle[static_cast<std::size_t>(k)] += sign * checker::floor_of(radius, -problem.fine);
+            }
+            const std::vector<checker::Range> there = forces_at(point);
+            for (std::size_t l = 0; l < there.size(); ++l) {
+                BOOST_REQUIRE((there[l].lower >= enclosed[l].lower && there[l].upper <= enclosed[l].upper));
+            }
+        }
+    }
+}
+
+// K1 (b) and K2: rows and columns of the derivative between two configurations.
+BOOST_AUTO_TEST_CASE(the_derivative_changes_by_at_most_its_curvature) {
+    namespace checker = isostat::checker;
+    std::mt19937_64 random(5);
+    std::vector<State<2>> states = small_cells();
+    states.push_back(of_file("tilt"));
+    for (const State<2>& state : states) {
+        const checker::Problem problem(state);
+        checker::Integer farthest_row = 0;
+        checker::Integer farthest_column = 0;
+        const checker::Integer step = checker::shifted_left(1, problem.spare);
+        for (int sample = 0; sample < testing::scaled(100); ++sample) {
+            std::vector<checker::Integer> q = problem.stored;
+            for (const int k : problem.coordinate_of) {
+                q[static_cast<std::size_t>(k)] += random() % 2 == 0 ? step : checker::Integer(-step);
+            }
+            std::vector<checker::Integer> column(problem.coordinate_of.size());
+            for (int l = 0; l < problem.contacts(); ++l) {
+                checker::Integer row = 0;
+                const checker::Row& entries = problem.rows[static_cast<std::size_t>(l)];
+                for (int k = 0; k < entries.count; ++k) {
+                    const int dof =
+                        problem.dof_of[static_cast<std::size_t>(entries.coordinate[static_cast<std::size_t>(k)])];
+                    if (dof >= 0) {
+                        const checker::Integer change =
+                            abs(problem.entry(l, k, q) - problem.entry(l, k, problem.stored));
+                        row += change;
+                        column[static_cast<std::size_t>(dof)] += change;
+                    }
+                }
+                farthest_row = std::max(farthest_row, row);
+            }
+            farthest_column = std::max(farthest_column, checker::largest_of(column));
+        }
+        BOOST_TEST((farthest_row <= problem.row_curvature() * step));
+        BOOST_TEST((farthest_column <= problem.column_curvature() * step));
+        BOOST_TEST((2 * farthest_column > problem.column_curvature() * step || problem.dofs() > 10));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

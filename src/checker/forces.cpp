@@ -1,5 +1,7 @@
 #include "checker/forces.hpp"
 
+#include "checker/index.hpp"
+
 #include <optional>
 
 namespace isostat::checker {
@@ -64,10 +66,6 @@ Forces infinitesimal_load(const Problem& problem, const State<2>& state) {
 }
 
 namespace {
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
 
 /// target += times * value; times is seldom other than +-1.
 void add_multiple(Integer& target, int times, const Integer& value) {

@@ -1,5 +1,6 @@
 #include "checker/tube.hpp"
 
+#include "checker/index.hpp"
 #include "checker/inverse.hpp"
 #include "checker/solver.hpp"
 
@@ -11,11 +12,6 @@ namespace {
 
 constexpr std::size_t highest_order = 14;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double root_of_two = 1.4142135623730952; // above it
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
 
 Bounds product(const Pair<Bounds>& a, const Pair<Bounds>& b) {
     return a[0] * b[0] + a[1] * b[1];

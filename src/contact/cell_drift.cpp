@@ -12,7 +12,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The smallest and the largest of the numbers it is shown.
-struct Range {
+struct Extent {
     double low = infinity;
     double high = -infinity;
     void show(double x) {
@@ -51,7 +51,7 @@ CellDrift cell_drift(const CandidateList<2>& list, const Packing<2>& packing) {
     const std::vector<double>& from = list.reference;
     const std::size_t disks = 2 * packing.radius.size();
     const Strain strain(from, packing);
-    std::array<Range, 2> place;
+    std::array<Extent, 2> place;
     double largest = 0;
     for (std::size_t k = 0; k < packing.q.size(); ++k) {
         if (k < disks) {
@@ -59,7 +59,7 @@ CellDrift cell_drift(const CandidateList<2>& list, const Packing<2>& packing) {
         }
         largest = std::max({largest, std::abs(from[k]), std::abs(packing.q[k])});
     }
-    std::array<Range, 2> range;
+    std::array<Extent, 2> range;
     std::vector<double> w(disks);
     double extent = 0; // of the centres, from the middle
     for (std::size_t k = 0; k < disks; k += 2) {

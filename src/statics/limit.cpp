@@ -1,3 +1,4 @@
+#include "core/roundoff.hpp"
 #include "statics/contender.hpp"
 
 #include <algorithm>
@@ -8,8 +9,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double u = 0x1p-53;
+using roundoff::infinity;
+using roundoff::u;
 
 Comparison proved_larger(double margin) {
     Comparison result;

@@ -1,6 +1,7 @@
 #include "verified/configuration.hpp"
 
 #include "contact/gap_sign.hpp"
+#include "core/roundoff.hpp"
 #include "verified/enclosed_vertex.hpp"
 #include "verified/gap_signs.hpp"
 #include "verified/norm.hpp"
@@ -15,7 +16,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 /// Kantorovich with |F| <= residual, |DF^-1| <= inverse_norm: radius of existence, or NaN when the test fails.
 double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
     const double eta = inverse_norm * residual * (1 + 4 * u);

@@ -1,15 +1,16 @@
 #include "contact/cell_drift.hpp"
 
+#include "core/roundoff.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 /// The smallest and the largest of the numbers it is shown.
 struct Extent {

@@ -409,7 +409,7 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed) {
         for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
             BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
                 const scratch::Folder folder;
-                play(of_cell(name, pin), {up}, folder / "run");
+                play_and_store(of_cell(name, pin), {up}, folder / "run");
                 const RunVerification run = verify_run(folder / "run");
                 BOOST_TEST(run.wrong == "");
                 BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -427,7 +427,7 @@ BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
     const std::filesystem::path run = folder / "run";
     Segment up;
     up.equilibria = 2;
-    play(of_cell("tilt_16", 0), {up}, run);
+    play_and_store(of_cell("tilt_16", 0), {up}, run);
     const std::string events = scratch::read(run / "events.jsonl");
     const std::string csv = scratch::read(run / "equilibria.csv");
     for (const auto& [name, said] :

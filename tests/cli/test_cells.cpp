@@ -111,6 +111,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
     const scratch::Folder folder;
     isostat::State<2> state = cells::one_tilted_disk(1, 1, 0.5);
+    state.load.reference_length = {2, std::sqrt(3.0)};
     isostat::write_state(folder / "disk.json", state);
     const std::string scene = (folder / "flow.toml").string();
     scratch::write(scene, "[packing]\nfile = \"disk.json\"\n[[programme]]\ndo = \"down\"\nequilibria = 3\n");

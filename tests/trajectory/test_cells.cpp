@@ -119,10 +119,6 @@ Disguised reversed(const State<2>& start) {
 Disguised transposed(const State<2>& start) {
     Disguised other = crafted::exchanged(start);
     State<2>& state = other.state;
-    state.packing.q = start.packing.q;
-    for (std::size_t k = 0; k < state.packing.length_at(2); k += 2) {
-        std::swap(state.packing.q[k], state.packing.q[k + 1]);
-    }
     const auto swap_axes = [](auto& pair) { std::swap(pair[0], pair[1]); };
     swap_axes(state.packing.cell.periodic);
     swap_axes(state.packing.cell.period_moves);
@@ -195,7 +191,7 @@ BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
             std::vector<std::array<int, 2>> k(16, {0, 0});
             const int along_y = start.packing.cell.periodic[1] ? 1 : 0;
             k[3] = {1, 0};
-            k[8] = {-1, along_y};
+            k[8] = {0, along_y};
             k[9] = {0, -along_y};
             const Disguised other = shifted(start, k);
             const Played a = play(start, +1, 6);
@@ -237,6 +233,7 @@ BOOST_AUTO_TEST_CASE(down_and_up_again) {
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     // One disk: f(1,-1) = F2 / sqrt 3 - T vanishes at F2 = sqrt 3 T, and the disk rolls over its own image.
     State<2> state = cells::one_tilted_disk(1, 1, 0.5);
+    state.load.reference_length = {2, std::sqrt(3.0)};
     snap_to_grid(state.packing);
     Segment segment;
     segment.direction = -1;

@@ -19,7 +19,8 @@ struct OtherPairs {
 std::vector<Contact> without(std::vector<Contact> pairs, const std::vector<Contact>& contacts, int disk_count);
 
 /// Candidates of the triangulation (T5, T6) without the contacts; when that leaves none, all pairs (O(n^2), in small
-/// packings only), in a cell those of a longer and longer reach. Pairs that cannot move relative to each other do not count.
+/// packings only), in a cell those of a longer and longer reach. Pairs that cannot move relative to each other do not
+/// count.
 template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std::vector<Contact>& contacts);
 
 extern template OtherPairs other_pairs<2>(const Packing<2>&, const std::vector<Contact>&);

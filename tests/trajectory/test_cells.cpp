@@ -81,6 +81,7 @@ Disguised shifted(const State<2>& start, const std::vector<std::array<int, 2>>& 
         state.packing.q[2 * i] += k[i][0] * p.lattice(0, 0) + k[i][1] * p.lattice(0, 1);
         state.packing.q[2 * i + 1] += k[i][1] * p.length(1);
     }
+    snap_to_grid(state.packing);
     const auto moved = [k](int sign) {
         return [k, sign](const Contact& c) {
             if (c.kind != ContactKind::disk_disk) {

@@ -1,5 +1,6 @@
 #include "checker/follow.hpp"
 
+#include "checker/images.hpp"
 #include "checker/newton.hpp"
 
 #include <fmt/format.h>
@@ -7,14 +8,70 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <set>
 
 namespace isostat::checker {
 
 namespace {
 
-/// Pairs of grains that may touch before a coordinate has moved by `reach`.
-std::vector<Contact> near_pairs(const Packing<2>& packing, const std::vector<double>& q, double reach) {
+/// The gap of a pair.
+double gap_at(const Packing<2>& packing, const std::vector<double>& q, const Contact& c) {
+    const auto i = static_cast<std::size_t>(c.i);
+    const auto j = static_cast<std::size_t>(c.j);
+    const auto& r = packing.radius;
+    if (c.kind == ContactKind::disk_disk) {
+        double dx = q[2 * i] - q[2 * j];
+        double dy = q[2 * i + 1] - q[2 * j + 1];
+        if (!c.image.is_here()) {
+            const Row row(c, packing.disk_count());
+            row.separate(q, 0, dx);
+            row.separate(q, 1, dy);
+        }
+        return std::hypot(dx, dy) - r[i] - r[j];
+    }
+    return (c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i];
+}
+
+/// The same between all images of disks; nothing: there are too many.
+std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing<2>& packing, const std::vector<double>& q,
+                                                       double reach) {
+    const CellImages images(packing, q);
+    const double widest = 2 * packing.max_radius();
+    const auto range = images.range(widest + 6 * reach);
+    if (!images.usable() || !range) {
+        return {};
+    }
+    const auto margin = [reach](int spread) { return 1.5 * reach * spread; }; // of the fastest of its coordinates
+    std::vector<Placed> places = images.places(*range);
+    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.x < b.x; });
+    std::set<Contact> pairs; // one of each
+    const double farthest = widest + margin(2 + images.periods(*range));
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        for (std::size_t k = p + 1; k < places.size() && places[k].x - places[p].x < farthest; ++k) {
+            if (!places[p].central && !places[k].central) {
+                continue;
+            }
+            const Contact pair = pair_between(places[p], places[k]);
+            const Row row(pair, packing.disk_count());
+            if (gap_at(packing, q, pair) < margin(row.spread())) {
+                pairs.insert(pair);
+            }
+        }
+    }
+    return std::vector<Contact>(pairs.begin(), pairs.end());
+}
+
+/// Pairs of grains that may touch before a coordinate has moved by `reach`; nothing: there are too many images.
+std::optional<std::vector<Contact>> near_pairs(const Packing<2>& packing, const std::vector<double>& q, double reach) {
+    const bool cell = packing.cell.any();
     std::vector<Contact> pairs;
+    if (cell) {
+        auto in_cell = near_pairs_in_cell(packing, q, reach);
+        if (!in_cell) {
+            return {};
+        }
+        pairs = std::move(*in_cell);
+    }
     const auto n = packing.radius.size();
     const auto fixed = [&](std::size_t i) { return !packing.fixed.empty() && packing.fixed[i] != 0; };
     std::vector<std::size_t> order(n);
@@ -23,7 +80,7 @@ std::vector<Contact> near_pairs(const Packing<2>& packing, const std::vector<dou
     const double widest = 2 * packing.max_radius() + 3 * reach;
     for (std::size_t p = 0; p < n; ++p) {
         const std::size_t i = order[p];
-        for (std::size_t k = p + 1; k < n && q[2 * order[k]] - q[2 * i] < widest; ++k) {
+        for (std::size_t k = p + 1; !cell && k < n && q[2 * order[k]] - q[2 * i] < widest; ++k) {
             const std::size_t j = order[k];
             if (std::abs(q[2 * i + 1] - q[2 * j + 1]) >= widest) {
                 continue;
@@ -45,17 +102,6 @@ std::vector<Contact> near_pairs(const Packing<2>& packing, const std::vector<dou
         }
     }
     return pairs;
-}
-
-/// The gap of a pair.
-double gap_at(const Packing<2>& packing, const std::vector<double>& q, const Contact& c) {
-    const auto i = static_cast<std::size_t>(c.i);
-    const auto j = static_cast<std::size_t>(c.j);
-    const auto& r = packing.radius;
-    if (c.kind == ContactKind::disk_disk) {
-        return std::hypot(q[2 * i] - q[2 * j], q[2 * i + 1] - q[2 * j + 1]) - r[i] - r[j];
-    }
-    return (c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i];
 }
 
 /// What a step meets: nothing, the end of the motion at a part of the step, or something that must not be there.
@@ -85,7 +131,9 @@ class Walk {
             if (!move(step, next)) {
                 return {};
             }
-            list_pairs(next);
+            if (!list_pairs(next)) {
+                return {};
+            }
             const Met met = turns_ ? turn(next) : closing(next, k == 0);
             if (met.lost || !met.wrong.empty()) {
                 return {{}, met.wrong};
@@ -143,16 +191,21 @@ class Walk {
         return sum;
     }
 
-    /// The list of near pairs is made anew when a coordinate has moved far enough.
-    void list_pairs(const std::vector<double>& next) {
+    /// The list of near pairs is made anew when a coordinate has moved far enough. False: it cannot be.
+    bool list_pairs(const std::vector<double>& next) {
         double moved = listed_at_.empty() ? reach_ : 0;
         for (std::size_t c = 0; c < listed_at_.size(); ++c) {
             moved = std::max(moved, std::abs(next[c] - listed_at_[c]));
         }
         if (moved >= reach_) {
-            pairs_ = near_pairs(from_.packing, q_, 2 * reach_);
+            auto pairs = near_pairs(from_.packing, q_, 2 * reach_);
+            if (!pairs) {
+                return false;
+            }
+            pairs_ = std::move(*pairs);
             listed_at_ = q_;
         }
+        return true;
     }
 
     /// Does the power of the load turn on the way to `next`?

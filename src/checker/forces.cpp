@@ -221,14 +221,26 @@ int free_of_others(const Problem& problem, const std::vector<int>& contacts, con
     for (const int l : contacts) {
         listed[static_cast<std::size_t>(l)] = true;
     }
+    const auto free = [&listed](const std::vector<int>& touching) {
+        return std::all_of(touching.begin(), touching.end(),
+                           [&listed](int l) { return listed[static_cast<std::size_t>(l)]; });
+    };
     int count = 0;
+    std::array<int, 2> free_disks{}; // per axis
+    bool on_disks = false;
     for (std::size_t j = 0; j < problem.acting_on.size(); ++j) {
         const bool loaded = load[j].lower != 0 || load[j].upper != 0;
-        const std::vector<int>& touching = problem.acting_on[j];
-        count += !loaded && std::all_of(touching.begin(), touching.end(),
-                                        [&listed](int l) { return listed[static_cast<std::size_t>(l)]; })
-                     ? 1
-                     : 0;
+        const int coordinate = problem.coordinate_of[j];
+        const bool of_disk = coordinate < 2 * problem.disks;
+        on_disks = on_disks || (loaded && of_disk);
+        if (!loaded && free(problem.acting_on[j])) {
+            ++count;
+            free_disks[at(coordinate % 2)] += of_disk ? 1 : 0;
+        }
+    }
+    // The balance of the pinned disk follows from the others; any one of all those of an axis does (C1 in cells.md).
+    for (const Problem::Pinned& along : problem.pinned) {
+        count += !on_disks && free(along.acting) && free_disks[along.axis] + 1 < problem.disks ? 1 : 0;
     }
     return count;
 }

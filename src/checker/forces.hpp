@@ -20,7 +20,8 @@ Forces infinitesimal_load(const Problem& problem, const State<2>& state);
 std::vector<Range> contact_forces(const Problem& problem, const Solver& solver, const InverseBound& inverse,
                                   const TrueVertex& vertex, const Forces& load);
 
-/// The number of degrees of freedom without load that no contact outside a set touches.
+/// The number of degrees of freedom without load that no contact outside a set touches. In a cell whose disks carry no
+/// load those of the pinned disk count too, as long as their balance is independent of those that are counted.
 int free_of_others(const Problem& problem, const std::vector<int>& contacts, const Forces& load);
 
 /// The forces of these contacts are exactly 0 under the load (K7). False says nothing.

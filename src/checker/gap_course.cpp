@@ -33,26 +33,24 @@ struct GapCourses::Motion {
     Motion(const Tube& tube, const Moving& moving, const Contact& pair)
         : wall(pair.kind != ContactKind::disk_disk), target(moving.state.packing.radius[at(pair.i)]) {
         const std::size_t disks = moving.state.packing.radius.size();
-        const auto i = at(pair.i);
-        const auto j = at(pair.j);
         if (!wall) {
-            target = target + moving.state.packing.radius[j];
+            target = target + moving.state.packing.radius[at(pair.j)];
         }
         const auto add = [&](const std::vector<double>& q) {
-            if (pair.kind == ContactKind::disk_disk) {
-                x[0].push_back(Bounds(q[2 * j]) - q[2 * i]);
-                x[1].push_back(Bounds(q[2 * j + 1]) - q[2 * i + 1]);
-            } else {
-                x[0].push_back(pair.kind == ContactKind::lower_wall ? Bounds(q[2 * i + j])
-                                                                    : Bounds(q[2 * disks + j]) - q[2 * i + j]);
+            const Pair<Bounds> d = difference(q, pair, disks);
+            x[0].push_back(d[0]);
+            if (!wall) {
+                x[1].push_back(d[1]);
             }
         };
         add(tube.centre());
         for (const auto& a : tube.coefficients()) {
             add(a);
         }
-        apart = product_above(root_of_two, sum_above(tube.radius(), product_above(2, moving.rest)));
-        rate_apart = product_above(root_of_two, tube.slope_error());
+        const double m = period_weight(pair); // |D x|^2 <= (2 + |m|^2) |x|^2
+        const double weight = pair.image.is_here() ? root_of_two : root_above(sum_above(2, product_above(m, m)));
+        apart = product_above(weight, sum_above(tube.radius(), product_above(2, moving.rest)));
+        rate_apart = product_above(weight, tube.slope_error());
     }
 
     struct View {

@@ -239,11 +239,7 @@ void sweep(std::vector<Placed> places, const Approximation& at, double widest, C
                 break;
             }
             if (one.central || two.central) {
-                Image m;
-                for (std::size_t a = 0; a < 2; ++a) {
-                    m.m[a] = static_cast<std::int8_t>(two.image.m[a] - one.image.m[a]);
-                }
-                collector.offer(pair_of(one.disk, two.disk, m));
+                collector.offer(pair_between(one, two));
             }
         }
     }

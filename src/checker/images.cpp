@@ -13,6 +13,14 @@ constexpr int most_periods = 16;
 
 } // namespace
 
+Contact pair_between(const Placed& one, const Placed& two) {
+    Image m;
+    for (std::size_t a = 0; a < 2; ++a) {
+        m.m[a] = static_cast<std::int8_t>(two.image.m[a] - one.image.m[a]);
+    }
+    return pair_of(one.disk, two.disk, m);
+}
+
 CellImages::CellImages(const Packing<2>& packing, const std::vector<double>& q) : packing_(packing), q_(q) {
     const auto& periodic = packing.cell.periodic;
     const double tilt = lattice(0, 1);

@@ -2,6 +2,7 @@
 /// \file
 /// The disks of a cell and their images near it, for the sweep over all pairs (proofs/checker.md, K9).
 
+#include <isostat/contact/contact.hpp>
 #include <isostat/packing/packing.hpp>
 
 #include <array>
@@ -17,6 +18,9 @@ struct Placed {
     bool central = true; ///< the one in the cell itself: of every pair one is, but for a common period
     double x = 0;
 };
+
+/// The pair that two of them are.
+Contact pair_between(const Placed& one, const Placed& two);
 
 /// The cell that the sweep sees, in doubles.
 class CellImages {

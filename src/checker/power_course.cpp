@@ -51,10 +51,19 @@ void add_rows(std::vector<Bounds>& force, const Moving& moving, const Tube& tube
         if (c.kind == ContactKind::held) {
             force[i] = force[i] + weight * g[l];
         } else if (c.kind == ContactKind::disk_disk) {
+            const Pair<Bounds> d = difference(m, c, moving.state.packing.radius.size());
             for (std::size_t a = 0; a < 2; ++a) {
-                const Bounds part = (Bounds(m[2 * i + a]) - m[2 * j + a]) * g[l];
-                force[2 * i + a] = force[2 * i + a] + part;
-                force[2 * j + a] = force[2 * j + a] - part;
+                const Bounds part = d[a] * g[l];
+                if (i != j) {
+                    force[2 * i + a] = force[2 * i + a] + part;
+                    force[2 * j + a] = force[2 * j + a] - part;
+                }
+                if (!c.image.is_here()) {
+                    force[walls + a] = force[walls + a] - part * static_cast<double>(c.image.m[a]);
+                }
+            }
+            if (!c.image.is_here()) { // the tilt
+                force[walls + 2] = force[walls + 2] - d[0] * g[l] * static_cast<double>(c.image.m[1]);
             }
         } else {
             const Bounds part = weight * g[l] * (c.kind == ContactKind::lower_wall ? 1.0 : -1.0);
@@ -79,9 +88,7 @@ class Bending {
         double way = 0;
         double rate = 0;
         for (std::size_t k = a.size(); k > 0; --k) {
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                d[k][axis] = Bounds(a[k - 1][2 * at(c.i) + axis]) - a[k - 1][2 * at(c.j) + axis];
-            }
+            d[k] = difference(a[k - 1], c, moving_.state.packing.radius.size());
             const double x = d[k][0].size();
             const double y = d[k][1].size();
             const double size = root_above(sum_above(product_above(x, x), product_above(y, y)));
@@ -109,12 +116,12 @@ class Bending {
         }
     }
     [[nodiscard]] double open() const {
-        const double degree = 2.0 * tube_.degree();
+        const double spread = tube_.spread();
         const double linear = sum_above(product_above(root_above(ways_), tube_.slope_error()),
                                         product_above(root_above(rates_), tube_.radius()));
         const double both =
-            product_above(product_above(largest_, degree), product_above(tube_.radius(), tube_.slope_error()));
-        return sum_above(sum_above(product_above(root_above(degree), linear), both), at_rest_);
+            product_above(product_above(largest_, spread), product_above(tube_.radius(), tube_.slope_error()));
+        return sum_above(sum_above(product_above(root_above(spread), linear), both), at_rest_);
     }
 
   private:

@@ -250,7 +250,27 @@ void Problem::find_contacts_of(const State<2>& state) {
             change[j] += row.quadratic ? static_cast<unsigned long>(std::abs(row.sign[k]) * spread[row.axis[k]]) : 0UL;
         }
     }
+    find_pinned(state);
     column_curvature_ = change.empty() ? 0 : *std::max_element(change.begin(), change.end());
+}
+
+void Problem::find_pinned(const State<2>& state) {
+    const Cell<2>& cell = state.packing.cell;
+    const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
+                                   [this](const Contact& c) { return c.kind == ContactKind::held && c.i < 2 * disks; });
+    for (std::size_t a = 0; a < 2 && !holds; ++a) {
+        if (!cell.periodic[a]) {
+            continue;
+        }
+        Pinned& along = pinned.emplace_back(Pinned{a, {}});
+        for (std::size_t l = 0; l < rows.size(); ++l) {
+            const Contact& c = state.contacts[l];
+            const bool on = c.i == cell.pin || (c.kind == ContactKind::disk_disk && c.j == cell.pin);
+            if (on && c.kind == ContactKind::disk_disk && c.i != c.j) {
+                along.acting.push_back(static_cast<int>(l));
+            }
+        }
+    }
 }
 
 Integer Problem::entry(int contact, int k, const std::vector<Integer>& q) const {

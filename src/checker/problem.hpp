@@ -88,6 +88,13 @@ class Problem : public Structure {
     /// The same without those whose entry is 0 at every true vertex: two disks that walls, holds or being fixed keep at
     /// one coordinate (proofs/definition.md).
     std::vector<std::vector<int>> acting_on;
+    /// In a cell: the same per coordinate of the pinned disk along a periodic axis. Not where coordinates of disks are
+    /// held: the pinned disk bears what holds them.
+    struct Pinned {
+        std::size_t axis;
+        std::vector<int> acting;
+    };
+    std::vector<Pinned> pinned;
     long fine = 0;
     long spare = 0;
     int digits;           ///< bits beyond the stored ones in which the true vertex is sought
@@ -114,6 +121,7 @@ class Problem : public Structure {
 
   private:
     void find_contacts_of(const State<2>& state);
+    void find_pinned(const State<2>& state);
     unsigned long row_curvature_ = 0;
     unsigned long column_curvature_ = 0;
 };

@@ -73,6 +73,34 @@ int rattlers(const Place& place) {
     return static_cast<int>(std::count(carries.begin(), carries.end(), false));
 }
 
+/// A row names two disks, not the image: it is right when it is so of one of the pairs that it may mean, and wrong when
+/// it is wrong of each. Nothing: there is no such pair.
+template <class Pairs, class Pair, class Check>
+std::optional<Objections> check_meant(const std::optional<Contact>& columns, const Pairs& among, const Pair& pair_of,
+                                      const Check& check) {
+    std::optional<Objections> found;
+    for (std::size_t l = 0; l < among.size() && columns; ++l) {
+        if (!may_be(*columns, pair_of(among[l]))) {
+            continue;
+        }
+        Objections objection = check(l);
+        if (!objection) {
+            return Objections();
+        }
+        if (!found || ((*found)->wrong && !objection->wrong)) {
+            found = std::move(objection);
+        }
+    }
+    return found;
+}
+
+/// The same of the contacts.
+template <class Check>
+std::optional<Objections> check_meant(const std::optional<Contact>& columns, const Place& place, const Check& check) {
+    return check_meant(
+        columns, place.state->contacts, [](const Contact& c) { return c; }, check);
+}
+
 Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
     const std::vector<Gap>& near = place.gaps();
     const auto pair = contact_of_columns(line.at("min_gap_i"), line.at("min_gap_j"), place.state->packing);
@@ -81,13 +109,13 @@ Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
         const bool infinite = std::isinf(line.at("min_gap")) && line.bound("min_gap") == 0;
         return none && infinite ? Objections() : Objection{true, "min_gap is said to be of a pair, but there is none"};
     }
-    for (const Gap& gap : near) {
-        if (pair && gap.pair == *pair) {
-            return compare("min_gap", line, gap.value, place.state->packing.max_radius());
-        }
-    }
-    return Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
-                                       pair ? to_string<2>(*pair) : "no pair", to_string<2>(near[0].pair))};
+    const auto size = place.state->packing.max_radius();
+    const auto found = check_meant(
+        pair, near, [](const Gap& gap) { return gap.pair; },
+        [&](std::size_t l) { return compare("min_gap", line, near[l].value, size); });
+    return found ? *found
+                 : Objection{true, fmt::format("min_gap is said to be of {}, found of {}",
+                                               pair ? to_string<2>(*pair) : "no pair", to_string<2>(near[0].pair))};
 }
 
 Objections check_smallest_force(const Place& place, const EquilibriumLine& line) {
@@ -109,12 +137,9 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
         return wrong;
     }
     const auto named = contact_of_columns(line.at("min_force_i"), line.at("min_force_j"), place.state->packing);
-    const auto& contacts = place.state->contacts;
-    const auto at = named ? std::find(contacts.begin(), contacts.end(), *named) : contacts.end();
-    if (at == contacts.end()) {
-        return Objection{true, "min_force is said to be of what is no contact"};
-    }
-    return compare("min_force", said, e.forces[static_cast<std::size_t>(at - contacts.begin())], loosest);
+    const auto found =
+        check_meant(named, place, [&](std::size_t l) { return compare("min_force", said, e.forces[l], loosest); });
+    return found ? *found : Objection{true, "min_force is said to be of what is no contact"};
 }
 
 Objections check_interval(const Place& place, const EquilibriumLine& line, bool high) {
@@ -137,19 +162,18 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
                    : Objection{!infinite || verdict == Verdict::refuted,
                                fmt::format("{} = {} +- {}: found {}", name, stress.value, stress.bound, text)};
     }
-    const auto& contacts = place.state->contacts;
-    const auto at = std::find(contacts.begin(), contacts.end(), *opens);
-    if (at == contacts.end()) {
+    auto found = check_meant(opens, place, [&](std::size_t opened) {
+        ExactLoad unused;
+        return place.first ? check_limit_at(place, stress, opened, unused, nullptr)
+                           : check_load_end(place, stress, opened, direction);
+    });
+    if (!found) {
         return Objection{true, fmt::format("{} ends the supported interval, but is no contact", to_string<2>(*opens))};
     }
-    const auto opened = static_cast<std::size_t>(at - contacts.begin());
-    ExactLoad unused;
-    Objections wrong = place.first ? check_limit_at(place, stress, opened, unused, nullptr)
-                                   : check_load_end(place, stress, opened, direction);
-    if (wrong) {
-        wrong->text = fmt::format("{}: {}", name, wrong->text);
+    if (*found) {
+        (*found)->text = fmt::format("{}: {}", name, (*found)->text);
     }
-    return wrong;
+    return *found;
 }
 
 } // namespace
@@ -388,13 +412,14 @@ Objections check_stored(const Place& place, const State<2>& stored) {
     if (as_set(stored) != as_set(*place.state)) {
         return Objection{true, "the stored state has other contacts"};
     }
-    if (stored.packing.radius != place.state->packing.radius || !(stored.packing.walls == place.state->packing.walls) ||
-        stored.packing.fixed != place.state->packing.fixed) {
-        return Objection{true, "the stored state has other disks or walls"};
+    const Packing<2>& here = place.state->packing;
+    if (stored.packing.radius != here.radius || !(stored.packing.walls == here.walls) ||
+        stored.packing.fixed != here.fixed || !(stored.packing.cell == here.cell)) {
+        return Objection{true, "the stored state has other disks or walls, or another cell"};
     }
     const Load<2>& a = stored.load;
     const Load<2>& b = place.state->load;
-    if (a.stress != b.stress || a.kind != b.kind || a.reference_length != b.reference_length ||
+    if (a.stress != b.stress || a.shear != b.shear || a.kind != b.kind || a.reference_length != b.reference_length ||
         a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force || a.infinitesimal != b.infinitesimal) {
         return Objection{true, "the stored state has another load"};
     }

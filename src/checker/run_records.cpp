@@ -200,7 +200,7 @@ std::optional<StateFile<2>> RunRecords::stored(int equilibrium) const {
     if (!std::filesystem::exists(path)) {
         return {};
     }
-    return read_state<2>(path);
+    return read_any_state<2>(path);
 }
 
 RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
@@ -233,6 +233,26 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     return records;
 }
 
+namespace {
+
+/// "(1,-2)" behind the name of a pair: periods along the axes that repeat.
+std::optional<Image> image_named(std::string_view text, const Cell<2>& cell) {
+    Image image;
+    const char* at = text.data() + 1;
+    const char* const end = text.data() + text.size() - 1;
+    for (std::size_t a = 0; a < 2; ++a) {
+        const auto [stop, error] = std::from_chars(at, end, image.m[a]);
+        if (error != std::errc() || (a == 0 && (stop == end || *stop != ',')) || (a == 1 && stop != end) ||
+            image.m[a] == std::numeric_limits<std::int8_t>::min() || (image.m[a] != 0 && !cell.periodic[a])) {
+            return {};
+        }
+        at = stop + 1;
+    }
+    return image;
+}
+
+} // namespace
+
 std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing) {
     if (name.starts_with("held ")) {
         const std::string_view rest = std::string_view(name).substr(5);
@@ -242,13 +262,25 @@ std::optional<Contact> contact_named(const std::string& name, const Packing<2>& 
             const std::string_view digits = rest.substr(1 + middle.size());
             const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), grain);
             if (error == std::errc() && stop == digits.data() + digits.size() && grain >= 0 &&
-                grain <= packing.disk_count() && (rest[0] == 'x' || rest[0] == 'y')) {
+                2 * grain + (rest[0] == 'x' ? 0 : 1) < static_cast<int>(packing.q.size()) &&
+                (rest[0] == 'x' || rest[0] == 'y')) {
                 return Contact{ContactKind::held, 2 * grain + (rest[0] == 'x' ? 0 : 1), 0};
             }
         }
         return {};
     }
-    const std::vector<std::string> parts = split(name, '-');
+    const std::size_t bracket = std::min(name.find('('), name.size());
+    Image image;
+    if (bracket < name.size()) {
+        const std::optional<Image> said = name.back() == ')' && packing.cell.any()
+                                              ? image_named(std::string_view(name).substr(bracket), packing.cell)
+                                              : std::nullopt;
+        if (!said) {
+            return {};
+        }
+        image = *said;
+    }
+    const std::vector<std::string> parts = split(std::string_view(name).substr(0, bracket), '-');
     const auto disk = [&packing](const std::string& text) {
         int value = -1;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -259,6 +291,9 @@ std::optional<Contact> contact_named(const std::string& name, const Packing<2>& 
         return {};
     }
     const int i = disk(parts[0]);
+    if (!image.is_here() && disk(parts[1]) < 0) {
+        return {};
+    }
     if (parts[1] == "left" || parts[1] == "bottom") {
         return Contact{ContactKind::lower_wall, i, parts[1] == "left" ? 0 : 1};
     }
@@ -266,15 +301,19 @@ std::optional<Contact> contact_named(const std::string& name, const Packing<2>& 
         return Contact{ContactKind::upper_wall, i, parts[1] == "right" ? 0 : 1};
     }
     const int j = disk(parts[1]);
-    if (j < 0 || i == j) {
+    if (j < 0 || (i == j && image.is_here())) {
         return {};
     }
-    return Contact{ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+    return pair_of(i, j, image);
+}
+
+bool may_be(const Contact& columns, const Contact& pair) {
+    return columns.kind == pair.kind && columns.i == pair.i && columns.j == pair.j;
 }
 
 std::optional<Contact> contact_of_columns(double i, double j, const Packing<2>& packing) {
     const auto disks = static_cast<double>(packing.disk_count());
-    if (!(i >= 0 && i < disks) || !(j >= -4 && j < disks) || i == j) {
+    if (!(i >= 0 && i < disks) || !(j >= -4 && j < disks) || (i == j && !packing.cell.any())) {
         return {};
     }
     const int first = static_cast<int>(i);

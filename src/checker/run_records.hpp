@@ -67,10 +67,13 @@ enum class LastLine { complete, may_be_cut };
 /// Throws `Error(bad_input)`.
 RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);
 
-/// "12-40", "3-left", "held x of grain 4" (the walls are the grain after the last disk); nothing for anything else.
+/// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk);
+/// nothing for anything else.
 std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing);
 
-/// The two columns of a contact in equilibria.csv; nothing for "none".
+/// The two columns of a contact in equilibria.csv; nothing for "none". They do not name the image: `may_be`.
 std::optional<Contact> contact_of_columns(double i, double j, const Packing<2>& packing);
+/// The pair of such columns, whichever image it is with.
+bool may_be(const Contact& columns, const Contact& pair);
 
 } // namespace isostat::checker

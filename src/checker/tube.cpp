@@ -13,23 +13,6 @@ namespace {
 constexpr std::size_t highest_order = 14;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Two components for a pair of disks, one for a wall.
-template <class Number> using Pair = std::array<Number, 2>;
-
-/// The difference of the two grains of a contact, exact but for the rounding of the subtraction.
-Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks) {
-    const auto i = at(c.i);
-    const auto j = at(c.j);
-    switch (c.kind) {
-    case ContactKind::disk_disk:
-        return {Bounds(x[2 * i]) - Bounds(x[2 * j]), Bounds(x[2 * i + 1]) - Bounds(x[2 * j + 1])};
-    case ContactKind::lower_wall: return {Bounds(x[2 * i + j]), Bounds(0)};
-    case ContactKind::upper_wall: return {Bounds(x[2 * disks + j]) - Bounds(x[2 * i + j]), Bounds(0)};
-    case ContactKind::held: break;
-    }
-    return {Bounds(0), Bounds(0)};
-}
-
 Bounds product(const Pair<Bounds>& a, const Pair<Bounds>& b) {
     return a[0] * b[0] + a[1] * b[1];
 }
@@ -76,6 +59,73 @@ double least_singular_value(const Problem& problem, const Solver& solver) {
     const Rational columns = inverse.column_sum_max / (1 - inverse.residual_column);
     const double largest = rounded_up(rows * columns);
     return largest > 0 && largest < infinity ? next_below(next_below(1 / root_above(largest))) : 0;
+}
+
+} // namespace
+
+Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks) {
+    const auto i = at(c.i);
+    const auto j = at(c.j);
+    Pair<Bounds> d{Bounds(0), Bounds(0)};
+    switch (c.kind) {
+    case ContactKind::disk_disk:
+        if (i != j) {
+            d = {Bounds(x[2 * i]) - Bounds(x[2 * j]), Bounds(x[2 * i + 1]) - Bounds(x[2 * j + 1])};
+        }
+        if (!c.image.is_here()) {
+            const double m = c.image.m[0];
+            const double p = c.image.m[1];
+            const std::size_t cell = 2 * disks;
+            d[0] = d[0] - Bounds(x[cell]) * m - Bounds(x[cell + 2]) * p;
+            d[1] = d[1] - Bounds(x[cell + 1]) * p;
+        }
+        break;
+    case ContactKind::lower_wall: d[0] = Bounds(x[2 * i + j]); break;
+    case ContactKind::upper_wall: d[0] = Bounds(x[2 * disks + j]) - Bounds(x[2 * i + j]); break;
+    case ContactKind::held: break;
+    }
+    return d;
+}
+
+double period_weight(const Contact& pair) {
+    const double m = pair.image.m[0];
+    const double p = pair.image.m[1];
+    return pair.image.is_here() ? 0 : root_above(m * m + p * p);
+}
+
+namespace {
+
+/// The parts of a configuration that D_l depends on: blocks of coordinates (disks, and the cell behind them) and what
+/// the norm of each is multiplied by.
+struct Blocks {
+    std::array<std::size_t, 3> block{};
+    std::array<double, 3> weight{};
+    std::size_t count = 0;
+
+    Blocks(const Contact& c, const Moving& moving) {
+        for (const int disk : {c.i, c.j}) {
+            if (c.i != c.j && moving.disk_moves(disk)) {
+                add(at(disk), 1);
+            }
+        }
+        if (!c.image.is_here()) {
+            add(moving.state.packing.radius.size(), period_weight(c));
+        }
+    }
+
+  private:
+    void add(std::size_t b, double w) {
+        block[count] = b;
+        weight[count++] = w;
+    }
+};
+
+/// w_l^2 = 2 + |m|^2: |D_l x|^2 is at most this times the sum of the squares of its blocks; without the disks of an
+/// own image.
+double square_weight(const Contact& c) {
+    const double m = c.image.m[0];
+    const double p = c.image.m[1];
+    return (c.i == c.j ? 0 : 2) + m * m + p * p;
 }
 
 } // namespace
@@ -133,15 +183,20 @@ std::unique_ptr<Tube> Tube::make(const Moving& moving, std::vector<double> centr
 void Tube::expand() {
     const std::size_t disks = moving_.state.packing.radius.size();
     const std::size_t contacts = moving_.kept.size();
-    std::vector<unsigned> count(disks, 0);
+    std::vector<double> spread(disks + 1, 0.0); // integers
+    std::vector<double> fourth(disks + 1, 0.0);
     for (const Contact& c : moving_.kept) {
         if (c.kind == ContactKind::disk_disk) {
-            for (const int i : {c.i, c.j}) {
-                count[at(i)] += moving_.moves[2 * at(i)] ? 1 : 0;
+            const Blocks blocks(c, moving_);
+            const double w = square_weight(c);
+            for (std::size_t b = 0; b < blocks.count; ++b) {
+                spread[blocks.block[b]] += w;
+                fourth[blocks.block[b]] += w * w;
             }
         }
     }
-    degree_ = std::max(1U, *std::max_element(count.begin(), count.end()));
+    spread_ = std::max(2.0, *std::max_element(spread.begin(), spread.end()));
+    curvature_ = root_above(std::max(4.0, *std::max_element(fourth.begin(), fourth.end())));
     const double unit = moving_.state.packing.min_radius();
     longest_ = 0.2 * unit;
     std::vector<double> right(contacts + 1, 0.0);
@@ -247,31 +302,33 @@ double Tube::change_norm(double h) const {
             e[l] = series_above(stretch_[l], 0, h);
         }
     }
-    std::vector<double> x(disks, 1.0);
+    std::vector<double> x(disks + 1, 1.0);
     double best = infinity;
     for (int round = 0; round < 5; ++round) {
-        std::vector<double> z(disks, 0.0);
+        std::vector<double> z(disks + 1, 0.0);
         for (std::size_t l = 0; l < e.size(); ++l) {
             if (e[l] == 0) {
                 continue;
             }
+            const Blocks blocks(moving_.kept[l], moving_);
             double y = 0;
-            for (const int i : {moving_.kept[l].i, moving_.kept[l].j}) {
-                y = sum_above(y, moving_.moves[2 * at(i)] ? x[at(i)] : 0);
+            for (std::size_t b = 0; b < blocks.count; ++b) {
+                y = sum_above(y, product_above(blocks.weight[b], x[blocks.block[b]]));
             }
             y = product_above(product_above(e[l], e[l]), y);
-            for (const int i : {moving_.kept[l].i, moving_.kept[l].j}) {
-                z[at(i)] = moving_.moves[2 * at(i)] ? sum_above(z[at(i)], y) : 0;
+            for (std::size_t b = 0; b < blocks.count; ++b) {
+                double& sum = z[blocks.block[b]];
+                sum = sum_above(sum, product_above(blocks.weight[b], y));
             }
         }
         double ratio = 0;
         double most = 0;
-        for (std::size_t i = 0; i < disks; ++i) {
+        for (std::size_t i = 0; i <= disks; ++i) {
             ratio = std::max(ratio, quotient_above(z[i], x[i]));
             most = std::max(most, z[i]);
         }
         best = std::min(best, ratio);
-        for (std::size_t i = 0; i < disks; ++i) {
+        for (std::size_t i = 0; i <= disks; ++i) {
             x[i] = z[i] + 1e-3 * most + std::numeric_limits<double>::min();
         }
     }
@@ -294,16 +351,15 @@ bool Tube::holds(double h) {
         }
     }
     const double rho = norm_above(values);
-    const double curvature = product_above(2, root_above(degree_)); // Lipschitz constant of A
     const double beta = quotient_above(1, left);
-    const double product = product_above(product_above(product_above(4, curvature), rho), product_above(beta, beta));
+    const double product = product_above(product_above(product_above(4, curvature_), rho), product_above(beta, beta));
     if (!(product <= 1)) {
         return false;
     }
     radius_ = product_above(product_above(2, beta), rho);
-    unique_ = next_below(left / curvature);
-    const double at_curve = next_below(left - product_above(curvature, radius_));
-    const double apart = product_above(product_above(turn, root_above(2 * degree_)), radius_);
+    unique_ = next_below(left / curvature_);
+    const double at_curve = next_below(left - product_above(curvature_, radius_));
+    const double apart = product_above(product_above(turn, root_above(spread_)), radius_);
     slope_error_ = quotient_above(sum_above(norm_above(rates), apart), at_curve);
     speed_ = 0;
     std::vector<double> sizes{0};

@@ -6,6 +6,7 @@
 #include "checker/bounds.hpp"
 #include "checker/problem.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -20,7 +21,20 @@ struct Moving {
     std::vector<bool> moves;      ///< per coordinate
     std::vector<bool> loose;      ///< per coordinate: at rest, but its true place is known to `rest` only
     double rest = 0;
+    [[nodiscard]] bool disk_moves(int i) const {
+        const auto x = 2 * static_cast<std::size_t>(i);
+        return moves[x] || moves[x + 1]; // a pinned disk of a channel: across it only
+    }
 };
+
+/// Two components for a pair of disks, one for a wall.
+template <class Number> using Pair = std::array<Number, 2>;
+
+/// The difference D_l x of the two grains of a contact, exact but for the roundings of the differences; a held one: 0.
+Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks);
+
+/// |A m| <= this times the 2-norm of the cell: |m|, 0 for a contact without an image.
+double period_weight(const Contact& pair);
 
 /// p(s) = centre + sum_k s^k a_k, with s = direction times (coordinate `row` less its value at the centre).
 class Tube {
@@ -51,7 +65,8 @@ class Tube {
     /// About -(A(centre)^T)^-1 force: one number per kept contact, that of the row last. `force` per coordinate.
     [[nodiscard]] std::vector<double> multipliers(const std::vector<double>& force) const;
     [[nodiscard]] double weight() const { return weight_; } ///< of the rows of walls and coordinates
-    [[nodiscard]] unsigned degree() const { return degree_; }
+    /// sum_l |D_l x| |D_l y| <= spread |x| |y|: 2 z of K16.
+    [[nodiscard]] double spread() const { return spread_; }
 
     [[nodiscard]] const std::vector<double>& centre() const { return centre_; }
     [[nodiscard]] int row() const { return row_; }
@@ -76,7 +91,8 @@ class Tube {
     double weight_ = 1;
     double sigma_ = 0; ///< the derivative at the centre has no singular value below
     double longest_ = 0;
-    unsigned degree_ = 1; ///< most kept contacts of two disks at one disk
+    double spread_ = 2;    ///< largest sum of w_l^2 at one disk, or of all images
+    double curvature_ = 2; ///< L of K16: the Lipschitz constant of A
     std::vector<std::vector<double>> a_;
     std::vector<std::vector<double>> stretch_;  ///< per kept contact: |D a_k|, k = 1 ...; [0]: of the grain at rest
     std::vector<std::vector<double>> residual_; ///< per kept contact: bounds of the coefficients of F along p

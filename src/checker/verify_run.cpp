@@ -435,7 +435,7 @@ class Replay {
         if (!std::filesystem::exists(path)) {
             return true;
         }
-        const StateFile<2> file = read_state<2>(path);
+        const StateFile<2> file = read_any_state<2>(path);
         return judged(check_stored(here_, file.state), name) && judged(check_stored_forces(here_, file.forces), name);
     }
 

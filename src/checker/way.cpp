@@ -41,6 +41,7 @@ class Follower {
   private:
     [[nodiscard]] const Contact& opened() const { return from_.state->contacts[way_.opened]; }
     [[nodiscard]] const Contact& closed() const { return to_.state->contacts[way_.opened]; }
+    void let_rest();
     Objections set_up();
     void load();
     [[nodiscard]] std::vector<double> widened(const std::vector<double>& q) const;
@@ -70,22 +71,33 @@ class Follower {
     std::string trouble_;
 };
 
+/// What does not move is marked so.
+void Follower::let_rest() {
+    Packing<2>& packing = moving_.state.packing;
+    packing.fixed.assign(packing.radius.size(), 1);
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        packing.fixed[i] = moving_.moves[2 * i] ? 0 : 1;
+    }
+    for (std::size_t a = 0; a < 2; ++a) {
+        if (packing.walls.upper[a] == WallKind::movable && !moving_.moves[packing.length_at(a)]) {
+            packing.walls.upper[a] = WallKind::fixed;
+        }
+    }
+}
+
 Objections Follower::set_up() {
     const State<2>& start = *from_.state;
     const Problem& problem = from_.evidence->problem;
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
     moving_.moves = moves;
-    Packing<2>& packing = moving_.state.packing;
-    packing.fixed.assign(packing.radius.size(), 1);
-    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        packing.fixed[i] = moves[2 * i] ? 0 : 1;
+    const bool cell = start.packing.cell.any();
+    if (cell && (!way_.end_only || way_.witness.grains)) {
+        return open("in a periodic cell it is looked at only");
     }
-    const std::size_t walls = 2 * packing.radius.size();
-    for (std::size_t a = 0; a < 2; ++a) {
-        if (packing.walls.upper[a] == WallKind::movable && !moves[walls + a]) {
-            packing.walls.upper[a] = WallKind::fixed;
-        }
+    const std::size_t walls = 2 * start.packing.radius.size();
+    if (!cell) { // in a cell all moves that can
+        let_rest();
     }
     for (std::size_t k = 0; k < moves.size(); ++k) {
         moving_.loose.push_back(!moves[k] && problem.dof_of[k] >= 0);
@@ -94,7 +106,8 @@ Objections Follower::set_up() {
         }
     }
     const auto takes_part = [&](const Contact& c) {
-        return c.kind == ContactKind::held         ? moves[at(c.i)]
+        return cell                                ? true
+               : c.kind == ContactKind::held       ? moves[at(c.i)]
                : c.kind == ContactKind::disk_disk  ? moves[2 * at(c.i)] || moves[2 * at(c.j)]
                : c.kind == ContactKind::lower_wall ? moves[2 * at(c.i)]
                                                    : moves[2 * at(c.i)] || moves[walls + at(c.j)];
@@ -141,6 +154,9 @@ void Follower::load() {
         } else {
             pushing_.per_length[a] = stress;
         }
+    }
+    if (from_.state->packing.cell.any() && !way_.rattles) { // on the tilt
+        pushing_.fixed[walls + 2] = Bounds(0) - Bounds(load.shear[0]) * load.reference_length[0];
     }
 }
 

@@ -167,7 +167,11 @@ int run(const RunArguments& arguments) {
         fmt::print(stderr, "isostat: to go on: isostat run {} -o {} --resume\n", arguments.scene, arguments.output);
     }
     if ((scene.pictures || scene.vtk) && ending.status != RunStatus::interrupted && start.ok()) {
-        draw(scene, directory, quiet);
+        if (start.value().packing.cell.any()) {
+            fmt::print(stderr, "isostat: {}: no figures: of a periodic cell there are none yet\n", arguments.output);
+        } else {
+            draw(scene, directory, quiet);
+        }
     }
     record_work(directory.path() / "work.json");
     return ending.status == RunStatus::completed && !open.empty() ? undecided : exit_status(ending.status);

@@ -1,3 +1,4 @@
+#include "contact/cell_drift.hpp"
 #include "contact/gap_sign.hpp"
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
@@ -88,8 +89,12 @@ template <int Dim> std::optional<Contact> fixed_overlap(const Packing<Dim>& pack
 }
 
 template <int Dim> bool CandidateList<Dim>::covers(const Packing<Dim>& packing, double radius) const {
-    if (reference.size() != packing.q.size() || packing.cell.any()) { // displacements grow with the cell: not yet
+    if (reference.size() != packing.q.size()) {
         return false;
+    }
+    if (packing.cell.any()) {
+        const CellDrift drift = cell_drift(*this, packing);
+        return drift.used + drift.rate * radius < 0.5 * reach * (1 - 1e-14);
     }
     // 1e-14 covers the rounding of the differences and of the norm; a NaN gives false.
     const double limit = (0.5 * reach - radius) * (1 - 1e-14);

@@ -12,6 +12,7 @@ const char* to_string(FailureKind kind) {
     case FailureKind::tie: return "tie";
     case FailureKind::undecided: return "undecided";
     case FailureKind::no_limit: return "no limit";
+    case FailureKind::flows: return "flows";
     case FailureKind::unbounded: return "unbounded";
     case FailureKind::not_converged: return "not converged";
     case FailureKind::cap_reached: return "cap reached";

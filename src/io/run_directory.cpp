@@ -168,7 +168,7 @@ void RunDirectory::open_for_resume(bool begun) {
     point.made = file.at("made").integer(0, most);
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
-    StateFile<2> state = parse_state<2>(file.at("state").value().dump(), path);
+    StateFile<2> state = parse_any_state<2>(file.at("state").value().dump(), path);
     point.state = state.state;
     for (std::size_t a = 0; a < 2; ++a) {
         last_strain_.push_back(file.at("strain").at(a).number());
@@ -195,7 +195,7 @@ std::optional<State<2>> RunDirectory::start() const {
     if (!resumed_ || !fs::exists(path)) { // a file of that name in a new folder is not ours
         return std::nullopt;
     }
-    return read_state<2>(path).state;
+    return read_any_state<2>(path).state;
 }
 
 void RunDirectory::keep_digest(const std::string& name) {
@@ -208,7 +208,7 @@ void RunDirectory::store_start(const State<2>& state) {
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {
-    return read_state<2>(state_path(directory_, equilibrium)).state;
+    return read_any_state<2>(state_path(directory_, equilibrium)).state;
 }
 
 void RunDirectory::begin_segment(int number, const Segment& goal, int made, int from) {

@@ -299,7 +299,7 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
 namespace {
 
 template <int Dim> StateFile<Dim> of_box(StateFile<Dim> file, const std::string& source) {
-    require_box(file.state.packing, source, "inspect, plateau, certify and verify take it, this command");
+    require_box(file.state.packing, source, "run, inspect, plateau, certify and verify take it, this command");
     return file;
 }
 

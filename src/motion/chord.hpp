@@ -26,6 +26,7 @@ template <int Dim> class Chord {
 
     /// All of them, that in the slot included.
     [[nodiscard]] const std::vector<Contact>& contacts() const { return structure().contacts(); }
+    [[nodiscard]] const DofMap<Dim>& dofs() const { return structure().dofs(); }
     [[nodiscard]] std::size_t slot() const { return slot_; }
     [[nodiscard]] bool is_fresh() const { return factorisation().is_fresh(); }
     /// Velocity with unit approach in the slot and none in the kept contacts, where the matrix was made.

@@ -1,5 +1,6 @@
 #include "motion/event_scan.hpp"
 
+#include "contact/cell_drift.hpp"
 #include "contact/contact_set.hpp"
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
@@ -69,6 +70,13 @@ struct Cubic {
     }
 };
 
+/// How much faster than that of two disks a separation can change when no coordinate is faster than 1: the image of a
+/// disk moves with the cell too.
+double image_weight(const Contact& contact) {
+    const auto& m = contact.image.m;
+    return contact.image.is_here() ? 1.0 : 1 + 0.5 * (std::abs(m[0]) + std::abs(m[1]) + std::abs(m[2]));
+}
+
 bool listed(const std::vector<Contact>& list, const Contact& c) {
     return std::find(list.begin(), list.end(), c) != list.end();
 }
@@ -78,6 +86,9 @@ bool listed(const std::vector<Contact>& list, const Contact& c) {
 template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at) {
     if (candidates.reference.size() != at.q.size()) {
         return -1;
+    }
+    if (at.cell.any()) {
+        return 0.5 * candidates.reach - cell_drift(candidates, at).used;
     }
     const double unit = 1 / candidates.reach; // squares neither under- nor overflow, whatever the units are
     double moved = 0;
@@ -90,6 +101,17 @@ template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const
         moved = std::max(moved, square);
     }
     return candidates.reach * (0.5 - std::sqrt(moved));
+}
+
+template <int Dim> double longest_step(const CandidateList<Dim>& candidates, const Packing<Dim>& at) {
+    const double reach = reach_left(candidates, at);
+    // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
+    const double root_dim = std::sqrt(static_cast<double>(Dim));
+    if (!at.cell.any()) {
+        return 0.9 * reach / (1.3 * root_dim);
+    }
+    const double in_cell = std::sqrt(static_cast<double>(Dim + Cell<Dim>::tilts)); // its coordinates
+    return 0.9 * reach / (1.3 * in_cell * cell_drift(candidates, at).rate);
 }
 
 template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at) {
@@ -114,7 +136,7 @@ template <int Dim> void EventScan<Dim>::list(const Packing<Dim>& at, const std::
     if (renew_candidates(candidates_, at)) {
         active_.clear();
     }
-    reach_ = reach_left(candidates_, at);
+    longest_ = isostat::longest_step(candidates_, at);
     if (active_.empty()) {
         const ContactSet contacts(kept, at.disk_count());
         active_.reserve(candidates_.contacts.size());
@@ -140,13 +162,14 @@ template <int Dim> GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& 
     // gap is larger than this.
     const double root_dim = std::sqrt(static_cast<double>(Dim));
     const double bend = 1.01 * (2 * root_dim * largest(course.curvature) + 2 * Dim / course.at.min_radius());
-    const double curved = 0.5 * bend * longest * longest;
+    const double of_disks = 0.5 * bend * longest * longest;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         const bool opening = at_start && leaves(active_[c]);
         if (const auto line = centre_line(course.at, active_[c]); line && !opening) {
             gap_[c] = gap_of(course.at, active_[c], *line);
             rate_[c] = rate_of(*line, active_[c], course.tangent);
-            if (gap_[c] + std::min(1.01 * rate_[c], 0.0) * longest > curved) {
+            const double weight = image_weight(active_[c]);
+            if (gap_[c] + std::min(1.01 * rate_[c], 0.0) * longest > of_disks * weight * weight) {
                 continue;
             }
         }
@@ -176,7 +199,7 @@ template <int Dim> std::optional<GapEvent> EventScan<Dim>::first_violation(const
     // A gap changes by no more than its grains, or a grain and a wall, move.
     const double within = 2.01 * std::sqrt(static_cast<double>(Dim)) * moved;
     for (std::size_t c = 0; c < active_.size(); ++c) {
-        if (gap_[c] > within || active_[c] == step.closing) {
+        if (gap_[c] > within * image_weight(active_[c]) || active_[c] == step.closing) {
             continue;
         }
         const double h = quick_gap(step.to, active_[c]);

@@ -22,6 +22,9 @@ struct GapEvent {
 /// Displacement from `at` that the candidates still allow; negative when they are of other grains.
 template <int Dim> double reach_left(const CandidateList<Dim>& candidates, const Packing<Dim>& at);
 
+/// Step of the fastest coordinate that they allow from there: no coordinate is faster.
+template <int Dim> double longest_step(const CandidateList<Dim>& candidates, const Packing<Dim>& at);
+
 /// The candidates that take part in one arc, with their gaps and rates where the present step begins. All it says is a
 /// guess: gaps are rounded, and between the ends of a step it knows a cubic.
 template <int Dim> class EventScan {
@@ -32,8 +35,8 @@ template <int Dim> class EventScan {
 
     /// Sees to it that the list is complete about `at`; `kept` are the contacts that are not to be looked at.
     void list(const Packing<Dim>& at, const std::vector<Contact>& kept);
-    /// Displacement that the candidates allow from there.
-    [[nodiscard]] double reach() const { return reach_; }
+    /// Step of the fastest coordinate that the candidates allow from there.
+    [[nodiscard]] double longest_step() const { return longest_; }
 
     /// The first gap that the course brings to 0 within `longest`; from here on the step begins there. At the start of
     /// the arc those that leave are 0.
@@ -66,7 +69,7 @@ template <int Dim> class EventScan {
     CandidateList<Dim>& candidates_;
     std::vector<Contact> active_;
     std::vector<double> gap_, rate_; ///< of the active ones where the step begins
-    double reach_ = 0;
+    double longest_ = 0;
 };
 
 extern template class EventScan<2>;

@@ -99,9 +99,8 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
         here_power_ = power_(here_.at, here_.tangent);
     }
     ++steps_;
-    // Displacements are at most sqrt(Dim) s, and the corrector adds a little.
-    const double listed = 0.9 * scan_.reach() / (1.3 * std::sqrt(static_cast<double>(Dim)));
-    Attempt attempt = reach(std::min({step_limit_ * pace_.shrink, listed, pace_.for_dip, pace_.for_power}));
+    Attempt attempt =
+        reach(std::min({step_limit_ * pace_.shrink, scan_.longest_step(), pace_.for_dip, pace_.for_power}));
     if (!attempt.ok()) {
         return attempt.failure();
     }
@@ -335,6 +334,12 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
                           start_.length(a), here_.at.length(a));
         }
     }
+    for (std::size_t k = start_.length_at(Dim); k < start_.q.size(); ++k) { // tilts
+        if (std::abs(here_.at.q[k] - start_.q[k]) > options_.max_length_change * start_.length(0)) {
+            return failed(FailureKind::flows, "the motion has no end: the tilt went from {} to {}", start_.q[k],
+                          here_.at.q[k]);
+        }
+    }
     return std::nullopt;
 }
 
@@ -370,6 +375,12 @@ Arc<Dim> Follower<Dim>::finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& 
         if (contact.kind == ContactKind::held && contact != opened_ && l != chord_.slot()) {
             const auto k = static_cast<std::size_t>(contact.i);
             end.at.q[k] = start_.q[k]; // held means held, rounding apart
+        }
+    }
+    for (std::size_t k = start_.length_at(0); start_.cell.any() && k < end.at.q.size(); ++k) {
+        if (chord_.dofs().dof_of(k) < 0) {
+            end.at.q[k] =
+                start_.q[k]; // what does not move of a cell is not rounded: the vertex says if it is off the grid
         }
     }
     for (std::size_t k = 0; k < end.at.q.size(); ++k) {

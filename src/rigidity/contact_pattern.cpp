@@ -58,6 +58,63 @@ bool is_displaced(const Contact& contact, int axis) {
     return std::any_of(contact.image.m.begin() + axis, contact.image.m.end(), [](std::int8_t m) { return m != 0; });
 }
 
+/// The disk with the most contacts, the first of them. Where coordinates of disks are held: -1.
+int most_held(int disks, int dim, const std::vector<Contact>& contacts) {
+    std::vector<int> count(static_cast<std::size_t>(disks), 0);
+    for (const Contact& c : contacts) {
+        if (c.kind == ContactKind::held) {
+            if (c.i < dim * disks) {
+                return -1;
+            }
+            continue;
+        }
+        ++count[static_cast<std::size_t>(c.i)];
+        if (c.kind == ContactKind::disk_disk) {
+            ++count[static_cast<std::size_t>(c.j)];
+        }
+    }
+    return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+}
+
+/// Which row stands for a coordinate when another disk is pinned than the one of `dofs`: forces of finite loads are
+/// the same (proofs/cells.md, C1), and where a rattler is pinned no pattern tells that the rest does not press on it.
+template <int Dim> class Repinned {
+  public:
+    Repinned(const Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts)
+        : packing_(packing), dofs_(dofs) {
+        for (int i = 0; i < packing.disk_count() && packing.cell.any() && was_ < 0; ++i) {
+            was_ = is_pinned(i) ? i : -1;
+        }
+        is_ = was_ < 0 ? -1 : most_held(packing.disk_count(), Dim, contacts);
+    }
+    [[nodiscard]] bool changes() const { return is_ >= 0 && is_ != was_; }
+    /// -1: no row.
+    [[nodiscard]] int row(std::size_t coordinate) const {
+        const int disk = static_cast<int>(coordinate) / Dim;
+        const std::size_t axis = coordinate % Dim;
+        if (!changes() || disk >= packing_.disk_count() || !packing_.cell.periodic[axis]) {
+            return dofs_.dof_of(coordinate);
+        }
+        return disk == is_    ? -1
+               : disk == was_ ? dofs_.dof_of(static_cast<std::size_t>(Dim * is_) + axis)
+                              : dofs_.dof_of(coordinate);
+    }
+
+  private:
+    [[nodiscard]] bool is_pinned(int disk) const {
+        for (std::size_t a = 0; a < Dim; ++a) {
+            if (packing_.cell.periodic[a] && dofs_.dof_of(static_cast<std::size_t>(Dim * disk) + a) < 0) {
+                return true;
+            }
+        }
+        return false;
+    }
+    const Packing<Dim>& packing_;
+    const DofMap<Dim>& dofs_;
+    int was_ = -1;
+    int is_ = -1;
+};
+
 } // namespace
 
 template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const Contact& contact) {
@@ -76,40 +133,53 @@ ContactPattern::ContactPattern(const Packing<Dim>& packing, const DofMap<Dim>& d
                                const std::vector<int>& matching, bool perturbed)
     : start_(&matrix.start), row_(&matrix.row), matched_(&matching) {
     const std::vector<int> level = perturbed ? std::vector<int>() : shared_levels(packing, contacts);
-    if (level.empty()) {
+    const Repinned<Dim> pinned(packing, dofs, contacts);
+    if (level.empty() && !pinned.changes()) {
         return;
     }
     Parts parts;
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const Contact& contact = contacts[l];
-        for (int e = matrix.start[l]; e < matrix.start[l + 1]; ++e) {
-            const int mu = matrix.row[static_cast<std::size_t>(e)];
-            const int axis = dofs.coordinate_of(mu) % Dim; // of a tilt: 0, what it moves along (Dim = 2)
-            const auto of = [&](int disk) { return level[static_cast<std::size_t>(Dim * disk + axis)]; };
-            if (contact.kind != ContactKind::disk_disk || of(contact.i) == 0 || of(contact.i) != of(contact.j) ||
-                is_displaced(contact, axis)) {
-                parts.row.push_back(mu);
-            }
-        }
+    for (const Contact& contact : contacts) {
+        const auto of = [&](int disk, int axis) { return level[static_cast<std::size_t>(Dim * disk + axis)]; };
+        const auto vanishes = [&](int axis) { // of a tilt: 0, what it moves along (Dim = 2)
+            return contact.kind == ContactKind::disk_disk && !level.empty() && of(contact.i, axis) != 0 &&
+                   of(contact.i, axis) == of(contact.j, axis) && !is_displaced(contact, axis);
+        };
+        Separation<Dim>(contact, packing.disk_count())
+            .for_each_coordinate([&](std::size_t coordinate, std::size_t, int) {
+                const int mu = pinned.row(coordinate);
+                if (mu >= 0 && !vanishes(static_cast<int>(coordinate) % Dim)) {
+                    parts.row.push_back(mu);
+                }
+            });
         parts.start.push_back(static_cast<int>(parts.row.size()));
     }
-    if (parts.row.size() < matrix.row.size()) {
+    if (pinned.changes() || parts.row.size() < matrix.row.size()) {
         parts.matched = sparse::perfect_matching(matrix.rows, parts.start, parts.row);
         if (!parts.matched.empty()) { // else no vertex with these contacts is regular, and nothing will be said of one
             own_ = std::move(parts);
+            for (int mu = 0; pinned.changes() && mu < matrix.rows; ++mu) {
+                rows_of_disks_ += dofs.coordinate_of(mu) < Dim * packing.disk_count() ? 1 : 0;
+            }
         }
     }
 }
 
+ContactPattern::View ContactPattern::for_load(std::span<const int> rows) const {
+    const bool on_disks = std::any_of(rows.begin(), rows.end(), [this](int row) { return row < rows_of_disks_; });
+    return own_ && !on_disks ? View{own_->start, own_->row, own_->matched} : View{*start_, *row_, *matched_};
+}
+
 std::vector<unsigned char> ContactPattern::carrying(std::span<const int> rows) const {
-    return sparse::structural_nonzeros(start(), row(), matched(), rows);
+    const View pattern = for_load(rows);
+    return sparse::structural_nonzeros(pattern.start, pattern.row, pattern.matched, rows);
 }
 
 std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, int row_of_load,
                                                             std::span<const int> other_rows) const {
-    const std::span<const int> all_start = start();
-    const std::span<const int> all_row = row();
-    const std::size_t size = matched().size();
+    const View pattern = for_load(other_rows); // `row_of_load` is of a wall, or of the cell
+    const std::span<const int> all_start = pattern.start;
+    const std::span<const int> all_row = pattern.row;
+    const std::size_t size = pattern.matched.size();
     std::vector<int> replaced_start{0};
     std::vector<int> replaced_row;
     for (std::size_t l = 0; l < size; ++l) {
@@ -121,7 +191,7 @@ std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, int
         replaced_start.push_back(static_cast<int>(replaced_row.size()));
     }
     const std::vector<int> repaired =
-        sparse::repaired_matching(matched(), replaced_start, replaced_row, static_cast<int>(opens.index()));
+        sparse::repaired_matching(pattern.matched, replaced_start, replaced_row, static_cast<int>(opens.index()));
     return repaired.empty() ? std::vector<unsigned char>(size, 1)
                             : sparse::structural_nonzeros(replaced_start, replaced_row, repaired, other_rows);
 }

@@ -19,7 +19,8 @@ template <int Dim> std::vector<int> touched_rows(const DofMap<Dim>& dofs, const 
 /// The pattern of the contact matrix at the true vertex: the entries that the contacts can have by their indices (those
 /// of `contact_matrix`, a stored 0 among them), without those that are 0 at every true vertex: components along an axis
 /// where walls, holds or being fixed keep both disks at one coordinate. What vanishes by this pattern (T11) vanishes
-/// for the true vertex, whatever the stored numbers are. Refers to the structure while no entry is left out.
+/// for the true vertex, whatever the stored numbers are. In a cell the disk with the most contacts counts as pinned,
+/// whichever is, as long as no disk carries a finite load. Refers to the structure while no entry is left out.
 class ContactPattern {
   public:
     /// `perturbed`: the radii are R_i + eps rho_i; then equal ones are not equal, and nothing is left out.
@@ -49,9 +50,15 @@ class ContactPattern {
     const std::vector<int>* start_;
     const std::vector<int>* row_;
     const std::vector<int>* matched_;
-    [[nodiscard]] std::span<const int> start() const { return own_ ? own_->start : *start_; }
-    [[nodiscard]] std::span<const int> row() const { return own_ ? own_->row : *row_; }
-    [[nodiscard]] const std::vector<int>& matched() const { return own_ ? own_->matched : *matched_; }
+    int rows_of_disks_ = 0; ///< where another disk is pinned than the structure says; else 0
+
+    struct View {
+        std::span<const int> start;
+        std::span<const int> row;
+        const std::vector<int>& matched;
+    };
+    /// For a load on these rows.
+    [[nodiscard]] View for_load(std::span<const int> rows) const;
 };
 
 extern template std::vector<int> touched_rows<2>(const DofMap<2>&, const Contact&);

@@ -55,6 +55,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
     }
     if (scene.infinitesimal_seed) {
         state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, *scene.infinitesimal_seed);
+        balance(state.load.infinitesimal, state.packing.cell);
     }
     state.equilibrium = 0;
     state.perturbation.reset(); // a run has its own
@@ -64,6 +65,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
                                                           source, a, state.load.stress[a]));
         }
     }
+    require_followed(state, scene.run, source);
     check_start(state, source, scene.run.ties != TiePolicy::stop);
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
     check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
@@ -76,7 +78,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
 }
 
 State<2> start_from_file(const Scene& scene) {
-    return start_of_scene(read_state<2>(scene.start).state, scene, scene.start.string());
+    return start_of_scene(read_any_state<2>(scene.start).state, scene, scene.start.string());
 }
 
 std::string provenance_of(const Scene& scene, const std::string& program, const std::string& command,

@@ -163,6 +163,7 @@ void judge_forces(MechanismInspection<Dim>& inspection, Vertex<Dim>& vertex, con
 template <int Dim>
 Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting) {
     require_floating_point();
+    require_box(state.packing, "state", "what a mechanism does");
     MechanismInspection<Dim> inspection;
     inspection.contacts = state.contacts;
     const DofMap<Dim> dofs(state.packing);

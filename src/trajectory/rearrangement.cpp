@@ -13,7 +13,9 @@ namespace isostat {
 template <int Dim>
 Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following)
     : prover_(prover), recorder_(recorder), following_(following), at_(std::move(start.at)),
-      here_(std::move(start.vertex)), opening_(start.opening), kind_(std::move(start.kind)) {}
+      here_(std::move(start.vertex)), opening_(start.opening), kind_(std::move(start.kind)),
+      tilts_at_start_(here_->packing.q.begin() + static_cast<std::ptrdiff_t>(here_->packing.length_at(Dim)),
+                      here_->packing.q.end()) {}
 
 template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
     return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
@@ -183,6 +185,9 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
                       "here (cap max_strain = {:.6g})",
                       std::abs(record.strain), at_.stress(), options().max_strain);
     }
+    if (auto failure = flows(proof)) {
+        return failure;
+    }
     if (!proof.next) { // level `plain`
         ended_ = steered_to_.has_value();
         return std::nullopt;
@@ -199,6 +204,25 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
     zeros_ = decision.zeros;
     ended_ = true;
     recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung, decision.perturbed});
+    return std::nullopt;
+}
+
+/// A dead shear force may do work without bound: W has no minimum along the tilt.
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::flows(const ArcProof<Dim>& proof) const {
+    if (!proof.vertex) {
+        return std::nullopt;
+    }
+    const Packing<Dim>& now = proof.vertex->packing;
+    for (std::size_t k = now.length_at(Dim); k < now.q.size(); ++k) {
+        const double shear = (now.q[k] - tilts_at_start_[k - now.length_at(Dim)]) / now.length(Dim - 1);
+        if (std::abs(shear) > options().max_strain) {
+            return failed(FailureKind::flows,
+                          "a shear of {:.6g} after {} arcs at a constant load, sigma = {:.17g}: the tilt went from "
+                          "{:.6g} to {:.6g} without an equilibrium (cap max_strain = {:.6g})",
+                          std::abs(shear), arcs_, at_.stress(), tilts_at_start_[k - now.length_at(Dim)], now.q[k],
+                          options().max_strain);
+        }
+    }
     return std::nullopt;
 }
 

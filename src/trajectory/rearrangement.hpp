@@ -59,6 +59,7 @@ template <int Dim> class Rearrangement {
     static std::optional<ArcProof<Dim>> unproved(ArcProposal<Dim>& arc);
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof<Dim>& proof);
+    [[nodiscard]] std::optional<Failure> flows(const ArcProof<Dim>& proof) const;
     void goes_on_from(std::shared_ptr<Vertex<Dim>> vertex, const Opening& opening);
     std::optional<Failure> answer(std::optional<ArcProof<Dim>>& refused, const std::optional<Failure>& failed,
                                   bool any);
@@ -76,6 +77,7 @@ template <int Dim> class Rearrangement {
     std::shared_ptr<Vertex<Dim>> here_; ///< the last vertex that was proved
     Opening opening_;                   ///< what opens there
     std::string kind_;
+    std::vector<double> tilts_at_start_;
     int arcs_ = 0;
     ContactId last_hold_;            ///< of the power turn at `here_`
     std::vector<ContactId> resting_; ///< holds at `here_` whose multipliers are 0 as far as their turns are located

@@ -2,10 +2,12 @@
 #include "core/roundoff.hpp"
 #include "trajectory/rearrangement.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/core/floating_point.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
+#include <qd/dd_real.h>
 
 #include <array>
 #include <chrono>
@@ -397,9 +399,10 @@ template <int Dim> std::optional<Failure> Run<Dim>::check(const EquilibriumRecor
                       named<Dim>(admissible.worst), admissible.worst_gap);
     }
     const Packing<Dim>& packing = vertex_->packing;
-    const bool box = packing.walls == Walls<Dim>::box() && state_.load.disk_force.empty() && packing.fixed.empty();
+    const bool plain = state_.load.disk_force.empty() && packing.fixed.empty();
+    const bool walled = packing.cell.any() || packing.walls == Walls<Dim>::box(); // nothing is free as a whole
     const int expected = vertex_->structure.dofs().dof_count() - Dim * record.rattlers;
-    if (box && record.held == 0 && record.backbone != expected) {
+    if (plain && walled && record.held == 0 && record.backbone != expected) {
         return failed(FailureKind::undecided,
                       "backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}", record.backbone,
                       record.rattlers, Dim, expected);
@@ -410,9 +413,45 @@ template <int Dim> std::optional<Failure> Run<Dim>::check(const EquilibriumRecor
 } // namespace
 
 template <int Dim>
+void require_followed(const State<Dim>& state, const RunOptions& options, const std::string& source) {
+    const Cell<Dim>& cell = state.packing.cell;
+    if (!cell.any()) {
+        return;
+    }
+    const auto refuse = [&](const std::string& what) {
+        throw Error(ErrorKind::bad_input, source + ": a periodic cell; " + what);
+    };
+    if (options.ties != TiePolicy::stop) {
+        refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
+    }
+    if (options.certify > CertifyLevel::decisions) {
+        refuse("certify = \"states\" and \"arcs\" are for boxes only so far: expected \"decisions\" or \"plain\"");
+    }
+    if (state.load.kind != LoadKind::nominal) {
+        refuse("true stresses are for boxes only so far: expected dead loads, kind = \"nominal\"");
+    }
+    if (!state.load.disk_force.empty()) {
+        refuse("forces on disks are for boxes only so far in a run: expected none");
+    }
+    for (std::size_t a = 0; a < Dim; ++a) {
+        dd_real sum = 0.0;
+        for (std::size_t k = a; k < state.load.infinitesimal.size() && cell.periodic[a]; k += Dim) {
+            sum += state.load.infinitesimal[k];
+        }
+        if (!(sum == 0.0)) {
+            refuse(
+                fmt::format("the infinitesimal loads along axis {} sum to {}: expected 0 exactly, or the pinned disk "
+                            "would bear the rest",
+                            a, to_double(sum)));
+        }
+    }
+}
+
+template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer) {
     require_floating_point();
+    require_followed(state, options, "state");
     const double stress = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
     if (segment.to_stress && segment.direction * (*segment.to_stress - stress) < 0) {
         return {false, failed(FailureKind::no_limit,
@@ -423,6 +462,7 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
     return Run<Dim>(state, segment, segment_number, {options, counters, observer}).run();
 }
 
+template void require_followed<2>(const State<2>&, const RunOptions&, const std::string&);
 template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
                                        RunObserver<2>&);
 

@@ -29,7 +29,40 @@ Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInvers
       statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near, std::move(forces)),
       ladder(options) {}
 
+namespace {
+
+/// An offset of more than `most` periods along some axis.
+bool is_beyond(const Contact& pair, int most) {
+    return std::any_of(pair.image.m.begin(), pair.image.m.end(), [most](int m) { return std::abs(m) > most; });
+}
+
+/// Bounds of a vertex ask for exact differences (proofs/cells.md, C2), and for entries of the contact matrix that are
+/// multiples by a power of two.
+template <int Dim>
+std::optional<Failure> is_not_exact(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
+    constexpr int farthest = 2;
+    const auto far =
+        std::find_if(contacts.begin(), contacts.end(), [](const Contact& c) { return is_beyond(c, farthest); });
+    if (far != contacts.end()) {
+        return failed(FailureKind::undecided,
+                      "the contact {} is more than {} periods away: write the state with its disks put into the cell",
+                      named<Dim>(*far), farthest);
+    }
+    if (!is_on_grid(packing)) {
+        return failed(FailureKind::undecided, "a part of the cell that does not move is not on the grid of the "
+                                              "packing, which became coarser as the cell grew: no bound holds");
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
 template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
+    if (packing.cell.any()) {
+        if (auto failure = is_not_exact(packing, structure.contacts())) {
+            return failure;
+        }
+    }
     if (inverse.verdict != Verdict::proved) {
         return Failure{FailureKind::undecided, "no bound of the inverse of the contact matrix was proved: no sign "
                                                "of a force can be decided"};
@@ -49,7 +82,6 @@ template <int Dim> std::optional<Failure> Vertex<Dim>::lacking() {
 
 template <int Dim>
 Result<typename Vertex<Dim>::Beginning> Vertex<Dim>::begin(Packing<Dim> packing, std::vector<Contact> contacts) {
-    require_box(packing, "a vertex of a trajectory", "a run");
     auto rank = RankProof<Dim>::begin(packing, std::move(contacts));
     if (!rank.ok()) {
         return rank.failure();
@@ -148,6 +180,15 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
                                                            const ZeroGaps* known) {
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
+    }
+    constexpr int farthest = 3; // C2
+    const auto far = packing.cell.any() ? std::find_if(candidates.contacts.begin(), candidates.contacts.end(),
+                                                       [](const Contact& c) { return is_beyond(c, farthest); })
+                                        : candidates.contacts.end();
+    if (far != candidates.contacts.end()) {
+        return failed(FailureKind::undecided,
+                      "{} may touch, more than {} periods away: write the state with its disks put into the cell",
+                      named<Dim>(*far), farthest);
     }
     const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;

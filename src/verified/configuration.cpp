@@ -92,20 +92,20 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
 
 template <int Dim>
 Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact) {
-    using roundoff::root2;
     if (contact.kind == ContactKind::held) {
         return {0, 0};
     }
+    const double weight = separation_weight(contact);
     const double d = target(packing, contact);
     if (vertex.correction.empty()) {
         const double h = gap(packing, contact);
-        return {h, (root2 * vertex.radius + 8 * u * (std::abs(h) + d)) * (1 + 4 * u)};
+        return {h, (weight * vertex.radius + 8 * u * (std::abs(h) + d)) * (1 + 4 * u)};
     }
     using A = Arithmetic<dd_real>;
     const CorrectedConfiguration<Dim, dd_real, std::span<const double>> at(A(), packing, vertex.correction);
     const double value = A::rounded(at.gap(contact));
     return {value,
-            (root2 * vertex.radius + 16 * A::unit() * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
+            (weight * vertex.radius + 16 * A::unit() * (std::abs(value) + d) + 2 * u * std::abs(value)) * (1 + 4 * u)};
 }
 
 namespace {
@@ -113,10 +113,9 @@ namespace {
 /// Gap at an enclosed vertex.
 template <int Dim> PreciseInterval gap_at(const EnclosedVertex<Dim, Real>& vertex, const Contact& contact) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
-    using roundoff::root2;
     const Real h = vertex.at().gap(contact);
-    const UpperBound radius =
-        16 * a.unit() * (a.size(h) + target(vertex.at().packing(), contact)) + root2 * vertex.radius();
+    const UpperBound radius = 16 * a.unit() * (a.size(h) + target(vertex.at().packing(), contact)) +
+                              separation_weight(contact) * vertex.radius();
     return {h, radius.real(), a.bits()};
 }
 

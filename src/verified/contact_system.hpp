@@ -122,9 +122,7 @@ auto ContactSystem<Dim, T>::turned(const std::vector<T>& x, bool transposed) con
         for (std::size_t l = 0; l < x.size(); ++l) {
             const Contact& contact = structure_.contacts()[l];
             if (contact.kind == ContactKind::disk_disk) {
-                const double part = above(a.about(x[l])) / target(packing_, contact);
-                const double w = cell_weight(contact);
-                sum.add(contact, part * (2 + w), part * w * (contact.i == contact.j ? w : 2 + w));
+                sum.add_turn(contact, above(a.about(x[l])) / target(packing_, contact));
             }
         }
         return Bound(sum.largest()) * radius_ * sum_slack;

@@ -5,7 +5,6 @@
 #include "core/roundoff.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -67,6 +66,11 @@ class HeaviestSum {
             at_disk_[static_cast<std::size_t>(contact.j)] += to_disks;
         }
         cell_ += to_cell;
+    }
+    /// Of the turn of forces (C5), `part` = |f_l| / D_l.
+    void add_turn(const Contact& contact, double part) {
+        const double w = cell_weight(contact);
+        add(contact, part * (2 + w), part * w * (contact.i == contact.j ? w : 2 + w));
     }
     /// Roundings of up to 10^6 terms included.
     [[nodiscard]] double largest() const {
@@ -130,10 +134,19 @@ template <int Dim> double normal_rate(const Packing<Dim>& packing, const std::ve
 }
 
 /// |(H(q) - H(q')) x|_2 <= turn_of_forces |q - q'| for the same normals as in `normal_rate`: 2 max_i sum_{l at i} |x_l|
-/// / D_l as in V6, which is smaller than normal_rate |x|_2 by about the square root of the number of contacts.
+/// / D_l as in V6, in a cell the sums of C5; which is smaller than normal_rate |x|_2 by about the square root of the
+/// number of contacts.
 template <int Dim>
 double turn_of_forces(const Packing<Dim>& packing, const std::vector<Contact>& contacts, const std::vector<double>& x) {
-    assert(!packing.cell.any()); // of trajectories, which take boxes
+    if (packing.cell.any()) {
+        HeaviestSum heaviest(packing.radius.size());
+        for (std::size_t l = 0; l < contacts.size(); ++l) {
+            if (contacts[l].kind == ContactKind::disk_disk) {
+                heaviest.add_turn(contacts[l], std::abs(x[l]) / target(packing, contacts[l]));
+            }
+        }
+        return 1.03 * heaviest.largest();
+    }
     std::vector<double> sum(packing.radius.size(), 0.0);
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& contact = contacts[l];

@@ -73,6 +73,13 @@ Alteration scaled(const std::string& events, int line, const std::string& name, 
     return {"events.jsonl", line, "\"" + name + "\":" + old, "\"" + name + "\":" + changed.str(), ""};
 }
 
+State<2> of_cell(const std::string& name, int pin) {
+    State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+    state.packing.cell.pin = pin;
+    snap_to_grid(state.packing);
+    return state;
+}
+
 /// The answer of one thread, and of more.
 void same_with_threads(const std::filesystem::path& folder, const RunVerification& one) {
     set_threads(3);
@@ -392,6 +399,68 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
                                "proved"}) {
         // The first row is checked before any arc; it has no equilibrium before it.
         finds(folder / "run", in_row(csv, column == std::string("previous") ? 4 : 2, column, "9"));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed) {
+    Segment up;
+    up.equilibria = 3;
+    for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
+        for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
+            BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
+                const scratch::Folder folder;
+                play_and_store(of_cell(name, pin), {up}, folder / "run");
+                const RunVerification run = verify_run(folder / "run");
+                BOOST_TEST(run.wrong == "");
+                BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+                BOOST_TEST(words(run) == "ends proved, way looked at");
+                BOOST_TEST(run.arcs_proved == run.arcs);
+                BOOST_TEST(run.equilibria_proved == 4);
+                same_with_threads(folder / "run", run);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
+    const scratch::Folder folder;
+    const std::filesystem::path run = folder / "run";
+    Segment up;
+    up.equilibria = 2;
+    play_and_store(of_cell("tilt_16", 0), {up}, run);
+    const std::string events = scratch::read(run / "events.jsonl");
+    const std::string csv = scratch::read(run / "equilibria.csv");
+    for (const auto& [name, said] :
+         std::vector<std::pair<std::string, std::string>>{{"eps2", "eps2"}, {"work", "work"}, {"power", "power"}}) {
+        Alteration alteration = scaled(events, 5, name, 1 + 1e-6);
+        alteration.said = said;
+        finds(run, alteration);
+    }
+    finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-8", "no contact of the structure"});
+    finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-8(1,0,0)", "no contact of the structure"});
+    finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-5(1,0)", ""}); // a contact, but another one
+    finds(run, {"events.jsonl", 4, "8-10(-1,0)", "3-5(1,0)", "closed already"});
+    for (const auto& [column, value] : std::vector<std::pair<std::string, std::string>>{
+             {"L1", "10.2"}, {"potential", "9"}, {"opens_high_j", "4"}, {"min_gap_i", "2"}, {"backbone", "28"}}) {
+        finds(run, in_row(csv, 3, column, value));
+    }
+    // Another stored state: the tilt, an image, the pinned disk.
+    const std::filesystem::path stored = run / "states/eq_000001.json";
+    const State<2> state = read_any_state<2>(stored).state;
+    for (const int what : {0, 1, 2}) {
+        State<2> altered = state;
+        if (what == 0) {
+            altered.packing.q[altered.packing.tilt_at(0, 1)] += 1e-7;
+        } else if (what == 1) {
+            altered.contacts[0].image.m[1] = 1;
+        } else {
+            altered.packing.cell.pin = 1;
+        }
+        write_state(stored, altered);
+        forger::seal(run);
+        const RunVerification found = verify_run(run);
+        BOOST_TEST((found.verdict == Verdict::refuted));
+        BOOST_TEST((found.wrong.find("eq_000001") != std::string::npos), found.wrong);
     }
 }
 

@@ -1,6 +1,7 @@
-// isostat inspect and isostat plateau of periodic cells, and every other command that refuses them.
+// isostat inspect, plateau, certify, run and verify of periodic cells, and every other command that refuses them.
 
 #include "cli/program.hpp"
+#include "support/cells.hpp"
 
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
@@ -96,6 +97,41 @@ BOOST_AUTO_TEST_CASE(certificates_of_a_cell_verify_and_forged_ones_do_not) {
     certificate.state.contacts[0].image.m[0] = 1;
     isostat::write_certificate(made, certificate);
     BOOST_TEST(run({"verify", made}).status != 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "cell.toml").string();
+    const auto programme = [](int equilibria) {
+        return fmt::format("[[programme]]\ndo = \"up\"\nequilibria = {}\n", equilibria);
+    };
+    const std::string packing = fmt::format("[packing]\nfile = \"{}\"\n", scratch::data("cells/tilt_16.json"));
+    scratch::write(scene, packing + programme(2));
+    const std::string out = (folder / "out").string();
+    expect(run({"run", scene, "-o", out}), 0);
+    const auto verified = run({"verify", out});
+    expect(verified, 0);
+    BOOST_TEST(contains(verified.out, "ends proved, way looked at"), verified.out);
+    BOOST_TEST(contains(scratch::read(folder / "out" / "events.jsonl"), "\"opened\":\"3-8(1,0)\""));
+    const auto state = isostat::read_any_state<2>(folder / "out" / "states" / "last.json").state;
+    BOOST_TEST(std::abs(state.packing.lattice(0, 1) - -0.9095404261907584) < 1e-9);
+
+    scratch::write(scene, packing + "[run]\ncertify = \"arcs\"\n" + programme(2));
+    const auto refused = run({"run", scene, "-o", (folder / "arcs").string()});
+    BOOST_TEST(refused.status == 65);
+    BOOST_TEST(contains(refused.err, "expected \"decisions\" or \"plain\""), refused.err);
+}
+
+BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
+    const scratch::Folder folder;
+    isostat::State<2> state = cells::one_tilted_disk(1, 1, 0.5);
+    state.load.reference_length = {2, std::sqrt(3.0)};
+    isostat::write_state(folder / "disk.json", state);
+    const std::string scene = (folder / "flow.toml").string();
+    scratch::write(scene, "[packing]\nfile = \"disk.json\"\n[[programme]]\ndo = \"down\"\nequilibria = 3\n");
+    const auto flowing = run({"run", scene, "-o", (folder / "out").string()});
+    BOOST_TEST(flowing.status != 0);
+    BOOST_TEST(contains(scratch::read(folder / "out" / "run.json"), "flows: a shear of 1.1547"));
 }
 
 BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {

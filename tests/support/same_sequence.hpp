@@ -114,7 +114,7 @@ inline Disguised mirrored(const State<2>& start) {
 /// x and y exchanged.
 inline Disguised exchanged(const State<2>& start) {
     State<2> state = start;
-    for (std::size_t k = 0; k < state.packing.q.size(); k += 2) {
+    for (std::size_t k = 0; k < state.packing.length_at(2); k += 2) {
         std::swap(state.packing.q[k], state.packing.q[k + 1]);
     }
     for (std::size_t k = 0; k < state.load.infinitesimal.size(); k += 2) {

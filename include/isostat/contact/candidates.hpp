@@ -29,8 +29,8 @@ template <int Dim> struct CandidateList {
     /// True when the list is still complete at `packing`: 2 max_i |x_i - x_i^ref| < reach, (Lx, Ly) counted as one
     /// more point, roundings included. One-sided: false only means that the list must be rebuilt (also for NaN, or
     /// another number of disks). Cost O(n).
-    /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`. Always false in a
-    /// cell.
+    /// With `radius` > 0: complete in every configuration within that distance (2-norm) of `packing`. In a cell
+    /// displacements are those from the affine motion of the cell (proofs/cells.md, C8).
     [[nodiscard]] bool covers(const Packing<Dim>& packing, double radius = 0) const;
 };
 

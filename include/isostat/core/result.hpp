@@ -19,6 +19,7 @@ enum class FailureKind {
     tie,           ///< two candidates could not be ordered: several contacts at once
     undecided,     ///< a sign could not be decided with the arithmetic allowed
     no_limit,      ///< the load can grow for ever: nothing opens
+    flows,         ///< a dead shear force moves the tilt of a cell on and on
     unbounded,     ///< a motion finds no new contact, or a linear programme is unbounded
     not_converged, ///< an iteration stopped short
     cap_reached,   ///< a cap on arcs or strain: the sample fails at this load

@@ -71,6 +71,11 @@ struct SegmentOutcome {
     std::optional<Failure> failure; ///< otherwise: why not; the state is the last equilibrium
 };
 
+/// Throws `Error(bad_input)` when a run does not follow this state so far: in a periodic cell other tie policies than
+/// `stop`, levels above `decisions`, true stresses, forces on disks; and, whatever is followed, infinitesimal loads
+/// that do not sum to 0 along a periodic axis. `source` starts the message. `run_segment` asks it too.
+template <int Dim> void require_followed(const State<Dim>& state, const RunOptions& options, const std::string& source);
+
 /// Runs one segment from `state`, which must be a vertex with N_f contacts.
 /// \post `state` is the last equilibrium reached (also after a failure), with its stress set; `counters` advanced.
 /// The observer gets every arc and every equilibrium. If `counters.equilibria == 0 && counters.steps == 0` the start is
@@ -100,6 +105,7 @@ template <int Dim> struct MechanismInspection {
 template <int Dim>
 Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting);
 
+extern template void require_followed<2>(const State<2>&, const RunOptions&, const std::string&);
 extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
                                               RunObserver<2>&);
 extern template Result<MechanismInspection<2>> inspect_mechanism<2>(const State<2>&, const Counting&);

@@ -1,0 +1,20 @@
+#pragma once
+// How far a list of candidates has come from where it was found, in a periodic cell: private to the library.
+
+#include <isostat/contact/candidates.hpp>
+
+namespace isostat {
+
+/// The affine part of the motion is taken out, and what all grains share along periodic axes (proofs/cells.md, C8).
+struct CellDrift {
+    /// The list is complete while this is below half its reach. Infinity: it is of other grains.
+    double used = 0;
+    /// What `used` grows by at most, per length that bounds the displacement of every grain and wall and the change of
+    /// the cell (Frobenius norm).
+    double rate = 1;
+};
+
+/// \pre there are periodic axes. Cost: O(n).
+CellDrift cell_drift(const CandidateList<2>& list, const Packing<2>& packing);
+
+} // namespace isostat

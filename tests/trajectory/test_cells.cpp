@@ -1,0 +1,275 @@
+// Trajectories in periodic cells: three sequences of an independent program, and what is a matter of description.
+#include "support/cells.hpp"
+#include "support/same_sequence.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+using namespace isostat;
+using crafted::Disguised;
+using crafted::play;
+using crafted::Played;
+
+namespace {
+
+using Json = nlohmann::json;
+
+const std::vector<std::string> names{"tilt_16", "rect_16", "channel_16"};
+
+State<2> start_of(const std::string& name) {
+    State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+    snap_to_grid(state.packing);
+    return state;
+}
+
+const Json& sequences() {
+    static const Json document = [] {
+        std::ifstream file(scratch::data("cells/sequences.json"));
+        return Json::parse(file);
+    }();
+    return document;
+}
+
+/// ["p", i, j, [m, m]] or ["w", i, axis, 0 or 1].
+Contact contact_of(const Json& line) {
+    const int i = line.at(1).get<int>();
+    const int j = line.at(2).get<int>();
+    if (line.at(0) == "w") {
+        return {line.at(3) == 0 ? ContactKind::lower_wall : ContactKind::upper_wall, i, j};
+    }
+    return cells::across(i, j, line.at(3).at(0).get<int>(), line.at(3).at(1).get<int>());
+}
+
+/// Every event, ratio, count and length of a run is that of the sequence.
+void check_sequence(const Played& played, const Json& sequence, bool lengths_too) {
+    BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+    std::size_t step = 0;
+    for (std::size_t e = 0; e < sequence.size(); ++e) {
+        const EquilibriumRecord<2>& record = played.records.equilibria.at(e + 1); // after the start
+        const Json& expected = sequence[e];
+        BOOST_TEST(record.stress == expected.at("ratio").get<double>(), boost::test_tools::tolerance(1e-9));
+        BOOST_TEST(record.rattlers == static_cast<int>(expected.at("rattlers").size()));
+        BOOST_TEST(record.backbone == expected.at("backbone").get<int>());
+        BOOST_TEST(record.hyperstaticity == 0);
+        BOOST_TEST(record.mechanisms == 0);
+        for (std::size_t a = 0; a < 2 && lengths_too; ++a) {
+            BOOST_TEST(record.length[a] == expected.at("cell").at(a).get<double>(), boost::test_tools::tolerance(1e-9));
+        }
+        for (const Json& arc : expected.at("arcs")) {
+            BOOST_TEST_REQUIRE(step < played.records.arcs.size());
+            const ArcRecord<2>& found = played.records.arcs[step++];
+            BOOST_TEST((found.opened == contact_of(arc.at(0))), to_string<2>(found.opened) << " opened, not " << arc);
+            BOOST_TEST((found.closed == contact_of(arc.at(1))), to_string<2>(found.closed) << " closed, not " << arc);
+        }
+    }
+    BOOST_TEST(step == played.records.arcs.size());
+}
+
+/// Disk i stored in another period, k[i] periods further: the same packing.
+Disguised shifted(const State<2>& start, const std::vector<std::array<int, 2>>& k) {
+    State<2> state = start;
+    const Packing<2>& p = start.packing;
+    for (std::size_t i = 0; i < k.size(); ++i) {
+        state.packing.q[2 * i] += k[i][0] * p.lattice(0, 0) + k[i][1] * p.lattice(0, 1);
+        state.packing.q[2 * i + 1] += k[i][1] * p.length(1);
+    }
+    snap_to_grid(state.packing);
+    const auto moved = [k](int sign) {
+        return [k, sign](const Contact& c) {
+            if (c.kind != ContactKind::disk_disk) {
+                return c;
+            }
+            const auto& i = k[static_cast<std::size_t>(c.i)];
+            const auto& j = k[static_cast<std::size_t>(c.j)];
+            return cells::across(c.i, c.j, c.image.m[0] + sign * (i[0] - j[0]), c.image.m[1] + sign * (i[1] - j[1]));
+        };
+    };
+    return crafted::disguised(std::move(state), moved(1), moved(-1));
+}
+
+/// Disks in the opposite order.
+Disguised reversed(const State<2>& start) {
+    State<2> state = start;
+    const int n = start.packing.disk_count();
+    for (int i = 0; i < n; ++i) {
+        const auto to = static_cast<std::size_t>(n - 1 - i);
+        const auto from = static_cast<std::size_t>(i);
+        state.packing.radius[to] = start.packing.radius[from];
+        for (std::size_t a = 0; a < 2; ++a) {
+            state.packing.q[2 * to + a] = start.packing.q[2 * from + a];
+            state.load.infinitesimal[2 * to + a] = start.load.infinitesimal[2 * from + a];
+        }
+    }
+    state.packing.cell.pin = n - 1 - start.packing.cell.pin;
+    const auto rename = [n](const Contact& c) {
+        return c.kind == ContactKind::disk_disk ? pair_of(n - 1 - c.i, n - 1 - c.j, c.image)
+                                                : Contact{c.kind, n - 1 - c.i, c.j};
+    };
+    return crafted::disguised(std::move(state), rename, rename);
+}
+
+/// x and y exchanged. \pre no tilt
+Disguised transposed(const State<2>& start) {
+    Disguised other = crafted::exchanged(start);
+    State<2>& state = other.state;
+    const auto swap_axes = [](auto& pair) { std::swap(pair[0], pair[1]); };
+    swap_axes(state.packing.cell.periodic);
+    swap_axes(state.packing.cell.period_moves);
+    swap_axes(state.packing.walls.lower);
+    swap_axes(state.packing.walls.upper);
+    state.contacts = start.contacts;
+    const auto exchange = [](const Contact& c) {
+        return c.kind == ContactKind::disk_disk ? cells::across(c.i, c.j, c.image.m[1], c.image.m[0])
+                                                : Contact{c.kind, c.i, 1 - c.j};
+    };
+    return crafted::disguised(std::move(state), exchange, exchange);
+}
+
+/// All disks moved along the periodic axes.
+Disguised elsewhere(const State<2>& start) {
+    State<2> state = start;
+    for (std::size_t k = 0; k < state.packing.length_at(0); ++k) {
+        state.packing.q[k] += start.packing.cell.periodic[k % 2] ? (k % 2 == 0 ? 1.25 : -0.375) : 0;
+    }
+    return crafted::disguised(std::move(state), crafted::same, crafted::same);
+}
+
+/// Period vectors a and b + times a instead of a and b. \pre the tilt moves, no shear stress
+Disguised in_other_basis(const State<2>& start, int times) {
+    State<2> state = start;
+    state.packing.q[state.packing.tilt_at(0, 1)] += times * start.packing.length(0);
+    const auto moved = [](int by) {
+        return
+            [by](const Contact& c) { return cells::across(c.i, c.j, c.image.m[0] - by * c.image.m[1], c.image.m[1]); };
+    };
+    return crafted::disguised(std::move(state), moved(times), moved(-times));
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(trajectory_cells)
+
+BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program) {
+    for (const std::string& name : names) {
+        const Json& sequence = sequences().at(name);
+        for (const CertifyLevel level : {CertifyLevel::decisions, CertifyLevel::plain}) {
+            BOOST_TEST_CONTEXT(name << ", certify = " << to_string(level)) {
+                RunOptions options;
+                options.certify = level;
+                const Played played = play(start_of(name), +1, static_cast<int>(sequence.size()), {}, options);
+                check_sequence(played, sequence, true);
+                BOOST_TEST(played.counters.tally.undecided == 0);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(whichever_disk_is_pinned) {
+    for (const std::string& name : names) {
+        for (const int pin : {3, 8, 9, 15}) { // 8 and 9 become rattlers, or are
+            BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned") {
+                State<2> state = start_of(name);
+                state.packing.cell.pin = pin;
+                const Json& sequence = sequences().at(name);
+                check_sequence(play(state, +1, static_cast<int>(sequence.size())), sequence, true);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
+    for (const std::string& name : names) {
+        BOOST_TEST_CONTEXT(name) {
+            const State<2> start = start_of(name);
+            std::vector<std::array<int, 2>> k(16, {0, 0});
+            const int along_y = start.packing.cell.periodic[1] ? 1 : 0;
+            k[3] = {1, 0};
+            k[8] = {0, along_y};
+            k[9] = {0, -along_y};
+            const Disguised other = shifted(start, k);
+            const Played a = play(start, +1, 6);
+            const Played b = play(other.state, +1, 6);
+            BOOST_TEST_REQUIRE(b.outcome.completed, b.why());
+            crafted::check_same_sequence(a, b, crafted::events(b.records, other.back), 1e-11);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(in_whichever_order_place_and_basis) {
+    for (const std::string& name : names) {
+        BOOST_TEST_CONTEXT(name) {
+            const State<2> start = start_of(name);
+            const Played played = play(start, +1, 6);
+            crafted::check_same_sequence(played, reversed(start), 6);
+            crafted::check_same_sequence(played, elsewhere(start), 6);
+            if (name == "tilt_16") {
+                crafted::check_same_sequence(played, in_other_basis(start, 1), 6);
+                crafted::check_same_sequence(played, in_other_basis(start, -1), 6);
+            } else {
+                crafted::check_same_sequence(played, transposed(start), 6);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(down_and_up_again) {
+    for (const std::string& name : names) {
+        BOOST_TEST_CONTEXT(name) {
+            const Played down = play(start_of(name), -1, 3);
+            BOOST_TEST_REQUIRE(down.outcome.completed, down.why());
+            const Played up = play(down.state, +1, {}, down.state.load.stress[1] * 1.0001);
+            BOOST_TEST(up.outcome.completed, up.why());
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
+    // One disk: f(1,-1) = F2 / sqrt 3 - T vanishes at F2 = sqrt 3 T, and the disk rolls over its own image.
+    State<2> state = cells::one_tilted_disk(1, 1, 0.5);
+    state.load.reference_length = {2, std::sqrt(3.0)};
+    snap_to_grid(state.packing);
+    Segment segment;
+    segment.direction = -1;
+    segment.equilibria = 3;
+    RunCounters counters;
+    crafted::Recorder records;
+    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, {}, counters, records);
+    BOOST_TEST_REQUIRE(outcome.failure.has_value());
+    BOOST_TEST(to_string(outcome.failure->kind) == std::string("flows"), outcome.failure->message());
+    BOOST_TEST(records.arcs.size() == 1U);
+    BOOST_TEST((records.arcs[0].opened == cells::across(0, 0, 1, -1)));
+    BOOST_TEST((records.arcs[0].closed == cells::across(0, 0, 1, 1)), to_string<2>(records.arcs[0].closed));
+    BOOST_TEST(records.arcs[0].stress == 0.5 * std::sqrt(3.0), boost::test_tools::tolerance(1e-12));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
+    const State<2> start = start_of("rect_16");
+    const auto refuses = [&](State<2> state, const RunOptions& options, const std::string& words) {
+        BOOST_CHECK_EXCEPTION(require_followed(state, options, "state"), Error, [&](const Error& error) {
+            return std::string(error.what()).find(words) != std::string::npos;
+        });
+    };
+    BOOST_CHECK_NO_THROW(require_followed(start, RunOptions(), "state"));
+    RunOptions options;
+    options.ties = TiePolicy::choose;
+    refuses(start, options, "expected ties = \"stop\"");
+    options = {};
+    options.certify = CertifyLevel::states;
+    refuses(start, options, "expected \"decisions\" or \"plain\"");
+    State<2> state = start;
+    state.load.kind = LoadKind::true_stress;
+    refuses(state, {}, "expected dead loads");
+    state = start;
+    state.load.infinitesimal[0] += 1;
+    refuses(state, {}, "expected 0 exactly");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

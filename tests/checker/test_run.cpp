@@ -440,8 +440,13 @@ BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
     finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-8(1,0,0)", "no contact of the structure"});
     finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-5(1,0)", ""}); // a contact, but another one
     finds(run, {"events.jsonl", 4, "8-10(-1,0)", "3-5(1,0)", "closed already"});
-    for (const auto& [column, value] : std::vector<std::pair<std::string, std::string>>{
-             {"L1", "10.2"}, {"potential", "9"}, {"opens_high_j", "4"}, {"min_gap_i", "2"}, {"backbone", "28"}}) {
+    for (const auto& [column, value] :
+         std::vector<std::pair<std::string, std::string>>{{"L1", "10.2"},
+                                                          {"potential", "9"},
+                                                          {"opens_high_j", "4"}, // no contact
+                                                          {"opens_high_j", "6"}, // one whose force stays above 0
+                                                          {"min_gap_i", "2"},
+                                                          {"backbone", "28"}}) {
         finds(run, in_row(csv, 3, column, value));
     }
     // Another stored state: the tilt, an image, the pinned disk.

@@ -452,6 +452,10 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
         if (tie.choice == "zero" && !stays_zero(tie)) {
             return Objection{true, fmt::format("'{}' of {} is left at 0, but does not vanish", tie.what, tie.contact)};
         }
+        if (tie.choice == "watched" && (tie.what != "gap" || tie.other > tie.other_bound)) {
+            return Objection{true, fmt::format("'{}' of {} stays watched, but does not overlap at first order",
+                                               tie.what, tie.against)};
+        }
         const auto check = [&](const std::string& name, double value, double bound) -> Objections {
             const std::optional<Range> range = found(tie.what, name);
             if (!range) {

@@ -20,7 +20,7 @@ import sys
 
 top = pathlib.Path(__file__).resolve().parent.parent
 table = top / "proofs/constants.tsv"
-rooms = "verified motion certificate checker contact statics".split()
+rooms = "core verified motion certificate checker contact statics".split()
 trivial = {"0", "1", "2", "0.0", "1.0", "2.0"}
 kinds = ("cost", "choice", "exact", "guess", "message")
 silent = re.compile(r"""//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'|^[ \t]*#[^\n]*""", re.S | re.M)

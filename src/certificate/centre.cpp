@@ -1,5 +1,7 @@
 #include "certificate/centre.hpp"
 
+#include "core/roundoff.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +9,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 } // namespace
 

@@ -1,6 +1,7 @@
 #include "certificate/exact_counting.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/other_pairs.hpp"
+#include "core/roundoff.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/contact/candidates.hpp>
@@ -19,7 +20,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 /// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
 template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& state) {

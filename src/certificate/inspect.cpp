@@ -1,3 +1,5 @@
+#include "core/roundoff.hpp"
+
 #include <isostat/certificate/inspect.hpp>
 
 #include <fmt/format.h>
@@ -10,7 +12,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 double middle(const Interval& interval) {

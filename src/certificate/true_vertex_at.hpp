@@ -4,6 +4,7 @@
 /// per type only. Bounds: statements V5 to V7, proofs/true_vertex.md; every constant below is counted there.
 
 #include "certificate/true_vertex.hpp"
+#include "core/roundoff.hpp"
 #include "verified/contact_system.hpp"
 
 #include <fmt/format.h>
@@ -37,8 +38,8 @@ template <int Dim, class T> class TrueVertexAt final : public TrueVertex<Dim> {
 
   private:
     using A = Arithmetic<T>;
-    static constexpr double u = 0x1p-53;
-    static constexpr double infinity = std::numeric_limits<double>::infinity();
+    static constexpr double u = roundoff::u;
+    static constexpr double infinity = roundoff::infinity;
 
     /// |f*_l - value_l| <= bound for every l.
     struct Solution {

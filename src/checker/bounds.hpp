@@ -9,6 +9,8 @@
 
 namespace isostat::checker {
 
+inline constexpr double root_of_two = 1.4142135623730952; ///< above it
+
 inline double next_below(double x) {
     return std::nextafter(x, -std::numeric_limits<double>::infinity());
 }

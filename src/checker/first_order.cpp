@@ -17,7 +17,7 @@ Range place(const Problem& problem, const TrueVertex& vertex, std::size_t k) {
 namespace {
 
 /// A v = b at the middle of the vertex in integers: v in multiples of 2^-shift, b of 2^(fine - shift).
-struct Motion {
+struct FirstMotion {
     const Problem& problem;
     const std::vector<Integer>& at;
     std::vector<Integer> target;
@@ -60,7 +60,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
     // The fastest coordinate is above b / the largest entry of A: 120 bits below that are kept.
     const long scale = e_.solver->scale(problem);
     const long shift = 120 + scale + problem.fine - bits(largest.get_num()) + bits(largest.get_den());
-    Motion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
+    FirstMotion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
     for (const Rational& rate : b) {
         motion.target.push_back(floor_of(rate, shift - problem.fine)); // by less than one
     }

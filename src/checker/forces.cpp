@@ -1,5 +1,7 @@
 #include "checker/forces.hpp"
 
+#include "checker/index.hpp"
+
 #include <optional>
 
 namespace isostat::checker {
@@ -58,10 +60,6 @@ Forces infinitesimal_load(const Problem& problem, const State<2>& state) {
 }
 
 namespace {
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
 
 /// The balance A^T g = -load in integers: g in multiples of 2^-shift per unit of length, forces of 2^(fine - shift).
 class Balance {

@@ -1,5 +1,7 @@
 #include "checker/gap_course.hpp"
 
+#include "checker/index.hpp"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -9,12 +11,7 @@ namespace isostat::checker {
 
 namespace {
 
-constexpr double root_of_two = 1.4142135623730952;
 constexpr int deepest = 55;
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
 
 /// Horner's rule for the derivative of order 0, 1 or 2.
 Bounds value_of(const std::vector<Bounds>& c, const Bounds& s, int derivative) {

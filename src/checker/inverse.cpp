@@ -2,6 +2,7 @@
 
 #include "checker/elimination.hpp"
 #include "checker/singular_value.hpp"
+#include "checker/wide.hpp"
 
 #include <cstdint>
 #include <numeric>
@@ -11,13 +12,6 @@
 namespace isostat::checker {
 
 namespace {
-
-__extension__ using Wide = __int128;
-__extension__ using WideMagnitude = unsigned __int128;
-
-WideMagnitude magnitude(Wide value) {
-    return value < 0 ? -static_cast<WideMagnitude>(value) : static_cast<WideMagnitude>(value);
-}
 
 /// A column by column (one per degree of freedom), in units of the stored coordinates: 2^(fine + spare).
 template <class Number> struct Columns {

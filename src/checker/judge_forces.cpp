@@ -1,5 +1,6 @@
 // The claim about the forces.
 #include "checker/evidence.hpp"
+#include "checker/index.hpp"
 
 #include <fmt/format.h>
 
@@ -20,10 +21,6 @@ Verdict is_positive(const Range& force) {
         return Verdict::proved;
     }
     return force.upper <= 0 ? Verdict::refuted : Verdict::undecided;
-}
-
-bool contains(const std::vector<int>& sorted, std::size_t value) {
-    return std::binary_search(sorted.begin(), sorted.end(), static_cast<int>(value));
 }
 
 /// The smallest of some forces, and where.

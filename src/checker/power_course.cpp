@@ -1,14 +1,12 @@
 #include "checker/power_course.hpp"
 
+#include "checker/index.hpp"
+
 namespace isostat::checker {
 
 namespace {
 
-constexpr int deepest = 30;
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
+constexpr int most_halvings = 30;
 
 Bounds value_of(const std::vector<Bounds>& c, const Bounds& s) {
     Bounds sum(0);
@@ -35,7 +33,7 @@ bool exceeds(const std::vector<Bounds>& c, const std::vector<Bounds>& slope, dou
         return true;
     }
     const double half = middle.lower;
-    if (depth >= deepest || !(half > from && half < to) || !(value_of(c, middle).upper > least)) {
+    if (depth >= most_halvings || !(half > from && half < to) || !(value_of(c, middle).upper > least)) {
         return false;
     }
     return exceeds(c, slope, least, from, half, depth + 1) && exceeds(c, slope, least, half, to, depth + 1);

@@ -4,6 +4,7 @@
 #include "checker/bounds.hpp"
 #include "checker/choice.hpp"
 #include "checker/gaps.hpp"
+#include "checker/index.hpp"
 #include "checker/structural_zeros.hpp"
 #include "checker/strut.hpp"
 
@@ -15,10 +16,6 @@ namespace {
 
 /// Roundings of the quotient that is written as the stress at a limit.
 constexpr double limit_rounding = 0x1p-50;
-
-bool contains(const std::vector<int>& sorted, std::size_t value) {
-    return std::binary_search(sorted.begin(), sorted.end(), static_cast<int>(value));
-}
 
 /// Sign of all forces of one stage: those that are no structural zeros, or the infinitesimal ones of those that are.
 Objections negative_ones(const Place& place, bool finite, std::vector<int>& negative) {

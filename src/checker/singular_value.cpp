@@ -1,5 +1,8 @@
 #include "checker/singular_value.hpp"
 
+#include "checker/index.hpp"
+#include "checker/wide.hpp"
+
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -9,9 +12,6 @@
 namespace isostat::checker {
 
 namespace {
-
-__extension__ using Wide = __int128;
-__extension__ using WideMagnitude = unsigned __int128;
 
 /// Entries of A and of the factor are integers times 2^-point, in units of a power of two above all of A.
 constexpr long point = 54;
@@ -23,10 +23,6 @@ constexpr int most_rows = 1 << 24;
 
 using Sparse = Eigen::SparseMatrix<double>;
 using Cholesky = Eigen::SimplicialLLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
-
-WideMagnitude magnitude(Wide value) {
-    return value < 0 ? -static_cast<WideMagnitude>(value) : static_cast<WideMagnitude>(value);
-}
 
 double as_double(Wide value) {
     return static_cast<double>(value);
@@ -104,8 +100,6 @@ struct Normal {
         std::int64_t value;
     };
     std::vector<std::vector<Entry>> entries_; ///< of each row
-
-    static std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
     /// Towards zero, by less than one.
     [[nodiscard]] std::int64_t fixed_point(const Integer& exact) const {

@@ -1,5 +1,6 @@
 #include "checker/tube.hpp"
 
+#include "checker/index.hpp"
 #include "checker/inverse.hpp"
 #include "checker/solver.hpp"
 
@@ -11,14 +12,9 @@ namespace {
 
 constexpr std::size_t highest_order = 14;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double root_of_two = 1.4142135623730952; // above it
 
 /// Two components for a pair of disks, one for a wall.
 template <class Number> using Pair = std::array<Number, 2>;
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
 
 /// The difference of the two grains of a contact, exact but for the rounding of the subtraction.
 Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::size_t disks) {

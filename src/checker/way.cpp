@@ -1,6 +1,7 @@
 #include "checker/way.hpp"
 
 #include "checker/gap_course.hpp"
+#include "checker/index.hpp"
 #include "checker/power_course.hpp"
 
 #include <fmt/format.h>
@@ -14,10 +15,6 @@ namespace {
 constexpr int most_pieces = 5000;
 /// Share of a piece next to a limit or a power turn on which the power may stay open.
 constexpr double open_share = 1e-2;
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
 
 Objections open(std::string why) {
     return Objection{false, "the way is not proved: " + std::move(why)};

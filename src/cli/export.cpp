@@ -57,7 +57,7 @@ std::vector<fs::path> states_of(const std::string& input) {
     return files;
 }
 
-std::string series(const std::vector<fs::path>& files) {
+std::string series_text(const std::vector<fs::path>& files) {
     std::string text;
     std::vector<double> first;
     for (const fs::path& file : files) {
@@ -81,7 +81,7 @@ int export_states(const ExportArguments& arguments) {
     std::vector<fs::path> files = states_of(arguments.input);
     std::string text;
     if (format == "xyz") {
-        text = series(files);
+        text = series_text(files);
     } else {
         files = {files.back()};
         const Packing<2> packing = read_state<2>(files.front()).state.packing;

@@ -39,10 +39,6 @@ struct Imported {
     Certification truth;
 };
 
-[[noreturn]] void refuse(const std::string& file, const std::string& what) {
-    throw Error(ErrorKind::bad_input, file + ": " + what);
-}
-
 /// Stresses and kind of load of a state, which were not stated anew.
 void keep_load(ImportArguments& a) {
     const State<2> state = read_state<2>(a.file).state;

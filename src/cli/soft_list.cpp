@@ -17,10 +17,6 @@ namespace isostat::cli {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& file, const std::string& what) {
-    throw Error(ErrorKind::bad_input, file + ": " + what);
-}
-
 /// Those that can carry a force by the positions of the normals: soft rattlers touch now and then.
 std::vector<Contact> backbone_of(const Packing<2>& packing, const std::vector<Contact>& contacts) {
     const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
@@ -49,6 +45,10 @@ std::vector<Contact> walls_of(const Packing<2>& packing) {
 }
 
 } // namespace
+
+void refuse(const std::string& file, const std::string& what) {
+    throw Error(ErrorKind::bad_input, file + ": " + what);
+}
 
 std::array<double, 2> parse_stress(const std::string& text) {
     if (text.empty()) {

@@ -18,6 +18,9 @@ inline constexpr double nearly_touching = 0.1;
 /// "S1,S2"; 1,1 for an empty text. Throws `Error(usage)`.
 std::array<double, 2> parse_stress(const std::string& text);
 
+/// Throws `Error(bad_input)` about a file.
+[[noreturn]] void refuse(const std::string& file, const std::string& what);
+
 /// Every wall near a disk, no overlap deep: else the file is no packing of nearly rigid disks in these walls. Throws
 /// `Error(bad_input)`.
 void check_nearness(const std::string& file, const Packing<2>& packing);

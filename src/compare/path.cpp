@@ -10,7 +10,7 @@ namespace isostat::compare {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
 double& loaded(State<2>& state) {
@@ -36,7 +36,7 @@ class Collector final : public RunObserver<2> {
         e.proved = record.verdict == Verdict::proved;
         e.state = state;
         e.contacts = carrying(state, certify(state));
-        e.soft_limit = e.stiffness_needed = nan;
+        e.soft_limit = e.stiffness_needed = unknown;
         out_.push_back(std::move(e));
         highs_.push_back(record.opens_high);
         lows_.push_back(record.opens_low);
@@ -60,7 +60,7 @@ void predict(PathEquilibrium& e, int direction, double stiffness) {
     if (const auto limit = soft_limit(backbone, exact, stiffness)) {
         e.soft_limit = limit->stress;
     }
-    e.stiffness_needed = stiffness_needed(backbone, exact).value_or(nan);
+    e.stiffness_needed = stiffness_needed(backbone, exact).value_or(unknown);
 }
 
 } // namespace

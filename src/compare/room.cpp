@@ -1,6 +1,7 @@
 #include "compare/room.hpp"
 
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 
 #include <isostat/contact/candidates.hpp>
 
@@ -56,7 +57,7 @@ void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vec
 
 /// Lower bound of the gap when every coordinate may be off by `radius`: rounding as in the centre of a certificate.
 double lower_gap(const Packing<2>& packing, const Contact& pair, double radius) {
-    constexpr double u = 0x1p-53;
+    using roundoff::u;
     const double h = gap(packing, pair);
     const double length = std::abs(h) + touching_distance(packing.radius, pair);
     const double off = pair.kind == ContactKind::disk_disk ? 1.4143 * 2 * radius : 2 * radius;

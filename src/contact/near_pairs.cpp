@@ -2,6 +2,7 @@
 
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 
 #include <isostat/contact/candidates.hpp>
 
@@ -15,22 +16,22 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 // Constants of proofs/contact_candidates.md, section "Rounded weights". Disks shrunk by the common shift 0.002 R_min^2
 // of their weights have exactly the power diagram of the rounded weights; an edge may overlap by half of what that
 // shift allows.
-constexpr double edge_overlap = 0.0005;    // times R_min^2 (1/R_i + 1/R_j)
-constexpr double largest_reach = 0.825;    // times R_min; T6 allows 0.828: room for the rounding of images
-constexpr double largest_ratio = 1e5;      // beyond it the rounding of R_max^2 is not small against the shift
-constexpr double largest_length = 1e100;   // squares neither overflow
-constexpr double smallest_length = 1e-100; // nor underflow
+constexpr double edge_overlap = 0.0005;   // times R_min^2 (1/R_i + 1/R_j)
+constexpr double largest_reach = 0.825;   // times R_min; T6 allows 0.828: room for the rounding of images
+constexpr double largest_ratio = 1e5;     // beyond it the rounding of R_max^2 is not small against the shift
+constexpr double largest_scale = 1e100;   // squares neither overflow
+constexpr double smallest_scale = 1e-100; // nor underflow
 
 /// Whether no square of a length that matters under- or overflows.
 bool lengths_are_plain(const Packing<2>& packing) {
-    return packing.min_radius() >= smallest_length && packing.max_radius() <= largest_length &&
+    return packing.min_radius() >= smallest_scale && packing.max_radius() <= largest_scale &&
            std::all_of(packing.q.begin(), packing.q.end(),
-                       [](double x) { return std::abs(x) <= largest_length; }); // also false for a NaN
+                       [](double x) { return std::abs(x) <= largest_scale; }); // also false for a NaN
 }
 
 /// Gaps with a bound of their rounding: 8 u times the lengths that enter, for any coordinates.

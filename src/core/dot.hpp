@@ -11,6 +11,15 @@
 
 namespace isostat {
 
+/// |x|, summed in order.
+inline double euclidean_norm(std::span<const double> x) {
+    double sum = 0;
+    for (const double c : x) {
+        sum += c * c;
+    }
+    return std::sqrt(sum);
+}
+
 /// a . b in double, relative to |a| . |b| within n u. Four sums at a time: a single one would wait for each addition.
 /// The order is fixed: the same bits everywhere.
 inline double dot(std::span<const double> a, std::span<const double> b) {

@@ -1,4 +1,5 @@
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 #include "verified/force_solution.hpp"
 #include "verified/inverse_bound.hpp"
 
@@ -13,7 +14,7 @@ namespace isostat::crafted {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 /// Room for the rounding of the bounds themselves.
 constexpr double upwards = 1 + 1e-9;
 

@@ -2,6 +2,7 @@
 
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 
 #include <boost/multiprecision/gmp.hpp>
 
@@ -18,7 +19,7 @@ namespace {
 
 using Integer = boost::multiprecision::number<boost::multiprecision::gmp_int, boost::multiprecision::et_off>;
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 /// Rounding of a gap from the lengths that enter (four operations and hypot, below 1 ulp), with room for the rounding
 /// of the bound itself and of the comparison.
 constexpr double relative_bound = 16 * u;

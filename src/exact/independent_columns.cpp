@@ -12,9 +12,9 @@ namespace isostat::exact {
 namespace {
 
 /// Left-looking elimination mod p, a column after the other.
-class Elimination {
+class ColumnElimination {
   public:
-    explicit Elimination(const sparse::Matrix<std::uint64_t>& matrix)
+    explicit ColumnElimination(const sparse::Matrix<std::uint64_t>& matrix)
         : matrix_(matrix), pivot_of_row_(static_cast<std::size_t>(matrix.rows), -1),
           row_weight_(static_cast<std::size_t>(matrix.rows), 0), x_(static_cast<std::size_t>(matrix.rows), 0),
           seen_(static_cast<std::size_t>(matrix.rows), 0) {
@@ -117,7 +117,7 @@ class Elimination {
 } // namespace
 
 std::vector<int> independent_columns(const sparse::Matrix<std::uint64_t>& matrix) {
-    Elimination elimination(matrix);
+    ColumnElimination elimination(matrix);
     std::vector<int> independent;
     const auto rows = static_cast<std::size_t>(matrix.rows);
     for (int column = 0; column < matrix.cols && elimination.rank() < rows; ++column) {

@@ -61,8 +61,8 @@ void in_block(std::span<double> x, const std::vector<int>& from, const std::vect
     }
 }
 
-/// Long vectors, `width` at a time: one sweep through x for all of them.
-constexpr std::size_t width = 4;
+/// Long vectors, `together` at a time: one sweep through x for all of them.
+constexpr std::size_t together = 4;
 using Several = std::vector<const double*>;
 
 template <std::size_t count> void add_each(const double* const* v, const double* factor, std::span<double> x) {
@@ -101,8 +101,8 @@ template <std::size_t count> void dot_each(const double* const* v, std::span<con
 /// sweep(number, first) for groups of four, and one of what is left.
 template <class Sweep> void in_groups(std::size_t size, Sweep sweep) {
     std::size_t first = 0;
-    for (; first + width <= size; first += width) {
-        sweep(std::integral_constant<std::size_t, width>(), first);
+    for (; first + together <= size; first += together) {
+        sweep(std::integral_constant<std::size_t, together>(), first);
     }
     switch (size - first) {
     case 3: sweep(std::integral_constant<std::size_t, 3>(), first); break;

@@ -1,6 +1,7 @@
 #include "linear/factorisation.hpp"
 
 #include "core/dot.hpp"
+#include "core/roundoff.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 constexpr std::size_t max_passes = 20; ///< more than that costs as much as new factors
 constexpr std::size_t kept_directions = 4;
 constexpr double cancelled = 1e-12;     ///< of the square of an image: as much as 1e-10 of it is rounding

@@ -1,5 +1,7 @@
 #include "linear/solve_schedule.hpp"
 
+#include "core/index.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <memory>
@@ -7,14 +9,6 @@
 #include <utility>
 
 namespace isostat {
-
-namespace {
-
-std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
-
-} // namespace
 
 /// What KLU's factors are made of.
 struct SolveSchedule::Parts {

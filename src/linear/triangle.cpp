@@ -1,5 +1,7 @@
 #include "linear/triangle.hpp"
 
+#include "core/index.hpp"
+#include "core/roundoff.hpp"
 #include "linear/two.hpp"
 
 #include <algorithm>
@@ -12,11 +14,7 @@ namespace isostat {
 
 namespace {
 
-constexpr std::size_t at(int k) {
-    return static_cast<std::size_t>(k);
-}
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 /// Entries between the lines of a step.
 constexpr int links(int width) {

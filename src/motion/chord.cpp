@@ -1,6 +1,7 @@
 #include "motion/chord.hpp"
 
 #include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "motion/geometry.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 } // namespace
 

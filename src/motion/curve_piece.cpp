@@ -1,6 +1,7 @@
 #include "motion/curve_piece.hpp"
 
 #include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "motion/geometry.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 double norm(const std::vector<double>& x) {
     double sum = 0;

@@ -1,6 +1,7 @@
 #include "motion/curve_polynomial.hpp"
 
 #include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "motion/geometry.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 /// Share of sigma_min that the change of the derivative over a piece may take. Cost only.
 constexpr double share = 0.7;
 constexpr int max_order = 14;

@@ -2,6 +2,7 @@
 
 #include "contact/contact_set.hpp"
 #include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "motion/geometry.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 /// Smallest positive root of h + h1 s + h2 s^2 / 2, h >= 0; infinity when there is none.
 double first_root(double h, double h1, double h2) {

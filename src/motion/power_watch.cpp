@@ -9,7 +9,7 @@ namespace isostat {
 
 namespace {
 
-constexpr int max_depth = 40;
+constexpr int max_halvings = 40;
 /// Shares of a piece beyond which an end with power 0 is not called that: they are reported whatever they are.
 constexpr double largest_open_start = 1e-2;
 constexpr double largest_open_end = 1e-2;
@@ -64,7 +64,7 @@ template <int Dim> void PowerWatch<Dim>::walk(const Power& power, double from, d
         return;
     }
     const double middle = 0.5 * (from + to);
-    if (depth >= max_depth || !(middle > from && middle < to) ||
+    if (depth >= max_halvings || !(middle > from && middle < to) ||
         (depth > 12 && !(power.low(middle, middle) > 0) && !(power.low(to, to) > 0) && !(power.low(from, from) > 0))) {
         if (!open_.empty() && open_.back().second == from) {
             open_.back().second = to;

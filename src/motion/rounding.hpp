@@ -1,16 +1,18 @@
 #pragma once
 // What the bounds of arcs share (statement A8, proofs/arcs.md): private to the room.
 
+#include "core/roundoff.hpp"
+
 #include <array>
 #include <cmath>
 #include <cstddef>
 
 namespace isostat {
 
-inline constexpr double u = 0x1p-53;
+using roundoff::u;
 /// Sums of up to 10^6 terms, their roots and a few products: relative rounding below 1e-9 (proofs/bounds.md).
 inline constexpr double up = 1 + 1e-9;
-inline constexpr double root2 = 1.4142135623731; ///< above the square root of 2
+using roundoff::root2;
 
 template <std::size_t size> inline double dot(const std::array<double, size>& x, const std::array<double, size>& y) {
     double sum = 0;

@@ -22,7 +22,7 @@ constexpr double wall_trust = 10;
 /// scale of the objective, gaps that matter 1e-6.
 constexpr double interior_tolerance = 1e-14;
 /// Share of a complete contact list above which overlapping pairs are worth being the first basis.
-constexpr double dense_enough = 0.9;
+constexpr double mostly_closed = 0.9;
 
 /// Ends the simplex at the next iteration when the user asks for it.
 class StopHandler : public ClpEventHandler {
@@ -183,7 +183,7 @@ bool ContactProgramme<Dim>::start_from_overlaps(ClpSimplex& simplex, const Packi
         }
     }
     const auto hanging = static_cast<int>(std::count_if(degree.begin(), degree.end(), [](int d) { return d < Dim; }));
-    if (nonbasic + Dim * hanging < dense_enough * columns) {
+    if (nonbasic + Dim * hanging < mostly_closed * columns) {
         return false;
     }
     for (int k = 0; k < count; ++k) {

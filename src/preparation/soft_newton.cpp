@@ -15,7 +15,7 @@ namespace {
 /// Pairs are listed up to this gap, in the internal unit, and the list renewed when something has moved by a third of
 /// it: two disks approach by less than 2 sqrt(2) of that.
 constexpr double reach = 0.1;
-constexpr double renewal = reach / 3;
+constexpr double list_holds = reach / 3;
 /// Longest step of a disk, mean diameters: beyond it the normals are others.
 constexpr double longest_step = 0.1;
 /// The search ends where the slope is below this share of the first one.
@@ -62,7 +62,7 @@ template <int Dim> void SoftNewton<Dim>::collect() {
 
 template <int Dim> bool SoftNewton<Dim>::left_the_list() const {
     for (std::size_t k = 0; k < anchor_.size(); ++k) {
-        if (std::abs(packing_.q[k] - anchor_[k]) > renewal) {
+        if (std::abs(packing_.q[k] - anchor_[k]) > list_holds) {
             return true;
         }
     }

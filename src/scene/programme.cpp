@@ -1,3 +1,5 @@
+#include "core/roundoff.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/scene/scene.hpp>
 
@@ -11,7 +13,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 const char* word(Action action) {
     switch (action) {

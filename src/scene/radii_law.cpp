@@ -46,7 +46,8 @@ void check_keys(Section& section, RadiiLaw law) {
     for (const LawKey& key : law_keys) {
         if (given(section, key.name) && !belongs(key, law)) {
             std::vector<std::string> laws;
-            std::transform(key.laws.begin(), key.laws.end(), std::back_inserter(laws), word);
+            std::transform(key.laws.begin(), key.laws.end(), std::back_inserter(laws),
+                           [](RadiiLaw other) { return word(other); });
             section.refuse(key.name,
                            fmt::format("'{}' in [packing] goes with law = {} and has no meaning with law = {}",
                                        key.name, fmt::join(laws, ", "), word(law)));

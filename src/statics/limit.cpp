@@ -1,3 +1,4 @@
+#include "core/roundoff.hpp"
 #include "rigidity/rigid_group.hpp"
 #include "statics/contender.hpp"
 
@@ -9,8 +10,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double u = 0x1p-53;
+using roundoff::infinity;
+using roundoff::u;
 
 Comparison proved_larger(double margin) {
     Comparison result;

@@ -1,3 +1,4 @@
+#include "core/roundoff.hpp"
 #include "statics/contender.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +11,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 /// One stage of the lexicographic decision: all contacts with a finite force, or all without.
 template <int Dim> class Stage {

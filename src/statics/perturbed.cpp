@@ -1,5 +1,7 @@
 #include "statics/perturbed.hpp"
 
+#include "core/roundoff.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +10,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 Enclosure product(const Enclosure& a, const Enclosure& b) {
     const double value = a.value * b.value;

@@ -1,3 +1,4 @@
+#include "core/roundoff.hpp"
 #include "statics/contender.hpp"
 
 #include <algorithm>
@@ -8,8 +9,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double u = 0x1p-53;
+using roundoff::infinity;
+using roundoff::u;
 
 /// 2-norm of the mechanism that opens contact l at unit rate (the held and kept others at rest), enclosed.
 template <int Dim> Enclosure mechanism_norm(const Statics<Dim>& statics, ContactId l) {

@@ -1,5 +1,7 @@
 #include "statics/statics.hpp"
 
+#include "core/roundoff.hpp"
+
 #include <qd/dd_real.h>
 
 #include <algorithm>
@@ -9,7 +11,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 } // namespace
 

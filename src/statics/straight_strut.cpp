@@ -1,5 +1,7 @@
 #include "statics/straight_strut.hpp"
 
+#include "core/roundoff.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -150,7 +152,7 @@ template <int Dim> Vector<Dim> push(const Statics<Dim>& statics, std::size_t con
 
 /// How far normals at the turn may be from the stored ones, and what rounding of sums over all contacts adds (S4).
 template <int Dim> double doubt_of(const Statics<Dim>& statics) {
-    constexpr double u = 0x1p-53;
+    using roundoff::u;
     return 2 * statics.normal_uncertainty() + (static_cast<double>(statics.structure().size()) + 512) * u;
 }
 

@@ -1,4 +1,5 @@
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 #include "motion/arc.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
@@ -16,7 +17,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 double norm_of(const std::vector<double>& x) {
     double sum = 0;

@@ -47,7 +47,7 @@ template <int Dim> double virtual_power_error(const Vertex<Dim>& vertex, double 
 
 /// Relative error of a few operations in double-double, several times what it is.
 constexpr double dd_rounding = 0x1p-96;
-constexpr double above = 1 + 0x1p-40; ///< covers the rounding of a bound
+constexpr double rounded_up = 1 + 0x1p-40; ///< covers the rounding of a bound
 
 /// As near to the true vertex as is known.
 template <int Dim> VertexEnclosure at_true_vertex(const Vertex<Dim>& vertex) {
@@ -65,7 +65,7 @@ template <int Dim> VertexEnclosure at_true_vertex(const Vertex<Dim>& vertex) {
 
 /// What is left out when `value` is shown as one double is part of the bound.
 Enclosure shown(const dd_real& value, double error) {
-    return {value.x[0], (error + std::abs(value.x[1])) * above};
+    return {value.x[0], (error + std::abs(value.x[1])) * rounded_up};
 }
 
 /// Coordinates of a true vertex in double-double.
@@ -105,7 +105,8 @@ void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>
     const auto add = [&](const dd_real& force, std::size_t k) {
         const dd_real term = force * q[k];
         sum -= term;
-        error += std::abs(force.x[0]) * q.error(k) * above + dd_rounding * (std::abs(term.x[0]) + std::abs(sum.x[0]));
+        error +=
+            std::abs(force.x[0]) * q.error(k) * rounded_up + dd_rounding * (std::abs(term.x[0]) + std::abs(sum.x[0]));
     };
     for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
         if (load.disk_force[k] != 0) {
@@ -115,7 +116,7 @@ void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>
     for (const WallForce& wall : load.wall_forces(q.vertex.packing)) {
         add(-dd_real::mul(wall.stress, wall.length), static_cast<std::size_t>(wall.coordinate));
     }
-    const Enclosure potential = shown(sum, error * above);
+    const Enclosure potential = shown(sum, error * rounded_up);
     record.potential = potential.value;
     record.potential_bound = potential.radius;
 }

@@ -1,4 +1,5 @@
 #include "contact/words.hpp"
+#include "core/roundoff.hpp"
 #include "trajectory/rearrangement.hpp"
 
 #include <isostat/core/floating_point.hpp>
@@ -15,7 +16,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 
 /// One segment: from equilibrium to limit load, and by a rearrangement to the next equilibrium.
 template <int Dim> class Run {

@@ -1,6 +1,7 @@
 #include "trajectory/ties.hpp"
 
 #include "contact/words.hpp"
+#include "core/roundoff.hpp"
 #include "verified/precise_first_order.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -14,7 +15,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 constexpr Contact nobody{ContactKind::disk_disk, -1, -1};
 
 std::string shown(const Enclosure& e) {

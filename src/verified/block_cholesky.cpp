@@ -1,5 +1,6 @@
 #include "verified/block_cholesky.hpp"
 
+#include "core/roundoff.hpp"
 #include "core/wide.hpp"
 
 #include <amd.h>
@@ -15,11 +16,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
-
-double gamma(double terms) {
-    return terms * u / (1 - terms * u);
-}
+using roundoff::gamma;
+using roundoff::u;
 
 /// Blocks that share a contact, as AMD wants them: columns of a symmetric pattern, both halves, with repetitions.
 std::vector<int> little_fill(const sparse::Matrix<double>& h, std::size_t blocks) {

@@ -1,3 +1,5 @@
+#include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "verified/inverse_bound.hpp"
 #include "verified/regularity_prover.hpp"
 
@@ -8,16 +10,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 constexpr double slack = 1 + 1e-9; ///< rounding of the norms and of the last operations
-
-double norm(const std::vector<double>& x) {
-    double sum = 0;
-    for (const double c : x) {
-        sum += c * c;
-    }
-    return std::sqrt(sum);
-}
 
 /// Upper bound of |G_-' - G_-|_2 over the kept rows, exact matrices: |B|_2^2 <= max (B^T B 1)_j for B = |difference|
 /// entry by entry, and the entries of both carry 5u. Nothing when the patterns differ.
@@ -117,7 +111,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
         return std::nullopt;
     }
     const double kept = (bound.sigma_min - *change) * (1 - 4 * u); // of G_-, N - 1 rows
-    const double size_of_guess = norm(mechanism);
+    const double size_of_guess = euclidean_norm(mechanism);
     for (double& c : mechanism) {
         c /= size_of_guess;
     }
@@ -136,7 +130,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
             mechanism[i] -= r[i];
         }
     }
-    const double length = norm(mechanism);
+    const double length = euclidean_norm(mechanism);
     if (!(off < 0.1 * length)) {
         return std::nullopt;
     }
@@ -161,7 +155,7 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
     if (!(lost < 0.5)) {
         return std::nullopt;
     }
-    const double inverse_norm = std::hypot(1 / kept, norm(z) * slack / along) / (1 - lost) * slack;
+    const double inverse_norm = std::hypot(1 / kept, euclidean_norm(z) * slack / along) / (1 - lost) * slack;
     const double sigma = 1 / inverse_norm * (1 - 4 * u);
     if (!(sigma > 0)) {
         return std::nullopt;

@@ -1,6 +1,7 @@
 #include "verified/configuration.hpp"
 
 #include "contact/gap_sign.hpp"
+#include "core/roundoff.hpp"
 #include "verified/enclosed_vertex.hpp"
 #include "verified/gap_signs.hpp"
 #include "verified/norm.hpp"
@@ -15,7 +16,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 /// Kantorovich with |F| <= residual, |DF^-1| <= inverse_norm: radius of existence, or NaN when the test fails.
 double kantorovich_radius(double residual, double inverse_norm, double lipschitz_constant) {
     const double eta = inverse_norm * residual * (1 + 4 * u);
@@ -91,7 +92,7 @@ VertexEnclosure enclose_vertex_double_double(const Packing<Dim>& packing, const 
 
 template <int Dim>
 Enclosure gap_at_vertex(const Packing<Dim>& packing, const VertexEnclosure& vertex, const Contact& contact) {
-    constexpr double root2 = 1.4142135623731;
+    using roundoff::root2;
     if (contact.kind == ContactKind::held) {
         return {0, 0};
     }
@@ -112,7 +113,7 @@ namespace {
 /// Gap at an enclosed vertex.
 template <int Dim> PreciseInterval gap_at(const EnclosedVertex<Dim, Real>& vertex, const Contact& contact) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
-    constexpr double root2 = 1.4142135623731;
+    using roundoff::root2;
     const Real h = vertex.at().gap(contact);
     const UpperBound radius =
         16 * a.unit() * (a.size(h) + target(vertex.at().packing(), contact)) + root2 * vertex.radius();

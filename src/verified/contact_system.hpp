@@ -2,6 +2,7 @@
 // Forces and motions with bounds in one number type (statement V6, proofs/true_vertex.md): private to the room and to
 // the certificate.
 
+#include "core/roundoff.hpp"
 #include "linear/factorisation.hpp"
 #include "verified/enclosed_vertex.hpp"
 
@@ -53,7 +54,7 @@ template <int Dim, class T> class ContactSystem {
     [[nodiscard]] std::size_t size() const { return structure_.contacts().size(); }
 
   private:
-    static constexpr double u = 0x1p-53;
+    static constexpr double u = roundoff::u;
     struct Residual {
         std::vector<T> value;
         Bound norm = 0; ///< of the exact one, from above

@@ -1,10 +1,11 @@
+#include "core/roundoff.hpp"
 #include "verified/interval_rung.hpp"
 
 namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 /// Normals of the stored configuration, in double.
 template <int Dim> class DoubleRung final : public IntervalRung<Dim> {

@@ -1,6 +1,7 @@
 #pragma once
 // The true vertex in one number type (statement V5, proofs/true_vertex.md): private to the room and to the certificate.
 
+#include "core/roundoff.hpp"
 #include "verified/corrected_configuration.hpp"
 #include "verified/inverse_bound.hpp"
 
@@ -17,7 +18,7 @@ struct Neighbourhood {
     template <int Dim>
     static Neighbourhood of(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
                             const InverseBound& inverse) {
-        constexpr double u = 0x1p-53;
+        using roundoff::u;
         const double relative_gap = worst_gap_ratio(packing, contacts);
         const bool known = inverse.verdict == Verdict::proved && relative_gap < 1e-3; // a NaN knows nothing
         return {isostat::lipschitz(packing, contacts),
@@ -57,7 +58,7 @@ template <int Dim, class T> class EnclosedVertex {
     [[nodiscard]] Bound distance() const { return (shift_ + radius_) * (1 + 4 * u); }
 
   private:
-    static constexpr double u = 0x1p-53;
+    static constexpr double u = roundoff::u;
 
     /// Bound of |F(c)|; `f` is F as computed.
     Bound residual(const std::vector<Contact>& contacts, std::vector<T>& f) const {

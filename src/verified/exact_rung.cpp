@@ -1,4 +1,5 @@
 #include "contact/gap_sign.hpp"
+#include "core/roundoff.hpp"
 #include "core/work.hpp"
 #include "verified/exact_forces.hpp"
 #include "verified/force_rung.hpp"
@@ -12,7 +13,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using roundoff::infinity;
 constexpr mpfr_prec_t shown_bits = 160; ///< of what is told of exact numbers in doubles
 
 /// Rational times the root of an integer, to `bits` bits (a few units of rounding).

@@ -1,6 +1,7 @@
 #include "verified/first_order.hpp"
 
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 #include "rigidity/linkage.hpp"
 #include "rigidity/rigid_group.hpp"
 #include "verified/norm.hpp"
@@ -16,8 +17,8 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
-constexpr double root2 = 1.4142135623731;
+using roundoff::root2;
+using roundoff::u;
 constexpr double raise = 1 + 1e-10; ///< rounding of sums of non-negative terms
 
 double length_of(const std::vector<double>& x) {

@@ -1,5 +1,6 @@
 #include "verified/force_solution.hpp"
 
+#include "core/roundoff.hpp"
 #include "verified/norm.hpp"
 
 #include <cmath>
@@ -9,7 +10,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 /// Largest magnitude; NaN when there is one.
 double max_abs(const std::vector<double>& x) {

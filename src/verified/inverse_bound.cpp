@@ -1,5 +1,7 @@
 #include "verified/inverse_bound.hpp"
 
+#include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "core/work.hpp"
 #include "verified/block_cholesky.hpp"
 #include "verified/extended_cholesky.hpp"
@@ -18,31 +20,20 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
-
-double gamma(double terms) {
-    return terms * u / (1 - terms * u);
-}
-
-double norm(const std::vector<double>& x) {
-    double sum = 0;
-    for (const double c : x) {
-        sum += c * c;
-    }
-    return std::sqrt(sum);
-}
+using roundoff::gamma;
+using roundoff::u;
 
 /// Estimate of sigma_min^2 from above by inverse iteration; also improves the guess.
 double estimate(const ApproximateInverse& inverse, std::vector<double>& x, int iterations) {
     double lambda = 0;
     for (int k = 0; k < iterations; ++k) {
-        const double before = norm(x);
+        const double before = euclidean_norm(x);
         for (double& c : x) {
             c /= before;
         }
         inverse.forces(x);
         inverse.velocities(x);
-        lambda = norm(x);
+        lambda = euclidean_norm(x);
     }
     return 1 / lambda;
 }
@@ -86,11 +77,11 @@ InverseBound by_rows(const sparse::Matrix<double>& h, const Factorisation& facto
             return {};
         }
     }
-    const double slack = 1 + gamma(4.0 * static_cast<double>(n));
-    const double col_e = *std::max_element(column_sum_e.begin(), column_sum_e.end()) * slack;
-    const double col_r = *std::max_element(column_sum_r.begin(), column_sum_r.end()) * slack;
-    row_sum_e *= slack;
-    row_sum_r *= slack;
+    const double above = 1 + gamma(4.0 * static_cast<double>(n));
+    const double col_e = *std::max_element(column_sum_e.begin(), column_sum_e.end()) * above;
+    const double col_r = *std::max_element(column_sum_r.begin(), column_sum_r.end()) * above;
+    row_sum_e *= above;
+    row_sum_r *= above;
     if (!(col_e < 1) || !(row_sum_e < 1)) {
         return {};
     }
@@ -117,7 +108,7 @@ CholeskyOutcome by_cholesky(const sparse::Matrix<double>& unscaled, const Approx
         h.value[e] *= scale[static_cast<std::size_t>(h.row[e])]; // exact: sigma_min(S H) <= sigma_min(H) for S <= 1
     }
     int iterations = 1; // of a good guess: a shift that is too large only costs a second factorisation
-    if (cache.vector.size() != n || !std::isfinite(norm(cache.vector)) || norm(cache.vector) == 0) {
+    if (cache.vector.size() != n || !std::isfinite(euclidean_norm(cache.vector)) || euclidean_norm(cache.vector) == 0) {
         cache.vector.resize(n);
         std::mt19937_64 random(12345);
         for (double& c : cache.vector) {

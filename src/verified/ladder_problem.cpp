@@ -1,5 +1,6 @@
 #include "verified/ladder_problem.hpp"
 
+#include "core/roundoff.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
 
@@ -11,7 +12,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 /// What is said of forces in records holds to this fraction of the largest.
 constexpr double recorded_accuracy = 1e-7;
 

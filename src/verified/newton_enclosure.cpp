@@ -1,4 +1,5 @@
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 #include "verified/configuration.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
@@ -13,7 +14,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 /// a + b = sum + error, exactly.
 struct Pair {

@@ -1,5 +1,6 @@
 #include "verified/precise_first_order.hpp"
 
+#include "core/roundoff.hpp"
 #include "verified/contact_system.hpp"
 
 namespace isostat {
@@ -18,7 +19,7 @@ template <int Dim> struct PreciseFirstOrder<Dim>::Rung {
 
 namespace {
 
-constexpr double root2 = 1.4142135623731;
+using roundoff::root2;
 
 /// Rate of the gap of a pair that touches at the true vertex, on a motion on the degrees of freedom.
 template <int Dim>

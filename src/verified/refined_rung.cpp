@@ -1,3 +1,4 @@
+#include "core/roundoff.hpp"
 #include "core/work.hpp"
 #include "verified/interval_rung.hpp"
 #include "verified/norm.hpp"
@@ -11,7 +12,7 @@ namespace isostat {
 
 namespace {
 
-constexpr double u = 0x1p-53;
+using roundoff::u;
 
 /// What was found with fewer digits, as a guess.
 dd_real sum_of(const Arithmetic<dd_real>&, double high, double low) {

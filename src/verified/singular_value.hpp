@@ -1,6 +1,8 @@
 #pragma once
 // The last step of V1, from a factorisation of fl(H) to the exact matrix H: private to the room.
 
+#include "core/roundoff.hpp"
+
 #include <isostat/sparse/pattern.hpp>
 
 #include <algorithm>
@@ -11,7 +13,7 @@ namespace isostat {
 
 /// |H - fl(H)|_2: every entry of fl(H) has a relative error of at most 5u, |.|_2 <= sqrt(|.|_1 |.|_inf).
 inline double rounding_of_entries(const sparse::Matrix<double>& h) {
-    constexpr double u = 0x1p-53;
+    using roundoff::u;
     std::vector<double> row_sum(static_cast<std::size_t>(h.rows), 0.0);
     double column_norm = 0;
     for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
@@ -29,7 +31,7 @@ inline double rounding_of_entries(const sparse::Matrix<double>& h) {
 
 /// Lower bound of sigma_min(H) from one of sigma_min(fl(H))^2 and |H - fl(H)|_2; not positive: there is none.
 inline double smallest_singular_value(double square, double entry_error) {
-    constexpr double u = 0x1p-53;
+    using roundoff::u;
     return square > 0 ? std::sqrt(square) * (1 - 4 * u) - entry_error : 0;
 }
 

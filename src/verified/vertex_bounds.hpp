@@ -2,6 +2,7 @@
 // What the bounds of the true vertex share (statement V4): private to the room.
 
 #include "contact/separation.hpp"
+#include "core/roundoff.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -41,7 +42,7 @@ inline double separation_weight_square(const Contact& contact) {
     return (contact.i == contact.j ? 0.0 : 2.0) + a * a;
 }
 inline double separation_weight(const Contact& contact) {
-    constexpr double root2 = 1.4142135623731;
+    using roundoff::root2;
     return contact.image.is_here() ? root2 : std::sqrt(separation_weight_square(contact)) * (1 + 0x1p-50);
 }
 

@@ -18,11 +18,11 @@ using namespace isostat;
 
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double huge = std::numeric_limits<double>::infinity();
 
 /// One alteration, and the claims of which at least one must not be proved any more; the first of them is refuted when
 /// `refuted`.
-struct Alteration {
+struct ClaimAlteration {
     std::string name;
     std::function<void(Certificate&)> apply;
     bool refuted = true;
@@ -33,7 +33,7 @@ std::string digest_in(const std::string& text) {
 }
 
 /// The alteration in a file whose digest was kept: bad input. With a digest of its own: read, and not verified.
-void does_not_verify(const Certificate& original, const Alteration& alteration) {
+void does_not_verify(const Certificate& original, const ClaimAlteration& alteration) {
     BOOST_TEST_CONTEXT(alteration.name) {
         Certificate altered = original;
         alteration.apply(altered);
@@ -50,8 +50,8 @@ void does_not_verify(const Certificate& original, const Alteration& alteration) 
     }
 }
 
-std::vector<Alteration> alterations_of_claims(const Certificate& original) {
-    std::vector<Alteration> list;
+std::vector<ClaimAlteration> alterations_of_claims(const Certificate& original) {
+    std::vector<ClaimAlteration> list;
     const auto add = [&list](const std::string& name, std::function<void(Certificate&)> apply, bool refuted = true) {
         list.push_back({name, std::move(apply), refuted});
     };
@@ -76,7 +76,7 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
     add(
         "unique radius", [](Certificate& c) { c.claims.vertex->unique_radius = 1e3; }, false);
     add(
-        "unique radius without end", [](Certificate& c) { c.claims.vertex->unique_radius = inf; }, false);
+        "unique radius without end", [](Certificate& c) { c.claims.vertex->unique_radius = huge; }, false);
 
     const ForcesClaim& forces = *original.claims.forces;
     for (std::size_t l = 0; l < forces.finite.size(); ++l) {
@@ -95,13 +95,13 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
                 auto& zeros = c.claims.forces->structural_zeros;
                 const auto at = std::lower_bound(zeros.begin(), zeros.end(), static_cast<int>(l));
                 c.claims.forces->infinitesimal.insert(c.claims.forces->infinitesimal.begin() + (at - zeros.begin()),
-                                                      Interval{-inf, inf});
+                                                      Interval{-huge, huge});
                 zeros.insert(at, static_cast<int>(l));
             });
-            const Alteration as_zero = list.back();
+            const ClaimAlteration as_zero = list.back();
             add(which + " as a structural zero, in any interval", [=](Certificate& c) {
                 as_zero.apply(c);
-                c.claims.forces->finite[l] = {-inf, inf};
+                c.claims.forces->finite[l] = {-huge, huge};
             });
         }
     }
@@ -122,7 +122,7 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
     }
 
     add("smallest gap", [](Certificate& c) { c.claims.gaps->smallest *= 1 + 1e-6; });
-    add("smallest gap without end", [](Certificate& c) { c.claims.gaps->smallest = inf; });
+    add("smallest gap without end", [](Certificate& c) { c.claims.gaps->smallest = huge; });
     for (const Contact& pair : maker::all_pairs(original.state)) {
         if (pair != original.claims.gaps->where && original.state.packing.disk_count() < 10) {
             add("nearest pair " + to_string<2>(pair), [=](Certificate& c) { c.claims.gaps->where = pair; });
@@ -134,7 +134,7 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
         const std::string which = end == &LoadIntervalClaim::low ? "low end" : "high end";
         if (((*original.claims.load_interval).*end).unbounded) {
             add(which + " bounded", [=](Certificate& c) {
-                (*c.claims.load_interval).*end = {false, {-inf, inf}, c.state.contacts[0]};
+                (*c.claims.load_interval).*end = {false, {-huge, huge}, c.state.contacts[0]};
             });
             continue;
         }
@@ -152,7 +152,7 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
                     which + " opens " + to_string<2>(contact),
                     [=](Certificate& c) {
                         ((*c.claims.load_interval).*end).opens = contact;
-                        ((*c.claims.load_interval).*end).stress = {-inf, inf};
+                        ((*c.claims.load_interval).*end).stress = {-huge, huge};
                     },
                     false);
             }
@@ -161,8 +161,8 @@ std::vector<Alteration> alterations_of_claims(const Certificate& original) {
     return list;
 }
 
-std::vector<Alteration> alterations_of_the_state(const Certificate& original) {
-    std::vector<Alteration> list;
+std::vector<ClaimAlteration> alterations_of_the_state(const Certificate& original) {
+    std::vector<ClaimAlteration> list;
     const auto add = [&list](const std::string& name, std::function<void(Certificate&)> apply, bool refuted = true) {
         list.push_back({name, std::move(apply), refuted});
     };
@@ -231,14 +231,14 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(no_altered_claim_of_a_small_packing_verifies) {
     const Certificate original = maker::certificate(small_states::with_a_rattler());
     BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
-    for (const Alteration& alteration : alterations_of_claims(original)) {
+    for (const ClaimAlteration& alteration : alterations_of_claims(original)) {
         does_not_verify(original, alteration);
     }
 }
 
 BOOST_AUTO_TEST_CASE(no_altered_state_of_a_small_packing_verifies) {
     const Certificate original = maker::certificate(small_states::with_a_rattler());
-    for (const Alteration& alteration : alterations_of_the_state(original)) {
+    for (const ClaimAlteration& alteration : alterations_of_the_state(original)) {
         does_not_verify(original, alteration);
     }
 }
@@ -247,8 +247,8 @@ BOOST_AUTO_TEST_CASE(no_altered_state_of_a_small_packing_verifies) {
 BOOST_AUTO_TEST_CASE(no_altered_claim_or_state_of_a_hundred_disks_verifies) {
     const Certificate original = maker::certificate(read_state<2>(scratch::data("vertex100.txt")).state);
     BOOST_REQUIRE((verify(original).verdict == Verdict::proved));
-    std::vector<Alteration> all = alterations_of_claims(original);
-    for (Alteration& alteration : alterations_of_the_state(original)) {
+    std::vector<ClaimAlteration> all = alterations_of_claims(original);
+    for (ClaimAlteration& alteration : alterations_of_the_state(original)) {
         all.push_back(std::move(alteration));
     }
     for (std::size_t k = 0; k < all.size(); k += 29) {
@@ -262,7 +262,7 @@ BOOST_AUTO_TEST_CASE(weaker_claims_verify) {
     weaker.claims.vertex->radius *= 3;
     weaker.claims.vertex->unique_radius /= 3;
     for (Interval& force : weaker.claims.forces->finite) {
-        force = {-inf, force.upper + 1};
+        force = {-huge, force.upper + 1};
     }
     weaker.claims.gaps->smallest /= 2;
     weaker.claims.load_interval->high.stress.upper += 1;

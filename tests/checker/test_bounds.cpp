@@ -21,13 +21,13 @@ using namespace isostat;
 namespace {
 
 void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
-    const checker::Problem problem(state);
-    const checker::Solver solver(problem);
-    const checker::InverseBound bound = checker::bound_inverse(problem, solver, arithmetic);
+    const isostat::checker::Problem problem(state);
+    const isostat::checker::Solver solver(problem);
+    const isostat::checker::InverseBound bound = isostat::checker::bound_inverse(problem, solver, arithmetic);
     BOOST_REQUIRE(bound.found);
     const maker::Matrix inverse = dense::derivative(problem).inverse();
     const maker::Matrix sizes = inverse.cwiseAbs();
-    const auto near = [](const checker::Rational& upper, maker::Real value) {
+    const auto near = [](const isostat::checker::Rational& upper, maker::Real value) {
         // R is the inverse to a relative 1e-9 here, and the oracle to 1e-12.
         return upper.get_d() >= static_cast<double>(value) * (1 - 1e-9) &&
                upper.get_d() <= static_cast<double>(value) * (1 + 1e-9);
@@ -51,16 +51,17 @@ void check_bounds(const State<2>& state, CheckerArithmetic arithmetic) {
 }
 
 void check_sharper(const State<2>& state) {
-    checker::Place place;
-    BOOST_REQUIRE(!checker::make_place(state, place));
-    const checker::Rational radius = place.evidence->vertex.radius;
-    const std::vector<checker::Range> forces = place.evidence->forces;
+    isostat::checker::Place place;
+    BOOST_REQUIRE(!isostat::checker::make_place(state, place));
+    const isostat::checker::Rational radius = place.evidence->vertex.radius;
+    const std::vector<isostat::checker::Range> forces = place.evidence->forces;
     BOOST_TEST(radius > 0);
-    BOOST_REQUIRE(!checker::sharpen(place, checker::usual_digits + 240));
-    BOOST_TEST((place.evidence->vertex.radius < radius * checker::power_of_two(-200)));
+    BOOST_REQUIRE(!isostat::checker::sharpen(place, isostat::checker::usual_digits + 240));
+    BOOST_TEST((place.evidence->vertex.radius < radius * isostat::checker::power_of_two(-200)));
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        const checker::Range& now = place.evidence->forces[l];
-        BOOST_TEST((now.upper - now.lower <= (forces[l].upper - forces[l].lower) * checker::power_of_two(-200)));
+        const isostat::checker::Range& now = place.evidence->forces[l];
+        BOOST_TEST(
+            (now.upper - now.lower <= (forces[l].upper - forces[l].lower) * isostat::checker::power_of_two(-200)));
         BOOST_TEST((now.lower <= forces[l].upper && now.upper >= forces[l].lower)); // of the same number
     }
 }
@@ -97,7 +98,7 @@ BOOST_AUTO_TEST_CASE(a_wrong_factorisation_proves_nothing) {
 // K4 at the stored place itself: a useless factorisation does not lead to a better one. Rational numbers throughout.
 BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_else) {
     namespace checker = isostat::checker;
-    using checker::Rational;
+    using isostat::checker::Rational;
     const double h = 0x1p-5;
     for (const double target : {0.1, 0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 1.9, 2.5}) { // of 2 kappa eta
         State<2> state = small_states::between_two(h);
@@ -106,9 +107,9 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
         const double x = std::sqrt(4 - h * h + 2 * off);
         state.packing.q[0] = 2 - x;
         state.packing.q[2] = 2 + x;
-        const checker::Problem problem(state);
-        const checker::InverseBound inverse =
-            checker::bound_inverse(problem, checker::Solver(problem), CheckerArithmetic::singular_value);
+        const isostat::checker::Problem problem(state);
+        const isostat::checker::InverseBound inverse = isostat::checker::bound_inverse(
+            problem, isostat::checker::Solver(problem), CheckerArithmetic::singular_value);
         BOOST_REQUIRE(inverse.found);
         Rational largest = 0;
         for (const std::size_t k : {0U, 2U}) {
@@ -118,8 +119,9 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
         }
         const Rational kappa = 8 * inverse.quadratic_sum;
         const Rational eta = inverse.row_sum * largest;
-        const checker::Problem flat(small_states::between_two(h / 64));
-        const checker::TrueVertex vertex = checker::find_vertex(problem, checker::Solver(flat), inverse);
+        const isostat::checker::Problem flat(small_states::between_two(h / 64));
+        const isostat::checker::TrueVertex vertex =
+            isostat::checker::find_vertex(problem, isostat::checker::Solver(flat), inverse);
         BOOST_TEST(vertex.found == (2 * kappa * eta < 1), target);
         if (vertex.found) {
             BOOST_TEST((vertex.radius >= 2 * eta && vertex.radius <= 2 * eta * Rational(1.001)));
@@ -133,35 +135,37 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_where_K4_has_its_condition_and_nowhere_el
 BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
     namespace checker = isostat::checker;
     const State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
-    const checker::Problem problem(state);
-    const checker::Solver solver(problem);
-    const checker::InverseBound inverse = checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
-    checker::TrueVertex vertex = checker::find_vertex(problem, solver, inverse);
+    const isostat::checker::Problem problem(state);
+    const isostat::checker::Solver solver(problem);
+    const isostat::checker::InverseBound inverse =
+        isostat::checker::bound_inverse(problem, solver, CheckerArithmetic::fixed64);
+    isostat::checker::TrueVertex vertex = isostat::checker::find_vertex(problem, solver, inverse);
     BOOST_REQUIRE(vertex.found);
-    const checker::Rational radius = checker::power_of_two(-12);
+    const isostat::checker::Rational radius = isostat::checker::power_of_two(-12);
     vertex.moved_most += radius;
     vertex.column_residual = inverse.residual_column + inverse.column_sum_max * 2 *
-                                                           checker::Rational(problem.most_quadratic()) *
+                                                           isostat::checker::Rational(problem.most_quadratic()) *
                                                            vertex.moved_most;
-    const auto forces_at = [&](const checker::TrueVertex& at) {
-        return checker::contact_forces(problem, solver, inverse, at, checker::finite_load(problem, state, at));
+    const auto forces_at = [&](const isostat::checker::TrueVertex& at) {
+        return isostat::checker::contact_forces(problem, solver, inverse, at,
+                                                isostat::checker::finite_load(problem, state, at));
     };
     vertex.radius = radius;
-    const std::vector<checker::Range> enclosed = forces_at(vertex);
-    checker::Rational farthest = 0; // of the way to an end
+    const std::vector<isostat::checker::Range> enclosed = forces_at(vertex);
+    isostat::checker::Rational farthest = 0; // of the way to an end
     std::mt19937_64 random(1);
     for (int sample = 0; sample < testing::scaled(200); ++sample) {
-        checker::TrueVertex point = vertex;
+        isostat::checker::TrueVertex point = vertex;
         point.radius = 0;
         for (const int k : problem.coordinate_of) {
             const int sign = random() % 2 == 0 ? 1 : -1;
-            point.middle[static_cast<std::size_t>(k)] += sign * checker::floor_of(radius, -problem.fine);
+            point.middle[static_cast<std::size_t>(k)] += sign * isostat::checker::floor_of(radius, -problem.fine);
         }
-        const std::vector<checker::Range> there = forces_at(point);
+        const std::vector<isostat::checker::Range> there = forces_at(point);
         for (std::size_t l = 0; l < there.size(); ++l) {
             BOOST_REQUIRE((there[l].lower >= enclosed[l].lower && there[l].upper <= enclosed[l].upper));
-            const checker::Rational middle = (enclosed[l].lower + enclosed[l].upper) / 2;
-            const checker::Rational way = abs(there[l].lower - middle) / (enclosed[l].upper - middle);
+            const isostat::checker::Rational middle = (enclosed[l].lower + enclosed[l].upper) / 2;
+            const isostat::checker::Rational way = abs(there[l].lower - middle) / (enclosed[l].upper - middle);
             farthest = std::max(farthest, way);
         }
     }
@@ -172,30 +176,30 @@ BOOST_AUTO_TEST_CASE(forces_hold_at_every_point_of_the_enclosure) {
 BOOST_AUTO_TEST_CASE(motions_hold_at_every_point_of_the_enclosure) {
     namespace checker = isostat::checker;
     const State<2> state = crafted::three_disks(1, 1.1, 1.3, 1, 1.5);
-    checker::Evidence wide(state, CheckerArithmetic::fixed64);
-    checker::Evidence point(state, CheckerArithmetic::fixed64);
+    isostat::checker::Evidence wide(state, CheckerArithmetic::fixed64);
+    isostat::checker::Evidence point(state, CheckerArithmetic::fixed64);
     BOOST_REQUIRE(wide.vertex.found);
-    const checker::Rational radius = checker::power_of_two(-12);
+    const isostat::checker::Rational radius = isostat::checker::power_of_two(-12);
     wide.vertex.radius = radius;
     wide.vertex.moved_most += radius;
-    wide.vertex.row_residual += checker::row_curvature * wide.inverse.quadratic_sum * radius;
-    const std::vector<checker::Integer> middle = point.vertex.middle;
-    checker::Rational farthest = 0; // of the way to an end
+    wide.vertex.row_residual += isostat::checker::row_curvature * wide.inverse.quadratic_sum * radius;
+    const std::vector<isostat::checker::Integer> middle = point.vertex.middle;
+    isostat::checker::Rational farthest = 0; // of the way to an end
     std::mt19937_64 random(2);
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        const checker::Velocities::Solution enclosed = checker::Velocities(wide).opening(l, 1);
+        const isostat::checker::Velocities::Solution enclosed = isostat::checker::Velocities(wide).opening(l, 1);
         for (int sample = 0; sample < testing::scaled(20); ++sample) {
             for (const int k : point.problem.coordinate_of) {
                 const auto c = static_cast<std::size_t>(k);
                 const int sign = random() % 2 == 0 ? 1 : -1;
-                point.vertex.middle[c] = middle[c] + sign * checker::floor_of(radius, -point.problem.fine);
+                point.vertex.middle[c] = middle[c] + sign * isostat::checker::floor_of(radius, -point.problem.fine);
             }
             point.vertex.row_residual = wide.vertex.row_residual;
-            const checker::Velocities::Solution there = checker::Velocities(point).opening(l, 1);
+            const isostat::checker::Velocities::Solution there = isostat::checker::Velocities(point).opening(l, 1);
             for (std::size_t c = 0; c < middle.size(); ++c) {
-                const checker::Rational way = abs(there.middle[c] - enclosed.middle[c]) + there.radius;
+                const isostat::checker::Rational way = abs(there.middle[c] - enclosed.middle[c]) + there.radius;
                 BOOST_REQUIRE((way <= enclosed.radius));
-                farthest = std::max<checker::Rational>(farthest, way / enclosed.radius);
+                farthest = std::max<isostat::checker::Rational>(farthest, way / enclosed.radius);
             }
         }
     }

@@ -410,7 +410,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(forged_records_are_refused_or_undecided_and_whatever_is_not_checked_is_listed) {
     const scratch::Folder folder;
     play(swing(12.991722005007981, 11.395062882006048), {one(-1)}, folder / "swing");
-    play(crafted::prepared(8, 3), {one(1, 2), one(-1)}, folder / "eight");
+    play(prepared(8, 3), {one(1, 2), one(-1)}, folder / "eight");
     int forgeries = 0;
     for (const char* run : {"swing", "eight"}) {
         BOOST_TEST_CONTEXT(run) {
@@ -425,7 +425,7 @@ BOOST_AUTO_TEST_CASE(forged_records_are_refused_or_undecided_and_whatever_is_not
 // A bound that is too small is wrong; one so large that nothing follows from it leaves the row undecided.
 BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
     const scratch::Folder folder;
-    play(crafted::prepared(8, 3), {one(1, 2)}, folder / "eight");
+    play(prepared(8, 3), {one(1, 2)}, folder / "eight");
     const std::vector<std::string>& names = equilibria_columns();
     const auto column = [&names](const std::string& name) {
         return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());

@@ -22,8 +22,8 @@ using namespace isostat;
 namespace {
 
 /// Plays segments from a state into a folder, every state stored.
-void play(const State<2>& start, const std::vector<Segment>& segments, const std::filesystem::path& folder,
-          OpeningRule rule = OpeningRule::most_negative) {
+void play_and_store(const State<2>& start, const std::vector<Segment>& segments, const std::filesystem::path& folder,
+                    OpeningRule rule = OpeningRule::most_negative) {
     RunHeader header;
     header.program = "test";
     const std::string word = opening_rule_words[static_cast<std::size_t>(rule)];
@@ -167,7 +167,7 @@ BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 2;
-    play(read_state<2>(scratch::data("vertex100.txt")).state, {up}, folder / "run");
+    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {up}, folder / "run");
     int arcs = 0;
     int equilibria = 0;
     VerificationProgress last;
@@ -192,7 +192,7 @@ BOOST_AUTO_TEST_CASE(the_rolling_disk_is_replayed) {
     Segment up;
     up.direction = 1;
     up.equilibria = 1;
-    play(crafted::two_disks(1, 2, 1, 1), {down, up}, folder / "run");
+    play_and_store(crafted::two_disks(1, 2, 1, 1), {down, up}, folder / "run");
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_strut_that_a_grain_without_force_hangs_on_is_r
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 5;
-    play(crafted::prepared(40, 15), {up}, folder / "run");
+    play_and_store(prepared(40, 15), {up}, folder / "run");
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete,
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 4;
-    play(crafted::prepared(36, 3), {up}, folder / "run", OpeningRule::least_negative);
+    play_and_store(prepared(36, 3), {up}, folder / "run", OpeningRule::least_negative);
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -250,7 +250,7 @@ BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 3;
-    play(crafted::prepared(36, 3), {up}, folder / "run", OpeningRule::least_index);
+    play_and_store(prepared(36, 3), {up}, folder / "run", OpeningRule::least_index);
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
@@ -258,7 +258,7 @@ BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits
     scratch::write(folder / "run/run.json", scratch::replaced(header, "least_index", "most_negative"));
     const RunVerification other = verify_run(folder / "run");
     BOOST_TEST((other.wrong.find("but the rule 'most_negative' takes") != std::string::npos), other.wrong);
-    play(crafted::prepared(36, 3), {up}, folder / "most");
+    play_and_store(prepared(36, 3), {up}, folder / "most");
     const std::string paper = scratch::read(folder / "most/run.json");
     scratch::write(folder / "most/run.json", scratch::replaced(paper, "most_negative", "least_index"));
     const RunVerification most = verify_run(folder / "most");
@@ -271,9 +271,9 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_and_comes_back_under_true_stresses_is_no
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 4;
-    State<2> start = crafted::prepared(36, 7);
+    State<2> start = prepared(36, 7);
     start.load.kind = LoadKind::true_stress;
-    play(start, {up}, folder / "run", OpeningRule::steepest);
+    play_and_store(start, {up}, folder / "run", OpeningRule::steepest);
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.turns_checked == 2);
@@ -286,7 +286,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     Segment down;
     down.direction = -1;
     down.equilibria = 1;
-    play(read_state<2>(scratch::data("vertex100.txt")).state, {up, down}, folder / "run");
+    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {up, down}, folder / "run");
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));

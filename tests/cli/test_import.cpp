@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
+const std::string crafted_files = std::string(ISOSTAT_EXAMPLES) + "/packings/";
 
 /// The sample of 100 disks as soft grains would leave it: every length but the radii is shorter by this part.
 struct Soft {
@@ -170,13 +170,14 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
 BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
     const scratch::Folder folder;
     const std::string out = (folder / "s.json").string();
-    expect(run({"import", packings + "two_disks.toml", "-o", out}), 0);
+    expect(run({"import", crafted_files + "two_disks.toml", "-o", out}), 0);
     expect(run({"inspect", out}), 0);
     BOOST_TEST(read_state<2>(out).state.contacts.size() == 6U);
     fs::remove(out);
-    expect(run({"import", packings + "square_lattice_2.toml", "-o", out}), 1, {"h = 2", "isostatic"});
-    expect(run({"import", packings + "two_disks_past_the_limit.toml", "-o", out}), 1, {"force", "1-bottom"});
-    expect(run({"import", packings + "two_disks.toml", "-o", out, "--jitter", "1e-6"}), 65, {"crafted", "--jitter"});
+    expect(run({"import", crafted_files + "square_lattice_2.toml", "-o", out}), 1, {"h = 2", "isostatic"});
+    expect(run({"import", crafted_files + "two_disks_past_the_limit.toml", "-o", out}), 1, {"force", "1-bottom"});
+    expect(run({"import", crafted_files + "two_disks.toml", "-o", out, "--jitter", "1e-6"}), 65,
+           {"crafted", "--jitter"});
     BOOST_TEST(!fs::exists(out));
 }
 

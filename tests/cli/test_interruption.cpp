@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Two segments, so that a kill can come in either; vertex400 keeps it going long enough to be hit.
-const std::string programme =
+const std::string long_scene =
     "[[programme]]\ndo = \"up\"\nequilibria = 12\n[[programme]]\ndo = \"down\"\nfrom = 4\nequilibria = 6\n";
 
 void same_files(const fs::path& a, const fs::path& b) {
@@ -45,7 +45,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme, "checkpoint_seconds = 0\n"));
+    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     const std::string events = scratch::read(folder / "whole/events.jsonl");
     const auto arcs = std::count(events.begin(), events.end(), '\n');
@@ -70,7 +70,7 @@ BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
 BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), programme, "checkpoint_seconds = 0\n"));
+    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     for (const int signal : {SIGINT, SIGTERM}) {
         const fs::path out = folder / ("cut" + std::to_string(signal));

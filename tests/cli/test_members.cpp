@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 using namespace program;
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -32,11 +31,12 @@ BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
     const fs::path many = ensemble(folder);
     const Outcome good = run({"verify", many.string(), "--json"});
     expect(good, 0);
-    const json answer = json::parse(good.out);
+    const nlohmann::json answer = nlohmann::json::parse(good.out);
     BOOST_TEST_REQUIRE(answer["members"].size() == 3U);
     int arcs = 0;
-    for (const json& member : answer["members"]) {
-        const json one = json::parse(run({"verify", member["folder"].get<std::string>(), "--json"}).out);
+    for (const nlohmann::json& member : answer["members"]) {
+        const nlohmann::json one =
+            nlohmann::json::parse(run({"verify", member["folder"].get<std::string>(), "--json"}).out);
         BOOST_TEST(one["verdict"] == member["verdict"]);
         BOOST_TEST(one["arcs"] == member["arcs"]);
         arcs += one["arcs"].get<int>();

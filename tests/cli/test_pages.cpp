@@ -14,7 +14,6 @@
 #include <sstream>
 
 using namespace program;
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -154,7 +153,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_an_arc) {
     arc.certificate.emplace();
     arc.perturbed.push_back({"force", arc.opened, {}, {isostat::ContactKind::disk_disk, -1, -1}, {}});
     std::set<std::string> written;
-    const json line = json::parse(isostat::event_line(arc));
+    const nlohmann::json line = nlohmann::json::parse(isostat::event_line(arc));
     for (auto field = line.begin(); field != line.end(); ++field) {
         written.insert(field.key());
     }

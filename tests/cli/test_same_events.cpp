@@ -8,7 +8,6 @@
 #include <sstream>
 
 using namespace program;
-using nlohmann::json;
 
 namespace {
 
@@ -17,7 +16,7 @@ std::vector<std::string> events_of(const std::filesystem::path& folder) {
     std::istringstream lines(scratch::read(folder / "events.jsonl"));
     std::vector<std::string> events;
     for (std::string line; std::getline(lines, line);) {
-        const json arc = json::parse(line);
+        const nlohmann::json arc = nlohmann::json::parse(line);
         events.push_back(arc["opened"].get<std::string>() + " > " + arc["closed"].get<std::string>());
     }
     return events;
@@ -40,7 +39,7 @@ void compare(int disks, int seed, int equilibria) {
             events.push_back(events_of(folder / level));
             const Outcome verified = run({"verify", out, "--json"});
             expect(verified, 0);
-            const json answer = json::parse(verified.out);
+            const nlohmann::json answer = nlohmann::json::parse(verified.out);
             BOOST_TEST(answer["verdict"] == "ends proved, way looked at", verified.out);
             BOOST_TEST(answer["ends_proved"] == events.back().size());
         }

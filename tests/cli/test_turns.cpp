@@ -6,7 +6,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::vector<std::string> events_of(const std::string& scene) {
+std::vector<std::string> events_of_scene(const std::string& scene) {
     const scratch::Folder folder;
     const fs::path out = folder / "run";
     expect(run({"run", scratch::data("../../examples/turns/" + scene), "-o", out.string(), "-q"}), 0);
@@ -33,7 +33,7 @@ void has(const std::string& line, const std::vector<std::string>& parts) {
 BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(three_disks_meet_a_power_turn_hold_a_coordinate_and_release_it) {
-    const auto events = events_of("power-turn.toml");
+    const auto events = events_of_scene("power-turn.toml");
     BOOST_TEST_REQUIRE(events.size() == 3U);
     const std::string proved = "\"certificate\":{\"verdict\":\"proved\"";
     has(events[0], {"\"kind\":\"limit\"", "\"opened\":\"1-left\"", "\"closed\":\"held x of grain 1\"",
@@ -44,7 +44,7 @@ BOOST_AUTO_TEST_CASE(three_disks_meet_a_power_turn_hold_a_coordinate_and_release
 }
 
 BOOST_AUTO_TEST_CASE(four_disks_open_a_contact_whose_gap_turns_back) {
-    const auto events = events_of("turning.toml");
+    const auto events = events_of_scene("turning.toml");
     BOOST_TEST_REQUIRE(events.size() == 2U);
     has(events[0], {"\"opened\":\"0-2\"", "\"closed\":\"3-bottom\"", "\"verdict\":\"proved\"", "\"turning\":true"});
     has(events[1], {"\"verdict\":\"proved\"", "\"turning\":false"});

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 using namespace program;
-using nlohmann::json;
 
 BOOST_AUTO_TEST_SUITE(cli)
 
@@ -20,10 +19,10 @@ BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
     expect(run({"verify", good}), 0);
     const Outcome outcome = run({"verify", good, "--input", state, "--json"});
     expect(outcome, 0);
-    const json answer = json::parse(outcome.out);
+    const nlohmann::json answer = nlohmann::json::parse(outcome.out);
     BOOST_TEST(answer["verdict"] == "proved");
     std::vector<std::string> claims;
-    for (const json& check : answer["checks"]) {
+    for (const nlohmann::json& check : answer["checks"]) {
         claims.push_back(check["claim"]);
         BOOST_TEST(check["verdict"] == "proved");
     }
@@ -90,7 +89,7 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
     const Outcome good = run({"verify", out, "--json"});
     expect(good, 0);
-    const json answer = json::parse(good.out);
+    const nlohmann::json answer = nlohmann::json::parse(good.out);
     BOOST_TEST(answer["verdict"] == "ends proved, way looked at");
     BOOST_TEST(answer["ends_proved"] == answer["arcs"]);
     BOOST_TEST(answer["ways_proved"] == 0);

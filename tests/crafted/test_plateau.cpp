@@ -52,7 +52,7 @@ bool closer(const Packing<2>& packing, const isostat::Contact& c, double thresho
     return (x * x + y * y - s * s).sign() <= 0;
 }
 
-Packing<2> example(const std::string& name) {
+Packing<2> rounded_example(const std::string& name) {
     return approximate(read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing);
 }
 
@@ -62,7 +62,7 @@ BOOST_AUTO_TEST_SUITE(crafted_plateau)
 
 BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
     for (const double noise : {1e-9, 1e-6, 1e-3}) {
-        Packing<2> packing = example("three_disks_and_a_rattler.toml");
+        Packing<2> packing = rounded_example("three_disks_and_a_rattler.toml");
         shake(packing, noise, 7);
         const Plateau answer = plateau(packing, decades(-12, -1));
         BOOST_REQUIRE_EQUAL(answer.ranges.size(), 1u);
@@ -87,7 +87,7 @@ BOOST_AUTO_TEST_CASE(noise_moves_the_lower_end_of_the_plateau) {
 
 BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
     // The top disk is given 1e-3 of room to each of two fixed stops: at a threshold above it h = 1, then 2.
-    Packing<2> packing = example("three_disks.toml");
+    Packing<2> packing = rounded_example("three_disks.toml");
     const double root = std::sqrt(3.0);
     for (const double side : {-1.0, 1.0}) {
         packing.radius.push_back(0.25);
@@ -104,7 +104,7 @@ BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
 }
 
 BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
-    Packing<2> packing = example("triangular_patch_3x3.toml");
+    Packing<2> packing = rounded_example("triangular_patch_3x3.toml");
     shake(packing, 1e-8, 5);
     const Plateau answer = plateau(packing, {1e-6, 1e-5, 1e-4, 1e-3});
     BOOST_TEST(answer.ranges.empty());
@@ -245,13 +245,13 @@ BOOST_AUTO_TEST_CASE(equal_gaps_enter_together) {
 }
 
 BOOST_AUTO_TEST_CASE(lengths_beyond_the_squares_of_doubles_are_refused) {
-    Packing<2> packing = example("two_disks.toml");
+    Packing<2> packing = rounded_example("two_disks.toml");
     packing.q[0] = 1e200;
     BOOST_CHECK_THROW((void)plateau(packing, {0.1}), isostat::Error);
-    packing = example("two_disks.toml");
+    packing = rounded_example("two_disks.toml");
     packing.radius[0] = 1e-200;
     BOOST_CHECK_THROW((void)plateau(packing, {0.1}), isostat::Error);
-    BOOST_CHECK_THROW((void)plateau(example("two_disks.toml"), {1e200}), isostat::Error);
+    BOOST_CHECK_THROW((void)plateau(rounded_example("two_disks.toml"), {1e200}), isostat::Error);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -20,7 +20,7 @@ std::uint64_t to_word(const mpz_class& x) {
 }
 
 /// The residue of a rational with a power of two as denominator, by GMP.
-std::uint64_t reduce(const mpq_class& x, const mpz_class& p = prime) {
+std::uint64_t reduce_modulo(const mpq_class& x, const mpz_class& p = prime) {
     mpz_class inverse;
     mpz_invert(inverse.get_mpz_t(), x.get_den().get_mpz_t(), p.get_mpz_t());
     mpz_class r = x.get_num() * inverse % p;
@@ -60,9 +60,9 @@ BOOST_AUTO_TEST_CASE(residues_of_doubles_are_exact_at_every_magnitude) {
     for (const double x : values) {
         const std::uint64_t r = exact::residue(x);
         BOOST_TEST(r < mersenne61);
-        BOOST_TEST(r == reduce(mpq_class(x)));
+        BOOST_TEST(r == reduce_modulo(mpq_class(x)));
         BOOST_TEST((r == 0) == (x == 0)); // 53 bits are fewer than p has
-        BOOST_TEST(exact::residue31(x) == reduce(mpq_class(x), exact::mersenne31));
+        BOOST_TEST(exact::residue31(x) == reduce_modulo(mpq_class(x), exact::mersenne31));
     }
 }
 

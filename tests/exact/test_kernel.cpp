@@ -27,9 +27,9 @@ Number random_number(std::mt19937_64& random, int fields) {
     return sum;
 }
 
-using Dense = std::vector<std::vector<Number>>; // rows
+using Rows = std::vector<std::vector<Number>>; // rows
 
-NumberMatrix sparse_of(const Dense& a, int cols) {
+NumberMatrix sparse_of(const Rows& a, int cols) {
     NumberMatrix out;
     out.rows = static_cast<int>(a.size());
     out.column.resize(static_cast<std::size_t>(cols));
@@ -44,7 +44,7 @@ NumberMatrix sparse_of(const Dense& a, int cols) {
 }
 
 /// Rank by elimination in the field: the oracle, no prime involved.
-int field_rank(Dense a, int cols) {
+int field_rank(Rows a, int cols) {
     std::size_t rank = 0;
     for (std::size_t j = 0; j < static_cast<std::size_t>(cols) && rank < a.size(); ++j) {
         std::size_t r = rank;
@@ -67,10 +67,10 @@ int field_rank(Dense a, int cols) {
 }
 
 /// A random matrix, often of lower rank than its shape: a product of two thin ones.
-Dense random_matrix(std::mt19937_64& random, int rows, int cols, int fields) {
+Rows random_matrix(std::mt19937_64& random, int rows, int cols, int fields) {
     const auto inner = 1 + random() % static_cast<std::size_t>(std::min(rows, cols) + 1);
-    Dense left(static_cast<std::size_t>(rows), std::vector<Number>(inner)), out(static_cast<std::size_t>(rows));
-    Dense right(inner, std::vector<Number>(static_cast<std::size_t>(cols)));
+    Rows left(static_cast<std::size_t>(rows), std::vector<Number>(inner)), out(static_cast<std::size_t>(rows));
+    Rows right(inner, std::vector<Number>(static_cast<std::size_t>(cols)));
     for (auto* factor : {&left, &right}) {
         for (auto& row : *factor) {
             for (Number& x : row) {
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(rank_and_kernel_agree_with_elimination_in_the_field) {
     for (int k = 0; k < 1500; ++k) {
         const int rows = 1 + static_cast<int>(random() % 6), cols = 1 + static_cast<int>(random() % 6);
         const int fields = 1 + static_cast<int>(random() % 6);
-        const Dense a = random_matrix(random, rows, cols, fields);
+        const Rows a = random_matrix(random, rows, cols, fields);
         const NumberMatrix matrix = sparse_of(a, cols);
         const int rank = field_rank(a, cols);
         deficient += rank < std::min(rows, cols) ? 1 : 0;
@@ -163,7 +163,7 @@ BOOST_AUTO_TEST_CASE(rank_and_kernel_agree_with_elimination_in_the_field) {
 BOOST_AUTO_TEST_CASE(entries_from_1e_minus_150_to_1e150_need_many_primes_and_get_them) {
     std::mt19937_64 random(4);
     for (int k = 0; k < 20; ++k) {
-        Dense a(3, std::vector<Number>(4));
+        Rows a(3, std::vector<Number>(4));
         for (auto& row : a) {
             for (Number& x : row) {
                 const auto exponent = std::to_string(static_cast<int>(random() % 301) - 150);
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(inequalities_have_a_certificate_for_either_answer) {
     int yes = 0, no = 0;
     for (int k = 0; k < 1000; ++k) {
         const int rows = 1 + static_cast<int>(random() % 4), cols = 1 + static_cast<int>(random() % 5);
-        Dense a(static_cast<std::size_t>(rows), std::vector<Number>(static_cast<std::size_t>(cols)));
+        Rows a(static_cast<std::size_t>(rows), std::vector<Number>(static_cast<std::size_t>(cols)));
         std::vector<Number> b(static_cast<std::size_t>(rows));
         for (std::size_t i = 0; i < a.size(); ++i) {
             for (Number& x : a[i]) {

@@ -21,7 +21,7 @@ std::optional<State<2>> prepared(const PreparationOptions& options) {
     return made.ok() ? std::optional(made.value()) : std::nullopt;
 }
 
-PreparationOptions disks(int count, double smallest = 1, double largest = 2) {
+PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) {
     PreparationOptions options;
     options.disks = count;
     options.diameters = {smallest, largest};
@@ -86,13 +86,13 @@ BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
     };
     std::vector<Case> cases;
     for (const double ratio : {1.5, 100.0, 1e4}) {
-        cases.push_back({fmt::format("diameters in [1, {:g}]", ratio), disks(40, 1, ratio)});
+        cases.push_back({fmt::format("diameters in [1, {:g}]", ratio), disks_of(40, 1, ratio)});
     }
     for (const double width : {1e-2, 1e-4, 1e-6, 1e-9}) {
-        cases.push_back({fmt::format("diameters in [1, 1 + {:.0e}]", width), disks(40, 1, 1 + width)});
+        cases.push_back({fmt::format("diameters in [1, 1 + {:.0e}]", width), disks_of(40, 1, 1 + width)});
     }
     for (const double aspect : {1e-3, 1e3}) {
-        Case c{fmt::format("loose box 1 : {:g}", aspect), disks(40)};
+        Case c{fmt::format("loose box 1 : {:g}", aspect), disks_of(40)};
         c.options.aspect = aspect;
         cases.push_back(c);
     }
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(runs_from_extreme_packings) {
 
 BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
     for (const int count : {2, 4, 10}) {
-        const auto start = prepared(disks(count));
+        const auto start = prepared(disks_of(count));
         BOOST_REQUIRE(start);
         for (const int power : {-12, -4, 4, 12}) {
             Segment segment;
@@ -126,7 +126,7 @@ BOOST_AUTO_TEST_CASE(runs_towards_every_stress_ratio) {
 }
 
 BOOST_AUTO_TEST_CASE(soft_grains_of_any_stiffness_choose_their_step) {
-    const auto start = prepared(disks(30));
+    const auto start = prepared(disks_of(30));
     BOOST_REQUIRE(start);
     const auto rigid = inspect_vertex(*start);
     BOOST_REQUIRE((rigid.ok() && rigid.value().equilibrium));

@@ -30,7 +30,7 @@ grown() {
         printf "    %+12d %12d %5.1f%%   %12d %5.1f%%   %s\n", is[f] - was[f], was[f], 100 * was[f] / then, is[f],
           100 * is[f] / now, substr(f, 1, 100)
       }
-    }' "$here/recorded-functions.txt" "$4" | sort -k1,1nr | sed -n '1,12p'
+    }' "$here/recorded-functions.txt" "$4" | sort -k1,1gr | sed -n '1,12p'
 }
 
 status=0

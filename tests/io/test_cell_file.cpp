@@ -26,12 +26,12 @@ void refuses(const std::string& text, const std::vector<std::string>& words) {
     }
 }
 
-ForeignPacking read(const std::string& text, ForeignOptions options = {}) {
+ForeignPacking read_foreign(const std::string& text, ForeignOptions options = {}) {
     options.cells = true;
     return parse_foreign(text, "file", options);
 }
 
-std::string dump(const std::string& bounds, const std::string& atoms, int count) {
+std::string dump_of(const std::string& bounds, const std::string& atoms, int count) {
     return "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n" + std::to_string(count) + "\nITEM: BOX BOUNDS " + bounds +
            "\nITEM: ATOMS id x y radius\n" + atoms;
 }
@@ -92,19 +92,20 @@ BOOST_AUTO_TEST_CASE(readers_that_take_boxes_only_say_so) {
 }
 
 BOOST_AUTO_TEST_CASE(lammps_dumps_with_pp_boundaries_make_a_cell) {
-    const auto file = read(dump("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n2 0.5 3.5 0.25\n", 2));
+    const auto file = read_foreign(dump_of("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n2 0.5 3.5 0.25\n", 2));
     const Packing<2>& p = file.packing;
     BOOST_TEST((p.cell.all()));
     BOOST_TEST(p.q == (std::vector<double>{0.5, 0.25, 1.5, 3.5, 2, 4, 0}));
     BOOST_TEST(DofMap<2>(p).dof_count() == 2);
-    expect_bad_input([] { (void)parse_foreign(dump("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n", 1), "file", {}); },
-                     {"boundaries along x are periodic"});
+    expect_bad_input(
+        [] { (void)parse_foreign(dump_of("pp pp pp\n-1 1\n0 4\n0 1", "1 -0.5 0.25 0.5\n", 1), "file", {}); },
+        {"boundaries along x are periodic"});
 }
 
 BOOST_AUTO_TEST_CASE(triclinic_dumps_bound_the_whole_parallelogram) {
     // xlo = -1, xhi = 1, xy = -0.5: the bounds are -1.5 and 1.
     const auto file =
-        read(dump("xy xz yz pp pp pp\n-1.5 1 -0.5\n0 4 0\n0 1 0", "1 -0.5 0.25 0.5\n2 1.25 4.25 0.25\n", 2));
+        read_foreign(dump_of("xy xz yz pp pp pp\n-1.5 1 -0.5\n0 4 0\n0 1 0", "1 -0.5 0.25 0.5\n2 1.25 4.25 0.25\n", 2));
     const Packing<2>& p = file.packing;
     BOOST_TEST(p.lattice(0, 0) == 2);
     BOOST_TEST(p.lattice(0, 1) == -0.5);
@@ -116,21 +117,21 @@ BOOST_AUTO_TEST_CASE(triclinic_dumps_bound_the_whole_parallelogram) {
 BOOST_AUTO_TEST_CASE(lammps_data_is_periodic_when_stated) {
     const std::string data = "a comment\n\n1 atoms\n\n0 2 xlo xhi\n0 1.75 ylo yhi\n-0.5 0.5 zlo zhi\n1 0 0 xy xz yz\n\n"
                              "Atoms # sphere\n\n1 1 2 1 0.75 0.5 0\n";
-    expect_bad_input([&] { (void)read(data); }, {"tilted by 1", "--periodic"});
+    expect_bad_input([&] { (void)read_foreign(data); }, {"tilted by 1", "--periodic"});
     ForeignOptions stated;
     stated.periodic = true;
-    const Packing<2> p = read(data, stated).packing;
+    const Packing<2> p = read_foreign(data, stated).packing;
     BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
 }
 
 BOOST_AUTO_TEST_CASE(extended_xyz_with_a_lattice_makes_a_cell) {
     const std::string text =
         "1\nLattice=\"2 0 0 1 1.75 0 0 0 1\" Properties=id:I:1:pos:R:3:radius:R:1\n7 0.75 0.5 0 1\n";
-    const Packing<2> p = read(text).packing;
+    const Packing<2> p = read_foreign(text).packing;
     BOOST_TEST(p.q == (std::vector<double>{0.75, 0.5, 2, 1.75, 1}));
     const std::string strip =
         replaced(replaced(text, "2 0 0 1 1.75", "2 0 0 0 1.75"), "Properties", "pbc=\"T F F\" Properties");
-    const Packing<2> q = read(strip).packing;
+    const Packing<2> q = read_foreign(strip).packing;
     BOOST_TEST(q.cell.periodic[0]);
     BOOST_TEST(!q.cell.periodic[1]);
 }

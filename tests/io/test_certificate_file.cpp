@@ -18,7 +18,7 @@ constexpr double inf = std::numeric_limits<double>::infinity();
 /// Every field is present, and every kind of number; the claims need not be true here.
 Certificate full_certificate() {
     Certificate certificate;
-    certificate.state = crafted::two_disks(1, 2, 1, 1.5);
+    certificate.state = ::crafted::two_disks(1, 2, 1, 1.5);
     certificate.state.provenance = R"({"command":"by hand"})";
     certificate.input = "two disks.json";
     certificate.input_hash = sha256("two disks");
@@ -30,14 +30,14 @@ Certificate full_certificate() {
                                 {1, 3},
                                 {{0.25, 0.5}, {1, 2}},
                                 Rung::multiprecision};
-    claims.gaps = GapsClaim{0.125, crafted::right(0), Rung::double_bound};
-    claims.load_interval = LoadIntervalClaim{{false, {0.3, 0.4}, crafted::bottom(1)}, {true, {}, {}}, Rung::exact};
+    claims.gaps = GapsClaim{0.125, ::crafted::right(0), Rung::double_bound};
+    claims.load_interval = LoadIntervalClaim{{false, {0.3, 0.4}, ::crafted::bottom(1)}, {true, {}, {}}, Rung::exact};
     claims.stable = true;
     claims.undecided = {"nothing \"else\""};
     return certificate;
 }
 
-void refuses(const std::string& text, const std::vector<std::string>& words) {
+void refuses_certificate(const std::string& text, const std::vector<std::string>& words) {
     BOOST_TEST_CONTEXT(text) {
         expect_bad_input([&] { (void)parse_certificate(text, "crafted.json"); }, words);
     }
@@ -92,8 +92,8 @@ BOOST_AUTO_TEST_CASE(a_certificate_comes_back_bit_for_bit) {
     BOOST_TEST((claims.forces->finite == made.claims.forces->finite));
     BOOST_TEST((claims.forces->structural_zeros == made.claims.forces->structural_zeros));
     BOOST_TEST((claims.forces->infinitesimal == made.claims.forces->infinitesimal));
-    BOOST_TEST((claims.gaps->where == crafted::right(0)));
-    BOOST_TEST((claims.load_interval->low.opens == crafted::bottom(1)));
+    BOOST_TEST((claims.gaps->where == ::crafted::right(0)));
+    BOOST_TEST((claims.load_interval->low.opens == ::crafted::bottom(1)));
     BOOST_TEST(claims.load_interval->high.unbounded);
     BOOST_TEST(claims.stable);
     BOOST_TEST((claims.undecided == made.claims.undecided));
@@ -133,7 +133,7 @@ BOOST_AUTO_TEST_CASE(an_altered_certificate_with_the_old_digest_is_refused) {
         {"\"test\"", "\"best\""}};
     for (const auto& [from, to] : alterations) {
         BOOST_REQUIRE(text.find(from) != std::string::npos);
-        refuses(replaced(text, from, to), {"digest is", "SHA-256", "altered"});
+        refuses_certificate(replaced(text, from, to), {"digest is", "SHA-256", "altered"});
     }
     // White space and the order of fields mean nothing, and are not part of the digest.
     BOOST_CHECK_NO_THROW((void)parse_certificate(replaced(text, "\"claims\":", "\n \"claims\" :"), "spaced"));
@@ -142,7 +142,9 @@ BOOST_AUTO_TEST_CASE(an_altered_certificate_with_the_old_digest_is_refused) {
 BOOST_AUTO_TEST_CASE(bad_claims_are_named_with_their_value_and_what_was_expected) {
     const std::string text = certificate_text(full_certificate());
     const auto refused = [&text](const std::string& from, const std::string& to,
-                                 const std::vector<std::string>& words) { refuses(forged(text, from, to), words); };
+                                 const std::vector<std::string>& words) {
+        refuses_certificate(forged(text, from, to), words);
+    };
     refused("isostat-certificate", "isostat-state", {"format", "isostat-certificate"});
     refused("\"version\": 1,\n\"program\"", "\"version\": 3,\n\"program\"", {"version", "3"});
     refused("\"dof_count\":6", "\"dof_count\":-6", {"claims.counting.dof_count", "-6"});
@@ -179,10 +181,10 @@ BOOST_AUTO_TEST_CASE(bad_claims_are_named_with_their_value_and_what_was_expected
     refused("\"input_hash\": \"", "\"input_hash\": \"0", {"input_hash", "64"});
     refused("\"contacts\": [", "\"forces\": [],\n\"contacts\": [", {"state.forces", "no such field"});
     refused("[1.0,1.0,1.0]", "[0.0,1.0,1.0]", {"state.disks[0][0]", "positive radius"});
-    refuses(replaced(text, "\"digest\"", "\"digets\""), {"digets"});
-    refuses("[]", {"isostat-certificate"});
-    refuses(std::string(200000, '[') + std::string(200000, ']'), {"nested"});
-    refuses(state_text(full_certificate().state), {"format", "isostat-state"});
+    refuses_certificate(replaced(text, "\"digest\"", "\"digets\""), {"digets"});
+    refuses_certificate("[]", {"isostat-certificate"});
+    refuses_certificate(std::string(200000, '[') + std::string(200000, ']'), {"nested"});
+    refuses_certificate(state_text(full_certificate().state), {"format", "isostat-state"});
 }
 
 BOOST_AUTO_TEST_CASE(what_is_no_number_or_no_interval_is_not_written) {

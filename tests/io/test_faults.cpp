@@ -17,7 +17,7 @@ namespace {
 
 constexpr int goal = 6;
 
-RunHeader header() {
+RunHeader faulty_header() {
     RunHeader h;
     h.program = "isostat test";
     h.scene_text = "text";
@@ -29,7 +29,7 @@ RunHeader header() {
 /// Runs until `equilibria` have been made in all, as if killed then; to the end when they are `goal`.
 void play(const fs::path& path, RunDirectory::Mode mode, int equilibria) {
     RunCounters counters;
-    RunDirectory directory(path, header(), mode, counters);
+    RunDirectory directory(path, faulty_header(), mode, counters);
     State<2> state = read_state<2>(scratch::data("vertex100.txt")).state;
     int made = 0;
     if (const auto& point = directory.checkpoint()) {

@@ -48,10 +48,10 @@ void check_same(const State<2>& a, const State<2>& b) {
 
 /// Text of the two-disk case, to be spoilt.
 std::string two_disk_text() {
-    return state_text(crafted::two_disks(1, 2, 1, 1));
+    return state_text(::crafted::two_disks(1, 2, 1, 1));
 }
 
-void refuses(const std::string& text, const std::vector<std::string>& words) {
+void refuses_state(const std::string& text, const std::vector<std::string>& words) {
     BOOST_TEST_CONTEXT(text) {
         expect_bad_input([&] { (void)parse_state<2>(text, "crafted.json"); }, words);
     }
@@ -72,14 +72,14 @@ BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
     const Packing<2> old = parse_state<2>(text("1", "[1, 3, 4], [2, 9, 5]"), "s").state.packing;
     BOOST_TEST((old.radius == packing.radius));
     BOOST_TEST((old.q == packing.q));
-    refuses(text("2", "[3, 4, 0]"), {"disks[0][2]", "positive radius"});
-    refuses(text("2", "[3, 4]"), {"disks[0]", "[x, y, radius]"});
-    refuses(text("1", "[0, 3, 4]"), {"disks[0][0]", "positive radius"});
-    refuses(text("3", "[3, 4, 1]"), {"version", "3", "1 or 2"});
+    refuses_state(text("2", "[3, 4, 0]"), {"disks[0][2]", "positive radius"});
+    refuses_state(text("2", "[3, 4]"), {"disks[0]", "[x, y, radius]"});
+    refuses_state(text("1", "[0, 3, 4]"), {"disks[0][0]", "positive radius"});
+    refuses_state(text("3", "[3, 4, 1]"), {"version", "3", "1 or 2"});
 }
 
 BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
-    State<2> state = crafted::two_disks(1, 2, 0.1, 1.0 / 3);
+    State<2> state = ::crafted::two_disks(1, 2, 0.1, 1.0 / 3);
     state.load.infinitesimal = {5e-324, -0.0, 1e308, std::nextafter(0.3, 1.0)};
     state.load.disk_force = {1e-300, 0.1 + 0.2, -7, 2.5};
     state.load.kind = LoadKind::true_stress;
@@ -96,16 +96,16 @@ BOOST_AUTO_TEST_CASE(a_state_comes_back_bit_for_bit) {
 }
 
 BOOST_AUTO_TEST_CASE(the_direction_of_the_radii_and_first_order_terms_come_back) {
-    State<2> state = crafted::two_disks(1, 2, 1, 1);
+    State<2> state = ::crafted::two_disks(1, 2, 1, 1);
     RadiusPerturbation& p = state.perturbation.emplace();
     p.seed = 7;
     p.rho = {0x1.8p-5, -0.25};
-    BOOST_TEST(!parse_state<2>(state_text(crafted::two_disks(1, 2, 1, 1)), "s").state.perturbation.has_value());
+    BOOST_TEST(!parse_state<2>(state_text(::crafted::two_disks(1, 2, 1, 1)), "s").state.perturbation.has_value());
     BOOST_TEST(parse_state<2>(state_text(state), "s").state.perturbation->load_zero.i == -1);
-    p.load_zero = crafted::bottom(1);
+    p.load_zero = ::crafted::bottom(1);
     p.stress_rate = {0.1, 1e-17};
-    p.open = {{crafted::top(0), {0.3, 1e-15}}};
-    p.zero = {{crafted::pair(0, 1), {1.5, 0}}, {crafted::left(0), {2, 3e-11}}};
+    p.open = {{::crafted::top(0), {0.3, 1e-15}}};
+    p.zero = {{::crafted::pair(0, 1), {1.5, 0}}, {::crafted::left(0), {2, 3e-11}}};
     const State<2> back = parse_state<2>(state_text(state), "s").state;
     BOOST_TEST_REQUIRE(back.perturbation.has_value());
     const RadiusPerturbation& r = *back.perturbation;
@@ -115,17 +115,18 @@ BOOST_AUTO_TEST_CASE(the_direction_of_the_radii_and_first_order_terms_come_back)
     BOOST_TEST(r.stress_rate.value == 0.1);
     BOOST_TEST(r.stress_rate.radius == 1e-17);
     BOOST_TEST(r.open.size() == 1U);
-    BOOST_TEST((r.open[0].first == crafted::top(0)));
+    BOOST_TEST((r.open[0].first == ::crafted::top(0)));
     BOOST_TEST(r.open[0].second.value == 0.3);
     BOOST_TEST(r.zero.size() == 2U);
     BOOST_TEST(r.zero[1].second.radius == 3e-11);
-    refuses(replaced(state_text(state), "\"rho\":[", "\"rho\":[1,"), {"crafted.json", "rho", "one number per disk"});
-    refuses(replaced(state_text(state), "\"seed\":7", "\"seed\":-7"), {"crafted.json", "seed"});
-    refuses(replaced(state_text(state), "\"seed\"", "\"sed\""), {"crafted.json", "sed"});
+    refuses_state(replaced(state_text(state), "\"rho\":[", "\"rho\":[1,"),
+                  {"crafted.json", "rho", "one number per disk"});
+    refuses_state(replaced(state_text(state), "\"seed\":7", "\"seed\":-7"), {"crafted.json", "seed"});
+    refuses_state(replaced(state_text(state), "\"seed\"", "\"sed\""), {"crafted.json", "sed"});
 }
 
 BOOST_AUTO_TEST_CASE(every_bit_pattern_of_a_finite_number_comes_back) {
-    State<2> state = crafted::one_disk(1, 1);
+    State<2> state = ::crafted::one_disk(1, 1);
     std::uint64_t bits = 88172645463325252ULL;
     for (int k = 0; k < 2000; ++k) {
         bits ^= bits << 13U;
@@ -155,8 +156,8 @@ BOOST_AUTO_TEST_CASE(hexadecimal_floats_are_numbers) {
     BOOST_TEST(state.packing.length(0) == 2.0);
     BOOST_TEST(state.load.infinitesimal[0] == -0.1875);
     BOOST_TEST(state.load.reference_length[0] == 2.0);
-    refuses(replaced(text, "0x1p+1", "0x1p+1 "), {"length[0]", "finite number"});
-    refuses(replaced(text, "0x1p+1", "two"), {"length[0]", "two", "finite number"});
+    refuses_state(replaced(text, "0x1p+1", "0x1p+1 "), {"length[0]", "finite number"});
+    refuses_state(replaced(text, "0x1p+1", "two"), {"length[0]", "two", "finite number"});
 }
 
 BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
@@ -166,52 +167,52 @@ BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
         BOOST_CHECK_THROW((void)parse_state<2>(text.substr(0, length), "cut.json"), Error);
     }
     BOOST_CHECK_NO_THROW((void)parse_state<2>(text.substr(0, end + 1), "whole.json"));
-    refuses(text.substr(0, text.size() / 2), {"crafted.json:", "truncated"});
-    refuses(text + "}", {"crafted.json:", "JSON"});
+    refuses_state(text.substr(0, text.size() / 2), {"crafted.json:", "truncated"});
+    refuses_state(text + "}", {"crafted.json:", "JSON"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected) {
     const std::string text = two_disk_text();
-    refuses("[1]", {"isostat-state"});
-    refuses(replaced(text, "isostat-state", "isostat-run"), {"format", "isostat-run"});
-    refuses(replaced(text, "\"version\": 1", "\"version\": 3"), {"version", "3"});
-    refuses(replaced(text, "\"contacts\"", "\"contcts\""), {"unknown field 'contcts'"});
-    refuses(replaced(text, "\"disks\"", "\"disk_force\""), {"'disks' is missing"});
-    refuses(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"dimension", "3"});
-    refuses(replaced(text, "\"nominal\"", "\"dead\""), {"load.kind", "dead", "nominal"});
-    refuses(replaced(text, "[1.0,1.0]", "[1.0]"), {"load.stress", "2 values"});
-    refuses(replaced(text, "\"loaded_axis\":1", "\"loaded_axis\":2"), {"load.loaded_axis", "2"});
-    refuses(replaced(text, "\"fixed\"", "\"frozen\""), {"walls.lower[0]", "frozen"});
-    refuses(replaced(text, "\"equilibrium\": 0", "\"equilibrium\": -1"), {"equilibrium", "-1"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[0.0,1.0,1.0]"), {"disks[0][0]", "0.0", "positive radius"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[-1.0,1.0,1.0]"), {"disks[0][0]", "-1.0", "positive radius"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[1e999,1.0,1.0]"), {"out of"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[NaN,1.0,1.0]"), {"crafted.json:", "not valid JSON"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[null,1.0,1.0]"), {"disks[0][0]", "null", "finite number"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0]"), {"disks[0]", "3 values"});
-    refuses(replaced(text, "[1.0,1.0,1.0]", "[100.0,1.0,1.0]"), {"disk 0", "200", "larger than the box"});
+    refuses_state("[1]", {"isostat-state"});
+    refuses_state(replaced(text, "isostat-state", "isostat-run"), {"format", "isostat-run"});
+    refuses_state(replaced(text, "\"version\": 1", "\"version\": 3"), {"version", "3"});
+    refuses_state(replaced(text, "\"contacts\"", "\"contcts\""), {"unknown field 'contcts'"});
+    refuses_state(replaced(text, "\"disks\"", "\"disk_force\""), {"'disks' is missing"});
+    refuses_state(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"dimension", "3"});
+    refuses_state(replaced(text, "\"nominal\"", "\"dead\""), {"load.kind", "dead", "nominal"});
+    refuses_state(replaced(text, "[1.0,1.0]", "[1.0]"), {"load.stress", "2 values"});
+    refuses_state(replaced(text, "\"loaded_axis\":1", "\"loaded_axis\":2"), {"load.loaded_axis", "2"});
+    refuses_state(replaced(text, "\"fixed\"", "\"frozen\""), {"walls.lower[0]", "frozen"});
+    refuses_state(replaced(text, "\"equilibrium\": 0", "\"equilibrium\": -1"), {"equilibrium", "-1"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[0.0,1.0,1.0]"), {"disks[0][0]", "0.0", "positive radius"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[-1.0,1.0,1.0]"), {"disks[0][0]", "-1.0", "positive radius"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1e999,1.0,1.0]"), {"out of"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[NaN,1.0,1.0]"), {"crafted.json:", "not valid JSON"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[null,1.0,1.0]"), {"disks[0][0]", "null", "finite number"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0]"), {"disks[0]", "3 values"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[100.0,1.0,1.0]"), {"disk 0", "200", "larger than the box"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_contacts_are_named) {
     const std::string text = two_disk_text();
-    refuses(replaced(text, "[0,1]", "[0,2]"), {"contacts[2][1]", "2", "from 0 to 1"});
-    refuses(replaced(text, "[0,1]", "[-1,1]"), {"contacts[2][0]", "-1"});
-    refuses(replaced(text, "[0,1]", "[1,1]"), {"contacts[2]", "two different disks"});
-    refuses(replaced(text, "[0,1]", "[0,0.5]"), {"contacts[2][1]", "integer"});
-    refuses(replaced(text, "[0,1]", "[0,\"ceiling\"]"), {"contacts[2][1]", "ceiling", "left"});
-    refuses(replaced(text, "[0,1]", "[0,\"left\"]"), {"contacts[2]", "0-left", "contacts[0]", "once"});
-    refuses(replaced(text, "[0,1]", "[\"held\",6]"), {"contacts[2]", "from 0 to 5"});
+    refuses_state(replaced(text, "[0,1]", "[0,2]"), {"contacts[2][1]", "2", "from 0 to 1"});
+    refuses_state(replaced(text, "[0,1]", "[-1,1]"), {"contacts[2][0]", "-1"});
+    refuses_state(replaced(text, "[0,1]", "[1,1]"), {"contacts[2]", "two different disks"});
+    refuses_state(replaced(text, "[0,1]", "[0,0.5]"), {"contacts[2][1]", "integer"});
+    refuses_state(replaced(text, "[0,1]", "[0,\"ceiling\"]"), {"contacts[2][1]", "ceiling", "left"});
+    refuses_state(replaced(text, "[0,1]", "[0,\"left\"]"), {"contacts[2]", "0-left", "contacts[0]", "once"});
+    refuses_state(replaced(text, "[0,1]", "[\"held\",6]"), {"contacts[2]", "from 0 to 5"});
     // The order of two disks means nothing: the same contact twice.
-    refuses(replaced(text, "[0,1]", "[0,1], [1,0]"), {"contacts[3]", "0-1", "contacts[2]"});
+    refuses_state(replaced(text, "[0,1]", "[0,1], [1,0]"), {"contacts[3]", "0-1", "contacts[2]"});
 }
 
 BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {
     const scratch::Folder folder;
     for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-        State<2> state = crafted::two_disks(1, 2, 1, 1);
+        State<2> state = ::crafted::two_disks(1, 2, 1, 1);
         state.packing.q[2] = value;
         expect_bad_input([&] { write_state(folder / "state.json", state); }, {"position", "finite"});
-        state = crafted::two_disks(1, 2, 1, 1);
+        state = ::crafted::two_disks(1, 2, 1, 1);
         state.load.stress[1] = value;
         expect_bad_input([&] { write_state(folder / "state.json", state); }, {"load.stress", "finite"});
     }
@@ -243,7 +244,7 @@ BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) 
 BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_new_one) {
     const scratch::Folder folder;
     scratch::write(folder / "state.json", "old");
-    // The system refuses the 101st byte of any file, as it would on a full disk.
+    // The system refuses_state the 101st byte of any file, as it would on a full disk.
     rlimit before{};
     BOOST_REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
     rlimit small = before;
@@ -295,7 +296,7 @@ BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {
 
 BOOST_AUTO_TEST_CASE(what_a_failed_preparation_leaves_is_no_state) {
     const scratch::Folder folder;
-    write_packing(folder / "left.json", crafted::two_disks(1, 2, 1, 1).packing, "stopped");
+    write_packing(folder / "left.json", ::crafted::two_disks(1, 2, 1, 1).packing, "stopped");
     expect_bad_input([&] { (void)read_state<2>(folder / "left.json"); }, {"left.json", "isostat-packing"});
 }
 

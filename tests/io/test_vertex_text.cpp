@@ -15,7 +15,7 @@ namespace {
 const std::string two_disks = "# two disks\n2\n1 1 1 0.1 -1\n\n2 3.8284271247461903 2 0.2 -4\n5.8284271247461903 4\n6\n"
                               "0 1 0\n1 0 -1\n2 0 -1\n2 1 -1\n3 1 -1\n4 1 -1\n";
 
-void refuses(const std::string& text, const std::vector<std::string>& words) {
+void refuses_vertex(const std::string& text, const std::vector<std::string>& words) {
     BOOST_TEST_CONTEXT(text) {
         expect_bad_input([&] { (void)parse_vertex_text(text, "v.txt"); }, words);
     }
@@ -63,33 +63,36 @@ BOOST_AUTO_TEST_CASE(names_after_the_number_of_disks_put_the_radius_last) {
     BOOST_TEST((state.packing.q == old.packing.q));
     BOOST_TEST((state.load.infinitesimal == old.load.infinitesimal));
     BOOST_TEST((state.contacts == old.contacts));
-    refuses(replaced(named, "x y r gx", "x y d gx"), {"v.txt:1:", "'d'", "x y r gx gy"});
-    refuses(replaced(named, " gy", ""), {"v.txt:1:", "x y r gx gy"});
-    refuses(replaced(named, "1 1 1 0.1", "1 1 0 0.1"), {"v.txt:2:", "radius of disk 0", "'0'", "positive"});
+    refuses_vertex(replaced(named, "x y r gx", "x y d gx"), {"v.txt:1:", "'d'", "x y r gx gy"});
+    refuses_vertex(replaced(named, " gy", ""), {"v.txt:1:", "x y r gx gy"});
+    refuses_vertex(replaced(named, "1 1 1 0.1", "1 1 0 0.1"), {"v.txt:2:", "radius of disk 0", "'0'", "positive"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_rows_are_named_with_their_line) {
-    refuses(replaced(two_disks, "2\n1 1", "two\n1 1"), {"v.txt:2:", "number of disks", "'two'", "integer"});
-    refuses(replaced(two_disks, "2\n1 1", "0\n1 1"), {"v.txt:2:", "'0'"});
-    refuses(replaced(two_disks, "1 1 1 0.1", "0 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'0'", "positive"});
-    refuses(replaced(two_disks, "1 1 1 0.1", "-1 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'-1'", "positive"});
-    refuses(replaced(two_disks, "1 1 1 0.1", "nan 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'nan'", "finite"});
-    refuses(replaced(two_disks, "1 1 1 0.1", "1 inf 1 0.1"), {"v.txt:3:", "x of disk 0", "'inf'", "finite"});
-    refuses(replaced(two_disks, "1 1 1 0.1", "1 1 1x 0.1"), {"v.txt:3:", "y of disk 0", "'1x'"});
-    refuses(replaced(two_disks, "1 1 1 0.1 -1", "1 1 1 0.1"), {"v.txt:3:", "4 values", "5 values", "disk 0 of 2"});
-    refuses(replaced(two_disks, " 4\n6", " 0\n6"), {"v.txt:6:", "Ly", "positive"});
-    refuses(replaced(two_disks, "5.8284271247461903 4", "5.8284271247461903 3"),
-            {"v.txt", "disk 1", "larger than the box"});
-    refuses(replaced(two_disks, "2 1 -1", "5 1 -1"), {"v.txt:11:", "type of the contact", "'5'", "from 0 to 4"});
-    refuses(replaced(two_disks, "2 1 -1", "2 2 -1"), {"v.txt:11:", "first disk", "'2'", "from 0 to 1"});
-    refuses(replaced(two_disks, "0 1 0\n", "0 1 1\n"), {"v.txt:8:", "second disk", "another disk"});
-    refuses(replaced(two_disks, "2 1 -1", "2 0 -1"), {"0-bottom", "contacts[3]", "contacts[2]", "once"});
+    refuses_vertex(replaced(two_disks, "2\n1 1", "two\n1 1"), {"v.txt:2:", "number of disks", "'two'", "integer"});
+    refuses_vertex(replaced(two_disks, "2\n1 1", "0\n1 1"), {"v.txt:2:", "'0'"});
+    refuses_vertex(replaced(two_disks, "1 1 1 0.1", "0 1 1 0.1"), {"v.txt:3:", "radius of disk 0", "'0'", "positive"});
+    refuses_vertex(replaced(two_disks, "1 1 1 0.1", "-1 1 1 0.1"),
+                   {"v.txt:3:", "radius of disk 0", "'-1'", "positive"});
+    refuses_vertex(replaced(two_disks, "1 1 1 0.1", "nan 1 1 0.1"),
+                   {"v.txt:3:", "radius of disk 0", "'nan'", "finite"});
+    refuses_vertex(replaced(two_disks, "1 1 1 0.1", "1 inf 1 0.1"), {"v.txt:3:", "x of disk 0", "'inf'", "finite"});
+    refuses_vertex(replaced(two_disks, "1 1 1 0.1", "1 1 1x 0.1"), {"v.txt:3:", "y of disk 0", "'1x'"});
+    refuses_vertex(replaced(two_disks, "1 1 1 0.1 -1", "1 1 1 0.1"),
+                   {"v.txt:3:", "4 values", "5 values", "disk 0 of 2"});
+    refuses_vertex(replaced(two_disks, " 4\n6", " 0\n6"), {"v.txt:6:", "Ly", "positive"});
+    refuses_vertex(replaced(two_disks, "5.8284271247461903 4", "5.8284271247461903 3"),
+                   {"v.txt", "disk 1", "larger than the box"});
+    refuses_vertex(replaced(two_disks, "2 1 -1", "5 1 -1"), {"v.txt:11:", "type of the contact", "'5'", "from 0 to 4"});
+    refuses_vertex(replaced(two_disks, "2 1 -1", "2 2 -1"), {"v.txt:11:", "first disk", "'2'", "from 0 to 1"});
+    refuses_vertex(replaced(two_disks, "0 1 0\n", "0 1 1\n"), {"v.txt:8:", "second disk", "another disk"});
+    refuses_vertex(replaced(two_disks, "2 1 -1", "2 0 -1"), {"0-bottom", "contacts[3]", "contacts[2]", "once"});
 }
 
 BOOST_AUTO_TEST_CASE(files_that_end_too_early_or_too_late_are_refused) {
-    refuses("# nothing\n", {"v.txt:1:", "ends here", "number of disks"});
-    refuses(replaced(two_disks, "4 1 -1\n", ""), {"ends here", "contact 5 of 6"});
-    refuses(replaced(two_disks, "\n6\n", "\n5\n"), {"v.txt:13:", "more rows than announced"});
+    refuses_vertex("# nothing\n", {"v.txt:1:", "ends here", "number of disks"});
+    refuses_vertex(replaced(two_disks, "4 1 -1\n", ""), {"ends here", "contact 5 of 6"});
+    refuses_vertex(replaced(two_disks, "\n6\n", "\n5\n"), {"v.txt:13:", "more rows than announced"});
     for (std::size_t cut = 0; cut + 7 < two_disks.size(); ++cut) { // the last row is 7 characters long
         BOOST_CHECK_THROW((void)parse_vertex_text(two_disks.substr(0, cut), "v.txt"), Error);
     }

@@ -35,28 +35,28 @@ struct Known {
     [[nodiscard]] ArcVertex<2> vertex() const { return {packing, structure, factorisation, inverse, enclosure}; }
 };
 
-constexpr double start_angle = 0.2;
+constexpr double rolls_from = 0.2;
 constexpr double stop_angle = 2;
 
 /// Disk 0 fixed at the origin, disk 2 free on it, disk 1 fixed where disk 2 starts, disk 3 fixed where it stops; all of
 /// radius 1. Disk 4, if any, is an obstacle. No walls.
-struct Rolling {
+struct CertifiedRolling {
     Packing<2> packing;
     Load<2> load;
 
-    explicit Rolling(double fx = -1, double fy = 0.1) {
+    explicit CertifiedRolling(double fx = -1, double fy = 0.1) {
         packing.walls = Walls<2>::none();
         const auto touching = [](double angle, double side) {
             return std::array{2 * std::cos(angle) + side * 2 * std::sin(angle),
                               2 * std::sin(angle) - side * 2 * std::cos(angle)};
         };
-        const auto first = touching(start_angle, 1);
+        const auto first = touching(rolls_from, 1);
         const auto second = touching(stop_angle, -1);
         packing.radius = {1, 1, 1, 1};
         packing.q = {0, 0, first[0], first[1], 0, 0, second[0], second[1], 0, 0};
         packing.fixed = {1, 1, 0, 1};
         load.disk_force = {0, 0, 0, 0, fx, fy, 0, 0};
-        put(start_angle);
+        put(rolls_from);
     }
     /// The rolling disk at `angle`.
     void put(double angle) {
@@ -70,7 +70,7 @@ struct Rolling {
         packing.fixed.push_back(1);
         load.disk_force.insert(load.disk_force.end(), {0.0, 0.0});
     }
-    [[nodiscard]] Known start() { return at(start_angle, pair(1, 2)); }
+    [[nodiscard]] Known start() { return at(rolls_from, pair(1, 2)); }
     [[nodiscard]] Known stop() { return at(stop_angle, pair(2, 3)); }
     [[nodiscard]] Known at(double angle, const Contact& second) {
         put(angle);
@@ -94,7 +94,7 @@ bool proved(const ArcCertificate& certificate) {
 BOOST_AUTO_TEST_SUITE(motion)
 
 BOOST_AUTO_TEST_CASE(an_arc_between_two_known_contacts_is_certified) {
-    Rolling rolling;
+    CertifiedRolling rolling;
     const ArcCertificate certificate = rolling.certify();
     BOOST_TEST(proved(certificate), certificate.reason);
     BOOST_TEST((certificate.power == Verdict::proved), certificate.power_reason);
@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(a_contact_that_was_missed_inside_an_arc_is_not_certified) {
     // The end of the arc is the same, and admissible, on both sides: only the way there tells.
     for (const double clearance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
         for (const double sign : {+1.0, -1.0}) {
-            Rolling rolling;
+            CertifiedRolling rolling;
             rolling.obstacle(1.0, 0.25, sign * clearance);
             const ArcCertificate certificate = rolling.certify();
             BOOST_TEST(proved(certificate) == (sign > 0), "clearance " << sign * clearance << certificate.reason);
@@ -118,13 +118,13 @@ BOOST_AUTO_TEST_CASE(a_contact_that_was_missed_inside_an_arc_is_not_certified) {
             }
         }
     }
-    Rolling grazing;
+    CertifiedRolling grazing;
     grazing.obstacle(1.0, 0.25, 0);
     BOOST_TEST(!proved(grazing.certify()));
 }
 
 BOOST_AUTO_TEST_CASE(an_end_behind_the_first_contact_is_not_certified) {
-    Rolling rolling; // past disk 3, to a contact with disk 4 that it would have met later
+    CertifiedRolling rolling; // past disk 3, to a contact with disk 4 that it would have met later
     const double later = 3.8;
     auto& q = rolling.packing.q;
     q.insert(q.end() - 2, {2 * std::cos(later) - 2 * std::sin(later), 2 * std::sin(later) + 2 * std::cos(later)});
@@ -139,9 +139,9 @@ BOOST_AUTO_TEST_CASE(an_end_behind_the_first_contact_is_not_certified) {
 }
 
 BOOST_AUTO_TEST_CASE(an_end_on_another_curve_is_not_certified) {
-    Rolling rolling;
+    CertifiedRolling rolling;
     const Known start = rolling.start();
-    Rolling inner; // the same contacts, but the fixed disk is a little smaller
+    CertifiedRolling inner; // the same contacts, but the fixed disk is a little smaller
     inner.packing.radius[0] = 1 - 1e-7;
     const double d = 2 - 1e-7;
     inner.packing.q[4] = d * std::cos(stop_angle);
@@ -152,7 +152,7 @@ BOOST_AUTO_TEST_CASE(an_end_on_another_curve_is_not_certified) {
 }
 
 BOOST_AUTO_TEST_CASE(ends_that_are_not_proved_vertices_certify_nothing) {
-    Rolling rolling;
+    CertifiedRolling rolling;
     const Known start = rolling.start();
     Known end = rolling.stop();
     BOOST_TEST(proved(rolling.certify(start, end)));
@@ -164,15 +164,15 @@ BOOST_AUTO_TEST_CASE(ends_that_are_not_proved_vertices_certify_nothing) {
 }
 
 BOOST_AUTO_TEST_CASE(the_power_is_judged_apart_from_the_contacts) {
-    Rolling pushed;
+    CertifiedRolling pushed;
     BOOST_TEST((pushed.certify().power == Verdict::proved));
-    Rolling pulled(+1, 0.1); // the load works against the motion
+    CertifiedRolling pulled(+1, 0.1); // the load works against the motion
     const ArcCertificate against = pulled.certify();
     BOOST_TEST(proved(against), against.reason);
     BOOST_TEST((against.power == Verdict::undecided));
-    Rolling over(0, 1); // power cos(angle): turns at pi / 2, before the stop
+    CertifiedRolling over(0, 1); // power cos(angle): turns at pi / 2, before the stop
     BOOST_TEST((over.certify().power == Verdict::undecided));
-    Rolling before(0, 1);
+    CertifiedRolling before(0, 1);
     const Known start = before.start();
     const Known turn = before.at(std::numbers::pi / 2, Contact{ContactKind::held, 4, 0});
     const ArcCertificate certificate = before.certify(start, turn);
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(the_power_is_judged_apart_from_the_contacts) {
 }
 
 BOOST_AUTO_TEST_CASE(a_released_coordinate_is_followed_to_the_side_to_which_it_goes) {
-    Rolling rolling;
+    CertifiedRolling rolling;
     const Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
     const Known stop = rolling.stop();
     const CandidateList<2> candidates = find_candidates(turn.packing, candidate_fraction);
@@ -205,7 +205,7 @@ BOOST_AUTO_TEST_CASE(a_coordinate_released_next_to_the_stop_goes_the_other_way) 
     // stop.
     constexpr double top = 1.7;
     for (const double before : {1e-3, 1e-2}) {
-        Rolling rolling;
+        CertifiedRolling rolling;
         rolling.packing.q[6] = 2 * std::cos(top) - 2 * std::sin(top);
         rolling.packing.q[7] = 2 * std::sin(top) + 2 * std::cos(top);
         const Known stop = rolling.at(top, pair(2, 3));
@@ -222,7 +222,7 @@ BOOST_AUTO_TEST_CASE(a_coordinate_released_next_to_the_stop_goes_the_other_way) 
 BOOST_AUTO_TEST_CASE(an_end_that_may_lie_behind_the_start_is_not_certified) {
     // Both places are known to 1e-6 only; the coordinate released falls, and the end is 1e-7 before or 1e-4 after it.
     for (const double ahead : {-1e-7, 1e-4}) {
-        Rolling rolling;
+        CertifiedRolling rolling;
         Known turn = rolling.at(1.2, Contact{ContactKind::held, 4, 0});
         Known end = rolling.at(1.2 + ahead, Contact{ContactKind::held, 5, 0});
         turn.enclosure.radius = end.enclosure.radius = 1e-6;
@@ -234,7 +234,7 @@ BOOST_AUTO_TEST_CASE(an_end_that_may_lie_behind_the_start_is_not_certified) {
 }
 
 BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
-    Rolling rolling;
+    CertifiedRolling rolling;
     const Known start = rolling.start();
     const Known stop = rolling.stop();
     const MovingPart<2> part(start.vertex(), stop.vertex(), 1, 1e-15, 1e-15);
@@ -253,9 +253,9 @@ BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
 }
 
 BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_after_a_whole_turn) {
-    Rolling rolling;
+    CertifiedRolling rolling;
     rolling.packing.q[6] = 40; // no stop
-    const double line = start_angle - std::numbers::pi / 4;
+    const double line = rolls_from - std::numbers::pi / 4;
     const double back = line - std::numbers::pi / 4 + 2 * std::numbers::pi; // on the other side of disk 1
     const Known start = rolling.start();
     const ArcCertificate certificate = rolling.certify(start, rolling.at(back, pair(1, 2)));

@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_SUITE(rigidity)
 
 BOOST_AUTO_TEST_CASE(an_ordering_is_made_once_for_all_copies_whatever_thread_asks_first,
                      *boost::unit_test::label("threads")) {
-    const State<2> state = crafted::prepared(30, 3);
+    const State<2> state = prepared(30, 3);
     const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
     BOOST_TEST_REQUIRE(proved.ok());
     for (int round = 0; round < 20; ++round) {

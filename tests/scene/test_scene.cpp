@@ -11,13 +11,13 @@ using namespace isostat;
 
 namespace {
 
-Scene parse(const std::string& text) {
+Scene parse_scene_text(const std::string& text) {
     return parse_scene(text, "s.toml", "/folder");
 }
 
-void refuses(const std::string& text, const std::vector<std::string>& words) {
+void refuses_scene(const std::string& text, const std::vector<std::string>& words) {
     BOOST_TEST_CONTEXT(text) {
-        expect_bad_input([&] { (void)parse(text); }, words);
+        expect_bad_input([&] { (void)parse_scene_text(text); }, words);
     }
 }
 
@@ -34,7 +34,7 @@ std::string value_of(const Scene& scene, const std::string& section, const std::
 BOOST_AUTO_TEST_SUITE(scene)
 
 BOOST_AUTO_TEST_CASE(a_small_scene_gets_the_defaults_of_the_library) {
-    const Scene scene = parse(head);
+    const Scene scene = parse_scene_text(head);
     const PreparationOptions preparation;
     const RunOptions run;
     BOOST_TEST(scene.preparation.disks == 10);
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(a_small_scene_gets_the_defaults_of_the_library) {
 }
 
 BOOST_AUTO_TEST_CASE(every_setting_arrives) {
-    const Scene scene = parse(R"(
+    const Scene scene = parse_scene_text(R"(
 [packing]
 disks = 20
 law = "lognormal"
@@ -147,28 +147,28 @@ vtk = true
 
 BOOST_AUTO_TEST_CASE(a_law_has_its_own_keys_and_no_others) {
     const DiameterLaw mixture =
-        parse(head + "law = \"bidisperse\"\nratio = 2\nfraction = 0.25\n").preparation.diameters;
+        parse_scene_text(head + "law = \"bidisperse\"\nratio = 2\nfraction = 0.25\n").preparation.diameters;
     BOOST_TEST((mixture.kind == RadiiLaw::bidisperse));
     BOOST_TEST(mixture.ratio == 2.0);
     BOOST_TEST(mixture.fraction == 0.25);
-    const Scene cut = parse(head + "law = \"normal\"\ndiameter = 3\n");
+    const Scene cut = parse_scene_text(head + "law = \"normal\"\ndiameter = 3\n");
     BOOST_TEST(value_of(cut, "packing", "law") == "\"normal\"");
     BOOST_TEST(value_of(cut, "packing", "diameters") == "[1.5, 6.0]");
     BOOST_TEST(value_of(cut, "packing", "deviation") == "0.2");
     BOOST_TEST(value_of(cut, "packing", "ratio") == "absent");
-    refuses(head + "law = \"poisson\"\n", {"s.toml:3:", "law", "poisson", "\"bidisperse\""});
-    refuses(head + "exponent = 2\n", {"s.toml:3:", "'exponent'", "law = \"power\"", "\"uniform\""});
-    refuses(head + "law = \"equal\"\ndiameters = [1, 2]\n", {"s.toml:4:", "'diameters'", "\"equal\""});
-    refuses(head + "law = \"bidisperse\"\nratio = 0.5\n", {"s.toml:4:", "ratio", "0.5", "from 1"});
-    refuses(head + "law = \"normal\"\ndiameters = [2, 3]\n", {"s.toml:3:", "diameter is 1", "cut"});
-    refuses("[packing]\nradii = [1]\nlaw = \"equal\"\n", {"s.toml:3:", "'law'", "'disks'", "'radii'"});
-    refuses("[packing]\nfile = \"v\"\nratio = 2\n", {"s.toml:3:", "'ratio'", "'file'"});
+    refuses_scene(head + "law = \"poisson\"\n", {"s.toml:3:", "law", "poisson", "\"bidisperse\""});
+    refuses_scene(head + "exponent = 2\n", {"s.toml:3:", "'exponent'", "law = \"power\"", "\"uniform\""});
+    refuses_scene(head + "law = \"equal\"\ndiameters = [1, 2]\n", {"s.toml:4:", "'diameters'", "\"equal\""});
+    refuses_scene(head + "law = \"bidisperse\"\nratio = 0.5\n", {"s.toml:4:", "ratio", "0.5", "from 1"});
+    refuses_scene(head + "law = \"normal\"\ndiameters = [2, 3]\n", {"s.toml:3:", "diameter is 1", "cut"});
+    refuses_scene("[packing]\nradii = [1]\nlaw = \"equal\"\n", {"s.toml:3:", "'law'", "'disks'", "'radii'"});
+    refuses_scene("[packing]\nfile = \"v\"\nratio = 2\n", {"s.toml:3:", "'ratio'", "'file'"});
 }
 
 BOOST_AUTO_TEST_CASE(radii_come_from_a_list_or_a_file) {
     const scratch::Folder folder;
     scratch::write(folder / "r.txt", "# radii\n1\n\n0x2\n");
-    BOOST_TEST((parse("[packing]\nradii = [1, 2.5]\n").preparation.radii == std::vector<double>{1, 2.5}));
+    BOOST_TEST((parse_scene_text("[packing]\nradii = [1, 2.5]\n").preparation.radii == std::vector<double>{1, 2.5}));
     const std::string text = "[packing]\nradii_file = \"r.txt\"\n";
     expect_bad_input([&] { (void)parse_scene(text, "s.toml", folder.path()); },
                      {"r.txt:4:", "radius of disk 1", "'0x2'"});
@@ -178,62 +178,62 @@ BOOST_AUTO_TEST_CASE(radii_come_from_a_list_or_a_file) {
     expect_bad_input([&] { (void)parse_scene(text, "s.toml", folder.path()); }, {"r.txt:2:", "'-2'", "positive"});
     scratch::write(folder / "r.txt", "1\nnan\n");
     expect_bad_input([&] { (void)parse_scene(text, "s.toml", folder.path()); }, {"r.txt:2:", "'nan'", "finite"});
-    refuses("[packing]\nradii = [1, -2]\n", {"s.toml:2:", "radii[1]", "-2", "positive"});
-    refuses("[packing]\nradii = [1, nan]\n", {"s.toml:2:", "radii[1]", "nan", "finite"});
-    refuses("[packing]\nradii = []\n", {"s.toml:2:", "radii", "at least one"});
+    refuses_scene("[packing]\nradii = [1, -2]\n", {"s.toml:2:", "radii[1]", "-2", "positive"});
+    refuses_scene("[packing]\nradii = [1, nan]\n", {"s.toml:2:", "radii[1]", "nan", "finite"});
+    refuses_scene("[packing]\nradii = []\n", {"s.toml:2:", "radii", "at least one"});
 }
 
 BOOST_AUTO_TEST_CASE(unknown_keys_and_sections_are_named_with_their_line) {
-    refuses(head + "dsks = 3\n", {"s.toml:3:", "unknown key 'dsks'", "[packing]", "disks, "});
-    refuses(head + "[ouput]\n", {"s.toml:3:", "'ouput'", "[output]"});
-    refuses(head + "[run]\n\nrules = \"random\"\n", {"s.toml:5:", "unknown key 'rules'", "[run]"});
-    refuses(head + "[[programme]]\ndo = \"up\"\nequilibria = 1\nsteps = 3\n",
-            {"s.toml:6:", "unknown key 'steps'", "[[programme]]"});
-    refuses("seed = 1\n" + head, {"s.toml:1:", "'seed'"});
+    refuses_scene(head + "dsks = 3\n", {"s.toml:3:", "unknown key 'dsks'", "[packing]", "disks, "});
+    refuses_scene(head + "[ouput]\n", {"s.toml:3:", "'ouput'", "[output]"});
+    refuses_scene(head + "[run]\n\nrules = \"random\"\n", {"s.toml:5:", "unknown key 'rules'", "[run]"});
+    refuses_scene(head + "[[programme]]\ndo = \"up\"\nequilibria = 1\nsteps = 3\n",
+                  {"s.toml:6:", "unknown key 'steps'", "[[programme]]"});
+    refuses_scene("seed = 1\n" + head, {"s.toml:1:", "'seed'"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
-    refuses("[packing]\ndisks = 0\n", {"s.toml:2:", "disks", "is 0", "from 1"});
-    refuses("[packing]\ndisks = 2.5\n", {"s.toml:2:", "disks", "2.5", "integer"});
-    refuses("[packing]\ndisks = \"many\"\n", {"s.toml:2:", "disks", "many", "integer"});
-    refuses(head + "diameters = [2, 1]\n", {"s.toml:3:", "diameters", "smallest <= largest"});
-    refuses(head + "diameters = [0, 1]\n", {"s.toml:3:", "diameters", "0 < smallest"});
-    refuses(head + "diameters = [1]\n", {"s.toml:3:", "diameters"});
-    refuses(head + "diameters = 1\n", {"s.toml:3:", "diameters", "array"});
-    refuses(head + "jitter = 0.2\n", {"s.toml:3:", "jitter", "0.2", "1e-14 to 0.1"});
-    refuses(head + "jitter = 1e-15\n", {"s.toml:3:", "jitter", "1e-15", "1e-14 to 0.1"});
-    refuses(head + "seed = -1\n", {"s.toml:3:", "seed", "-1"});
-    refuses(head + "aspect = nan\n", {"s.toml:3:", "aspect", "nan", "finite"});
-    refuses(head + "aspect = inf\n", {"s.toml:3:", "aspect", "inf", "finite"});
-    refuses(head + "[load]\nkind = \"dead\"\n", {"s.toml:4:", "kind", "dead", "nominal"});
-    refuses(head + "[load]\nsigma1 = 0\n", {"s.toml:4:", "sigma1", "positive"});
-    refuses(head + "[run]\nrule = \"best\"\n", {"s.toml:4:", "rule", "best", "most_negative"});
-    refuses(head + "[run]\nties = \"break\"\n", {"s.toml:4:", "ties", "break", "perturb"});
-    refuses(head + "[run]\nmax_arcs = 0\n", {"s.toml:4:", "max_arcs", "0"});
-    refuses(head + "[run]\nstep_fraction = -0.1\n", {"s.toml:4:", "step_fraction", "-0.1"});
-    refuses(head + "[output]\npictures = 1\n", {"s.toml:4:", "pictures", "true or false"});
-    refuses(head + "[output\n", {"s.toml:3:", "TOML"});
-    refuses(head + "disks = 11\n", {"s.toml:3:", "TOML"});
-    refuses("packing = 3\n", {"s.toml:1:", "packing", "table"});
-    refuses(head + "[programme]\ndo = \"up\"\n", {"s.toml:3:", "[[programme]]"});
+    refuses_scene("[packing]\ndisks = 0\n", {"s.toml:2:", "disks", "is 0", "from 1"});
+    refuses_scene("[packing]\ndisks = 2.5\n", {"s.toml:2:", "disks", "2.5", "integer"});
+    refuses_scene("[packing]\ndisks = \"many\"\n", {"s.toml:2:", "disks", "many", "integer"});
+    refuses_scene(head + "diameters = [2, 1]\n", {"s.toml:3:", "diameters", "smallest <= largest"});
+    refuses_scene(head + "diameters = [0, 1]\n", {"s.toml:3:", "diameters", "0 < smallest"});
+    refuses_scene(head + "diameters = [1]\n", {"s.toml:3:", "diameters"});
+    refuses_scene(head + "diameters = 1\n", {"s.toml:3:", "diameters", "array"});
+    refuses_scene(head + "jitter = 0.2\n", {"s.toml:3:", "jitter", "0.2", "1e-14 to 0.1"});
+    refuses_scene(head + "jitter = 1e-15\n", {"s.toml:3:", "jitter", "1e-15", "1e-14 to 0.1"});
+    refuses_scene(head + "seed = -1\n", {"s.toml:3:", "seed", "-1"});
+    refuses_scene(head + "aspect = nan\n", {"s.toml:3:", "aspect", "nan", "finite"});
+    refuses_scene(head + "aspect = inf\n", {"s.toml:3:", "aspect", "inf", "finite"});
+    refuses_scene(head + "[load]\nkind = \"dead\"\n", {"s.toml:4:", "kind", "dead", "nominal"});
+    refuses_scene(head + "[load]\nsigma1 = 0\n", {"s.toml:4:", "sigma1", "positive"});
+    refuses_scene(head + "[run]\nrule = \"best\"\n", {"s.toml:4:", "rule", "best", "most_negative"});
+    refuses_scene(head + "[run]\nties = \"break\"\n", {"s.toml:4:", "ties", "break", "perturb"});
+    refuses_scene(head + "[run]\nmax_arcs = 0\n", {"s.toml:4:", "max_arcs", "0"});
+    refuses_scene(head + "[run]\nstep_fraction = -0.1\n", {"s.toml:4:", "step_fraction", "-0.1"});
+    refuses_scene(head + "[output]\npictures = 1\n", {"s.toml:4:", "pictures", "true or false"});
+    refuses_scene(head + "[output\n", {"s.toml:3:", "TOML"});
+    refuses_scene(head + "disks = 11\n", {"s.toml:3:", "TOML"});
+    refuses_scene("packing = 3\n", {"s.toml:1:", "packing", "table"});
+    refuses_scene(head + "[programme]\ndo = \"up\"\n", {"s.toml:3:", "[[programme]]"});
 }
 
 BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
-    refuses("[run]\nmax_arcs = 3\n", {"s.toml", "[packing]"});
-    refuses("[packing]\nseed = 3\n", {"s.toml:1:", "file, disks, radii or radii_file"});
-    refuses(head + "file = \"v.txt\"\n", {"s.toml:2:", "'file' and 'disks'", "exclude each other"});
-    refuses(head + "radii = [1]\n", {"s.toml:3:", "'disks' and 'radii'"});
-    refuses("[packing]\nradii = [1]\ndiameters = [1, 2]\n", {"s.toml:3:", "diameters", "radii"});
-    refuses("[packing]\nfile = \"v.txt\"\nseed = 2\n", {"s.toml:3:", "seed", "file"});
-    refuses("[packing]\nfile = \"v.txt\"\njitter = 1e-9\n", {"s.toml:3:", "jitter", "file"});
-    refuses("[packing]\nfile = \"v.txt\"\n[preparation]\nsoftness = 1e-6\n", {"s.toml:3:", "[preparation]"});
-    refuses("[packing]\nfile = \"v.txt\"\n[load]\nsigma1 = 2\n", {"s.toml:4:", "sigma1"});
-    refuses(head + "[run]\nties_seed = 2\n", {"s.toml:4:", "ties_seed", "perturb"});
-    refuses(head + "[load]\ninfinitesimal_seed = 2\n", {"s.toml:4:", "infinitesimal_seed"});
+    refuses_scene("[run]\nmax_arcs = 3\n", {"s.toml", "[packing]"});
+    refuses_scene("[packing]\nseed = 3\n", {"s.toml:1:", "file, disks, radii or radii_file"});
+    refuses_scene(head + "file = \"v.txt\"\n", {"s.toml:2:", "'file' and 'disks'", "exclude each other"});
+    refuses_scene(head + "radii = [1]\n", {"s.toml:3:", "'disks' and 'radii'"});
+    refuses_scene("[packing]\nradii = [1]\ndiameters = [1, 2]\n", {"s.toml:3:", "diameters", "radii"});
+    refuses_scene("[packing]\nfile = \"v.txt\"\nseed = 2\n", {"s.toml:3:", "seed", "file"});
+    refuses_scene("[packing]\nfile = \"v.txt\"\njitter = 1e-9\n", {"s.toml:3:", "jitter", "file"});
+    refuses_scene("[packing]\nfile = \"v.txt\"\n[preparation]\nsoftness = 1e-6\n", {"s.toml:3:", "[preparation]"});
+    refuses_scene("[packing]\nfile = \"v.txt\"\n[load]\nsigma1 = 2\n", {"s.toml:4:", "sigma1"});
+    refuses_scene(head + "[run]\nties_seed = 2\n", {"s.toml:4:", "ties_seed", "perturb"});
+    refuses_scene(head + "[load]\ninfinitesimal_seed = 2\n", {"s.toml:4:", "infinitesimal_seed"});
 }
 
 BOOST_AUTO_TEST_CASE(a_start_file_is_relative_to_the_scene) {
-    const Scene scene = parse("[packing]\nfile = \"v.txt\"\n[load]\ninfinitesimal_seed = 3\n");
+    const Scene scene = parse_scene_text("[packing]\nfile = \"v.txt\"\n[load]\ninfinitesimal_seed = 3\n");
     BOOST_TEST(scene.start.string() == "/folder/v.txt");
     BOOST_TEST(*scene.infinitesimal_seed == 3U);
     BOOST_TEST(!scene.load_kind.has_value());

@@ -1,8 +1,7 @@
 // Linear gaps against closed forms and against the exact path.
 #include "shortcuts/small_displacements.hpp"
 #include "support/crafted.hpp"
-
-#include <isostat/preparation/preparation.hpp>
+#include "support/prepared.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -24,16 +23,6 @@ LinearEvent event_of(const State<2>& state, const Contact& opened) {
         find_linear_event(state.packing, structure.value(), factorisation, ContactId(static_cast<int>(at)), +1, pairs);
     BOOST_REQUIRE(event.ok());
     return event.value();
-}
-
-State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    auto state = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message()));
-    return state.value();
 }
 
 } // namespace

@@ -1,10 +1,10 @@
 // The soft grains against closed forms, against energy, and against the rigid packing that they approximate.
 #include "shortcuts/soft_grains.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>
@@ -16,16 +16,6 @@ using namespace isostat;
 using namespace crafted;
 
 namespace {
-
-State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    auto state = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(state.ok(), (state.ok() ? "" : state.failure().message()));
-    return state.value();
-}
 
 SoftGrainOptions at_ratio(double kappa) {
     SoftGrainOptions options;

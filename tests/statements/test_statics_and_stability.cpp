@@ -18,7 +18,7 @@ using exact::NumberMatrix;
 
 namespace {
 
-double uniform(std::mt19937_64& random, double low, double high) {
+double uniform_number(std::mt19937_64& random, double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
@@ -86,7 +86,7 @@ double shortest_found(const std::string& name, double amplitude) {
     for (int k = 0; k < 2000; ++k) {
         std::vector<double> y;
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            double at = packing.q[2 * i + 1] + uniform(random, -amplitude, amplitude);
+            double at = packing.q[2 * i + 1] + uniform_number(random, -amplitude, amplitude);
             if (packing.walls.lower[1] == WallKind::fixed) {
                 at = std::max(at, packing.radius[i]);
             }
@@ -252,12 +252,12 @@ BOOST_AUTO_TEST_CASE(under_true_stresses_the_power_grows_at_a_turn_and_the_sum_o
     // Two disks in the corners of the box, in contact: they roll on each other, and nothing else can move (S2).
     std::mt19937_64 random(2021);
     for (int attempt = 0; attempt < 20; ++attempt) {
-        const double a = uniform(random, 0.5, 2);
-        const double b = uniform(random, 0.5, 2);
+        const double a = uniform_number(random, 0.5, 2);
+        const double b = uniform_number(random, 0.5, 2);
         const double d = a + b;
         Load<2> load;
         load.kind = LoadKind::true_stress;
-        load.stress = {uniform(random, 0.2, 3), uniform(random, 0.2, 3)};
+        load.stress = {uniform_number(random, 0.2, 3), uniform_number(random, 0.2, 3)};
         const auto at = [&](double angle) {
             Packing<2> packing;
             packing.radius = {a, b};
@@ -305,9 +305,9 @@ BOOST_AUTO_TEST_CASE(the_condition_of_kantorovich_is_exact_for_one_quadratic) {
     std::mt19937_64 random(9);
     int roots = 0;
     for (int k = 0; k < 2000; ++k) {
-        const double d = uniform(random, 0.5, 2);
-        const double y = d * uniform(random, 0.9, 1.1);
-        const double x = d * uniform(random, 0.01, 1);
+        const double d = uniform_number(random, 0.5, 2);
+        const double y = d * uniform_number(random, 0.9, 1.1);
+        const double x = d * uniform_number(random, 0.01, 1);
         const double f = (x * x + y * y - d * d) / (2 * d);
         const double beta = d / x;
         const double eta = beta * std::abs(f);
@@ -335,11 +335,11 @@ BOOST_AUTO_TEST_CASE(a_disk_on_two_others_exists_wherever_the_condition_holds) {
     int held = 0;
     int none = 0;
     for (int k = 0; k < 20000; ++k) {
-        const double d1 = uniform(random, 0.5, 2);
-        const double d2 = uniform(random, 0.5, 2);
-        const double base = (d1 + d2) * uniform(random, 0.3, 1.02);
-        const double x = uniform(random, -0.5, base + 0.5);
-        const double y = uniform(random, 0.01, 2);
+        const double d1 = uniform_number(random, 0.5, 2);
+        const double d2 = uniform_number(random, 0.5, 2);
+        const double base = (d1 + d2) * uniform_number(random, 0.3, 1.02);
+        const double x = uniform_number(random, -0.5, base + 0.5);
+        const double y = uniform_number(random, 0.01, 2);
         const double f1 = (x * x + y * y - d1 * d1) / (2 * d1);
         const double f2 = ((x - base) * (x - base) + y * y - d2 * d2) / (2 * d2);
         const double a = x / d1, b = y / d1, c = (x - base) / d2, e = y / d2;

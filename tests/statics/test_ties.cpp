@@ -22,8 +22,8 @@ State<2> stack(double up0, double up1, double up2) {
     return state;
 }
 
-/// The reason why there is no answer, for messages.
-template <class T> std::string why(const Result<T>& result) {
+/// The reason reason there is no answer, for messages.
+template <class T> std::string reason(const Result<T>& result) {
     return result.ok() ? "answered" : result.failure().message();
 }
 
@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(two_tractions_within_delta_are_ordered_down_to_1e_300_and_t
             const double delta = std::pow(10.0, -decade);
             AtVertex loaded(stack(2, 1, sign * delta));
             const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, ContactId(), 0);
-            BOOST_TEST_REQUIRE(decision.ok(), "delta = 1e-" << decade << ": " << why(decision));
+            BOOST_TEST_REQUIRE(decision.ok(), "delta = 1e-" << decade << ": " << reason(decision));
             BOOST_TEST_REQUIRE(decision.value().opening.has_value());
             const Opening& opening = *decision.value().opening;
             BOOST_TEST((loaded.contact(opening.contact) == (sign > 0 ? bottom(0) : bottom(1))),
@@ -58,7 +58,7 @@ BOOST_AUTO_TEST_CASE(two_tractions_within_delta_are_ordered_down_to_1e_300_and_t
     const auto decision = decide_opening(tie.statics, 1, OpeningRule::most_negative, ContactId(), 0);
     BOOST_TEST_REQUIRE(!decision.ok());
     BOOST_TEST((decision.failure().kind == FailureKind::tie));
-    BOOST_TEST(decision.failure().message().find("exactly equal") != std::string::npos, why(decision));
+    BOOST_TEST(decision.failure().message().find("exactly equal") != std::string::npos, reason(decision));
     BOOST_TEST((tie.statics.rung() == Rung::exact));
 }
 
@@ -69,7 +69,7 @@ BOOST_AUTO_TEST_CASE(two_forces_that_vanish_within_delta_are_ordered_and_an_exac
             const double delta = std::pow(10.0, -decade);
             AtVertex loaded(stack(sign * delta, -1, 0.5));
             const auto limit = find_limit(loaded.statics, 1, -1);
-            BOOST_TEST_REQUIRE(limit.ok(), "delta = 1e-" << decade << ": " << why(limit));
+            BOOST_TEST_REQUIRE(limit.ok(), "delta = 1e-" << decade << ": " << reason(limit));
             BOOST_TEST((loaded.contact(limit.value().opens) == (sign > 0 ? bottom(0) : pair(0, 2))),
                        "delta = 1e-" << decade << " opens " << to_string<2>(loaded.contact(limit.value().opens)));
             BOOST_TEST(limit.value().tie_class.size() == 1U);
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_force_within_delta_of_zero_has_its_sign_and_an_exact_zero
                 continue;
             }
             const auto decision = decide_opening(loaded.statics, 1, OpeningRule::most_negative, ContactId(), 0);
-            BOOST_TEST_REQUIRE(decision.ok(), why(decision));
+            BOOST_TEST_REQUIRE(decision.ok(), reason(decision));
             BOOST_TEST(decision.value().opening.has_value() == (sign < 0));
         }
     }
@@ -101,8 +101,8 @@ BOOST_AUTO_TEST_CASE(a_force_within_delta_of_zero_has_its_sign_and_an_exact_zero
     const auto decision = decide_opening(zero.statics, 1, OpeningRule::most_negative, ContactId(), 0);
     BOOST_TEST_REQUIRE(!decision.ok());
     BOOST_TEST((decision.failure().kind == FailureKind::tie));
-    BOOST_TEST(decision.failure().message().find("exactly 0") != std::string::npos, why(decision));
-    BOOST_TEST(decision.failure().message().find("0-bottom") != std::string::npos, why(decision));
+    BOOST_TEST(decision.failure().message().find("exactly 0") != std::string::npos, reason(decision));
+    BOOST_TEST(decision.failure().message().find("0-bottom") != std::string::npos, reason(decision));
 }
 
 BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rounded) {
@@ -119,9 +119,9 @@ BOOST_AUTO_TEST_CASE(equal_by_symmetry_is_a_tie_however_the_coordinates_were_rou
         AtVertex truth(state, true, options);
         const auto decision = decide_opening(truth.statics, -1, OpeningRule::most_negative, ContactId(), 0);
         BOOST_TEST_REQUIRE(!decision.ok(), "radius " << r);
-        BOOST_TEST((decision.failure().kind == FailureKind::tie), why(decision));
-        BOOST_TEST(decision.failure().message().find("0-2") != std::string::npos, why(decision));
-        BOOST_TEST(decision.failure().message().find("1-2") != std::string::npos, why(decision));
+        BOOST_TEST((decision.failure().kind == FailureKind::tie), reason(decision));
+        BOOST_TEST(decision.failure().message().find("0-2") != std::string::npos, reason(decision));
+        BOOST_TEST(decision.failure().message().find("1-2") != std::string::npos, reason(decision));
     }
     BOOST_TEST(misled > 0); // otherwise this says nothing
 }
@@ -133,8 +133,8 @@ BOOST_AUTO_TEST_CASE(unequal_radii_are_ordered_as_long_as_they_differ_at_all) {
         AtVertex left(three_disks(larger, 1, 0.1, 1, -1));
         const auto a = decide_opening(right.statics, -1, OpeningRule::most_negative, ContactId(), 0);
         const auto b = decide_opening(left.statics, -1, OpeningRule::most_negative, ContactId(), 0);
-        BOOST_TEST_REQUIRE(a.ok(), "2^-" << bits << ": " << why(a));
-        BOOST_TEST_REQUIRE(b.ok(), "2^-" << bits << ": " << why(b));
+        BOOST_TEST_REQUIRE(a.ok(), "2^-" << bits << ": " << reason(a));
+        BOOST_TEST_REQUIRE(b.ok(), "2^-" << bits << ": " << reason(b));
         const Contact opened = right.contact(a.value().opening->contact);
         const Contact mirrored = left.contact(b.value().opening->contact);
         BOOST_TEST(

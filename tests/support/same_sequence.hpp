@@ -2,8 +2,7 @@
 // One packing in other clothes (labels, sides, axes), and the comparison of the runs event by event.
 
 #include "support/crafted.hpp"
-
-#include <isostat/preparation/preparation.hpp>
+#include "support/prepared.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -14,16 +13,6 @@
 namespace crafted {
 
 using namespace isostat;
-
-inline State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    auto result = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
-    return result.value();
-}
 
 /// A contact as seen after a change of labels and sides.
 template <class Map> inline std::vector<std::pair<Contact, Contact>> events(const Recorder& records, Map map) {

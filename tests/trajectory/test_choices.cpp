@@ -8,7 +8,7 @@
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 
@@ -20,7 +20,7 @@ State<2> alike(State<2> state) {
 }
 
 /// The infinitesimal loads of the mirror image, in which disks 1 and 2 change places.
-State<2> mirrored(State<2> state) {
+State<2> mirror_image(State<2> state) {
     std::vector<double>& g = state.load.infinitesimal;
     std::swap(g[2], g[4]);
     std::swap(g[3], g[5]);
@@ -66,7 +66,7 @@ BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_
     BOOST_TEST(mentions(open, "tied at first order too"));
 
     std::vector<Contact> opened;
-    for (const State<2>& start : {state, mirrored(state)}) {
+    for (const State<2>& start : {state, mirror_image(state)}) {
         const Course course = follow_load(start, -1, 1, TiePolicy::choose);
         BOOST_TEST(course.end() == "completed", why(course));
         const auto found = choices(course);

@@ -8,7 +8,7 @@
 #include <cmath>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 

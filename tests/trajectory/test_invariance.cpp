@@ -11,7 +11,7 @@
 #include <random>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 

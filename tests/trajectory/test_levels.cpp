@@ -1,26 +1,15 @@
 // The level `arcs`: every arc of a run with its own proof, and what a path follower that misses contacts would meet.
 #include "core/work.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 #include "support/threads.hpp"
-
-#include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
-
-State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    auto result = prepare<2>(options, report);
-    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
-    return result.value();
-}
 
 RunOptions with_arcs() {
     RunOptions options;

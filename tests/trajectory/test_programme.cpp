@@ -11,7 +11,7 @@ using namespace isostat;
 namespace {
 
 /// Stresses and states of equilibria, and which segments began where.
-struct Course : RunObserver<2> {
+struct ProgrammeCourse : RunObserver<2> {
     std::vector<State<2>> states;
     std::vector<double> stresses;
     std::vector<std::pair<int, int>> begun; ///< segment, equilibrium it starts from
@@ -37,7 +37,7 @@ ProgrammeStep up(int equilibria) {
 }
 
 /// Of the 100 disks of tests/data.
-ProgrammeOutcome played(Course& course, const std::vector<ProgrammeStep>& steps) {
+ProgrammeOutcome played(ProgrammeCourse& course, const std::vector<ProgrammeStep>& steps) {
     State<2> state = read_state<2>(ISOSTAT_TEST_DATA "/vertex100.txt").state;
     Programme<2> programme;
     programme.steps = steps;
@@ -57,7 +57,7 @@ BOOST_AUTO_TEST_CASE(a_programme_goes_on_from_the_last_equilibrium_or_from_an_ea
     ProgrammeStep back;
     back.action = Action::down;
     back.to = 1.0;
-    Course course;
+    ProgrammeCourse course;
     const ProgrammeOutcome outcome = played(course, {up(2), up(2), again, back});
     BOOST_TEST(!outcome.failure);
     BOOST_TEST(outcome.impossible.empty());
@@ -74,14 +74,14 @@ BOOST_AUTO_TEST_CASE(a_programme_goes_on_from_the_last_equilibrium_or_from_an_ea
 BOOST_AUTO_TEST_CASE(a_segment_that_cannot_begin_says_why_in_words) {
     ProgrammeStep from = up(1);
     from.from = 3;
-    Course course;
+    ProgrammeCourse course;
     ProgrammeOutcome outcome = played(course, {up(1), from});
     BOOST_TEST(outcome.impossible == "segment \"up\" starts from equilibrium 3, but the run has only reached 1");
     ProgrammeStep behind;
     behind.to = 0.5;
     behind.name = "behind";
     behind.line = 7;
-    Course other;
+    ProgrammeCourse other;
     outcome = played(other, {up(1), behind});
     BOOST_TEST(outcome.segment == "behind");
     BOOST_TEST(outcome.impossible.starts_with("here:7: segment \"behind\": sigma2/sigma1 is 1.0"), outcome.impossible);

@@ -2,27 +2,17 @@
 // bounds are those of the last digit.
 #include "oracle/dense_forces.hpp"
 #include "support/crafted.hpp"
+#include "support/prepared.hpp"
 
 #include <isostat/contact/contact.hpp>
-#include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 using oracle::Real;
 
 namespace {
-
-State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    auto result = prepare<2>(options, report);
-    BOOST_TEST_REQUIRE(result.ok());
-    return result.value();
-}
 
 /// Loaded stress at which the force in a contact vanishes, all products exact.
 Real vanishing_stress(const State<2>& state, const oracle::Vector& q, const Contact& opens) {

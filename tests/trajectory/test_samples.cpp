@@ -10,7 +10,7 @@
 #include <sstream>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 

@@ -5,14 +5,14 @@
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 
-/// Samples whose loading meets a straight strut (found by search), and over how many equilibria.
+/// Samples whose loading meets a straight strut (found by search), and over how many played_equilibria.
 constexpr std::array<std::pair<int, std::uint64_t>, 6> samples{
     {{6, 24}, {8, 13}, {10, 4}, {10, 6}, {10, 15}, {14, 17}}};
-constexpr int equilibria = 7;
+constexpr int played_equilibria = 7;
 
 /// The step after a power turn that holds `disk`, when it opens a contact of that disk: its index, or 0.
 std::size_t strut_opening(const std::vector<ArcRecord<2>>& arcs) {
@@ -34,11 +34,11 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sides_and_axes) {
     for (const auto& [disks, seed] : samples) {
         const State<2> start = prepared(disks, seed);
-        const Played run = play(start, +1, equilibria);
+        const Played run = play(start, +1, played_equilibria);
         BOOST_TEST_CONTEXT(disks << " disks, seed " << seed) {
-            check_same_sequence(run, relabelled(start, 5), equilibria);
-            check_same_sequence(run, relabelled(start, 6), equilibria);
-            check_same_sequence(run, exchanged(start), equilibria);
+            check_same_sequence(run, relabelled(start, 5), played_equilibria);
+            check_same_sequence(run, relabelled(start, 6), played_equilibria);
+            check_same_sequence(run, exchanged(start), played_equilibria);
             // A held coordinate is counted from the walls that do not move: seen from the other side it is another
             // one once the movable walls move. What is the same is what came before, the choice at the turn included.
             const std::size_t k = strut_opening(run.records.arcs);
@@ -46,7 +46,7 @@ BOOST_AUTO_TEST_CASE(a_straight_strut_lets_go_at_the_same_end_for_all_labels_sid
             BOOST_TEST((run.records.arcs[k].decided_by <= Rung::double_bound), "no climb after digits without meaning");
             BOOST_TEST(run.counters.tally.structural_ties > 0);
             for (const Disguised& other : {mirrored(start), quarter_turned(start)}) {
-                const auto seen = events(play(other.state, +1, equilibria).records, other.back);
+                const auto seen = events(play(other.state, +1, played_equilibria).records, other.back);
                 BOOST_TEST_REQUIRE(seen.size() > k);
                 for (std::size_t j = 0; j <= k; ++j) {
                     BOOST_TEST((seen[j].first == run.records.arcs[j].opened), "arc " << j + 1);

@@ -11,7 +11,7 @@
 #include <set>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 

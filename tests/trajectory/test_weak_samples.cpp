@@ -6,7 +6,7 @@
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
-using namespace crafted;
+using namespace ::crafted;
 
 namespace {
 

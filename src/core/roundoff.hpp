@@ -1,0 +1,21 @@
+#pragma once
+/// \file
+/// Numbers that error bounds are made with.
+
+#include <limits>
+
+namespace isostat::roundoff {
+
+/// Unit of rounding of double: |fl(a op b) - (a op b)| <= u |a op b|, to nearest and without underflow.
+inline constexpr double u = 0x1p-53;
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+inline constexpr double root2 = 1.4142135623731; ///< above the square root of 2
+
+/// Relative error of a sum of n products of doubles, of their absolute values: gamma_n = n u / (1 - n u).
+constexpr double gamma(double terms) {
+    return terms * u / (1 - terms * u);
+}
+
+} // namespace isostat::roundoff

@@ -1,0 +1,20 @@
+#pragma once
+// A packing to start from.
+
+#include <isostat/preparation/preparation.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cstdint>
+#include <string>
+
+/// The first equilibrium of random disks, diameters 1 to 2.
+inline isostat::State<2> prepared(int disks, std::uint64_t seed) {
+    isostat::PreparationOptions options;
+    options.disks = disks;
+    options.seed = seed;
+    isostat::PreparationReport<2> report;
+    auto result = isostat::prepare<2>(options, report);
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
+    return result.value();
+}

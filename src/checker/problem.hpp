@@ -57,6 +57,9 @@ struct Row {
 
 /// `Problem::digits` when more are not asked for.
 inline constexpr int usual_digits = 80;
+/// Asked next where those do not tell, and from the beginning where radii are R_i + eps rho_i: records of such runs
+/// call a number 0 only below 2^-1000, and bounds of others may end next to the number.
+inline constexpr int more_digits = 320;
 /// Of a question that stays open with fewer.
 inline constexpr int most_digits = 1280;
 

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace isostat::checker {
 
 namespace {
@@ -99,8 +101,8 @@ Range Place::length(int axis) const {
 Objections make_place(State<2> state, Place& place, const ExactLoad& load, int fresh,
                       std::shared_ptr<const Solver> near, int digits) {
     place.state = std::make_unique<State<2>>(std::move(state));
-    place.evidence =
-        std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near), digits);
+    place.evidence = std::make_unique<Evidence>(*place.state, CheckerArithmetic::automatic, true, std::move(near),
+                                                place.state->perturbation ? std::max(digits, more_digits) : digits);
     place.load = load;
     place.fresh = fresh;
     Evidence& e = *place.evidence;

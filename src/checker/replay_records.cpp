@@ -176,6 +176,13 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
     return *found;
 }
 
+/// It is said to stay watched though its first-order gap is negative.
+bool stays_watched(const EventRecord& event, const Contact& pair) {
+    return std::any_of(event.ties.begin(), event.ties.end(), [&](const TieRecord& tie) {
+        return tie.what == "gap" && tie.choice == "watched" && tie.against == to_string<2>(pair);
+    });
+}
+
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
@@ -188,7 +195,8 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     for (const Gap& gap : to.gaps()) {
         if (gap.value.has_zero() && to.first) {
             const Range first = to.first->gap(gap.pair);
-            if (!first.positive() && !(first.has_zero() && to.chooses)) {
+            const bool left = to.chooses && (first.has_zero() || stays_watched(event, gap.pair));
+            if (!first.positive() && !left) {
                 return Objection{first.negative(), fmt::format("{} touch at the end of the arc, first-order gap in {}",
                                                                to_string<2>(gap.pair), shown(first))};
             }

@@ -165,6 +165,10 @@ Objections check_ties(const Place& from, const Place& to, const EventRecord& eve
         if (tie.choice == "zero" && !arc.stays_zero(tie)) {
             return Objection{true, fmt::format("'{}' of {} is left at 0, but does not vanish", tie.what, tie.contact)};
         }
+        if (tie.choice == "watched" && (tie.what != "gap" || tie.other > tie.other_bound)) {
+            return Objection{true, fmt::format("'{}' of {} stays watched, but does not overlap at first order",
+                                               tie.what, tie.against)};
+        }
         if (tie.what != "gap") {
             if (Objections wrong = arc.check_term(tie, tie.contact, tie.first, tie.first_bound)) {
                 return wrong;

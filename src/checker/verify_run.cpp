@@ -49,8 +49,6 @@ class Replay {
     }
 
   private:
-    static constexpr int more_digits = 320;
-
     [[nodiscard]] bool stopped() const { return !result_.wrong.empty(); }
     /// False: the record is wrong, and the replay stops.
     bool expect(bool holds, const std::string& where, const std::string& otherwise) {

@@ -22,6 +22,9 @@ struct ArcOptions {
     /// The tangent at an event is extrapolated from the way there instead of solved for, where nothing is close enough
     /// to depend on it: for callers that do not use `Arc::tangent`. Saves two passes and more.
     bool extrapolate_tangent = false;
+    /// The sign of the power at an event is read off a tangent that is solved for to the last digits: for callers who
+    /// proved it negative where it was taken for positive.
+    bool sharp_power = false;
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
     /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
     /// does), and those proved to keep their distance all along (both at rest).

@@ -260,7 +260,7 @@ template <int Dim> typename Follower<Dim>::PowerSign Follower<Dim>::judge_power(
     // in the new contact.
     const bool judged = !power_.starts_at_zero() || moved_;
     const bool long_enough = there.s > 1e-6 * step_limit_;
-    if (judged && there.power < 0) { // it may only seem so: a turn at the very end of an arc is none
+    if (judged && (there.power < 0 || options_.sharp_power)) { // it may only seem so: a turn at the very end is none
         if (auto t = chord_.tangent(point.at, here_.tangent, here_.fastest, turn_tangent_accuracy)) {
             point.tangent = std::move(*t);
             there.power = power_(point.at, point.tangent);

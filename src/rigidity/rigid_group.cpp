@@ -43,17 +43,8 @@ template <int Dim> int rigid_motions(const DofMap<Dim>& dofs, const Group<Dim>& 
     return motions + (rotates ? 1 : 0);
 }
 
-} // namespace
-
-template <int Dim>
-bool moves_as_one(const DofMap<Dim>& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
-    const auto held = [](const Contact& c) { return c.kind == ContactKind::held; };
-    if (held(pair) || std::any_of(among.begin(), among.end(), held)) {
-        return false; // a held coordinate is kept relative to the walls that do not move: no pair of grains
-    }
-    Group<Dim> group(disks);
-    group.add(pair);
-    std::for_each(among.begin(), among.end(), [&](const Contact& c) { group.add(c); });
+/// Degrees of freedom of the group, less those.
+template <int Dim> int motions_to_hold(const DofMap<Dim>& dofs, const Group<Dim>& group) {
     const std::size_t walls = static_cast<std::size_t>(Dim) * group.disk.size();
     int free = 0;
     for (std::size_t i = 0; i < group.disk.size(); ++i) {
@@ -64,9 +55,39 @@ bool moves_as_one(const DofMap<Dim>& dofs, int disks, const std::vector<Contact>
     for (std::size_t axis = 0; axis < Dim; ++axis) {
         free += group.upper[axis] && dofs.dof_of(walls + axis) >= 0 ? 1 : 0;
     }
-    return static_cast<int>(among.size()) == free - rigid_motions(dofs, group);
+    return free - rigid_motions(dofs, group);
 }
 
+/// No pair of grains, or one that depends on the shape of the cell.
+bool foreign(const Contact& c) {
+    return c.kind == ContactKind::held || !c.image.is_here();
+}
+
+} // namespace
+
+template <int Dim>
+bool moves_as_one(const DofMap<Dim>& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
+    if (foreign(pair) || std::any_of(among.begin(), among.end(), foreign)) {
+        return false;
+    }
+    Group<Dim> group(disks);
+    group.add(pair);
+    std::for_each(among.begin(), among.end(), [&](const Contact& c) { group.add(c); });
+    return static_cast<int>(among.size()) == motions_to_hold(dofs, group);
+}
+
+template <int Dim> bool carries_alone(const DofMap<Dim>& dofs, const std::vector<Contact>& carrying, int axis) {
+    if (axis < 0 || axis >= Dim || std::any_of(carrying.begin(), carrying.end(), foreign)) {
+        return false;
+    }
+    Group<Dim> group(dofs.disk_count());
+    std::for_each(carrying.begin(), carrying.end(), [&](const Contact& c) { group.add(c); });
+    const auto a = static_cast<std::size_t>(axis);
+    return group.lower[a] && group.upper[a] && // no translation along the load, and no rotation
+           static_cast<int>(carrying.size()) == motions_to_hold(dofs, group);
+}
+
+template bool carries_alone<2>(const DofMap<2>&, const std::vector<Contact>&, int);
 template bool moves_as_one<2>(const DofMap<2>&, int, const std::vector<Contact>&, const Contact&);
 
 } // namespace isostat

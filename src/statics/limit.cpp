@@ -1,4 +1,5 @@
 #include "core/roundoff.hpp"
+#include "rigidity/rigid_group.hpp"
 #include "statics/contender.hpp"
 
 #include <algorithm>
@@ -47,6 +48,7 @@ template <int Dim> class LimitContest final : public Contest {
   private:
     /// Proved sign of the rate of a force in the direction: from the enclosure, or from the ladder.
     Order rate_sign(ContactId l);
+    bool carried_by_others(const Enclosure& slope) const;
     Failure open_rate(ContactId l, const Order& order) const;
     [[nodiscard]] Named<Dim> name_of(ContactId l) const { return name(statics_, l); }
     /// Largest slope: what a zero slope is compared with.
@@ -67,13 +69,35 @@ template <int Dim> class LimitContest final : public Contest {
 };
 
 template <int Dim> Order LimitContest<Dim>::rate_sign(ContactId l) {
-    const Enclosure slope = statics_.slope(l);
+    Enclosure slope = statics_.slope(l);
+    if (!slope.decided() && statics_.rung() == Rung::double_bound && statics_.climb()) {
+        slope = statics_.slope(l);
+    }
     Order order{true, slope.positive() ? 1 : -1, slope.margin(), statics_.rung(), statics_.bits()};
     if (!slope.decided()) {
-        order = statics_.sign(statics_.slope_expression(l));
+        order = carried_by_others(slope) ? Order{true, 0, infinity, Rung::combinatorial, 0}
+                                         : statics_.sign(statics_.slope_expression(l));
     }
     order.sign *= direction_;
     return order;
+}
+
+/// Contacts that carry all of the change of the load, as far as they can be told from the others, are counted (R3).
+template <int Dim> bool LimitContest<Dim>::carried_by_others(const Enclosure& slope) const {
+    constexpr double nothing = 1e-15; // of the largest: a guess, what it leaves out or takes in makes the count fail
+    const double least = nothing * slope_size();
+    if (!(slope.radius < least)) {
+        return false;
+    }
+    std::vector<Contact> carrying;
+    for (std::size_t l = 0; l < contacts_.size(); ++l) {
+        if (std::abs(statics_.slope(ContactId(l)).value) > least) {
+            carrying.push_back(contacts_[l]);
+        }
+    }
+    const DofMap<Dim>& dofs = statics_.structure().dofs();
+    const int row = statics_.loaded_wall_row();
+    return row >= 0 && carries_alone(dofs, carrying, dofs.coordinate_of(row) - Dim * dofs.disk_count());
 }
 
 template <int Dim> Failure LimitContest<Dim>::open_rate(ContactId l, const Order& order) const {

@@ -43,7 +43,8 @@ template <int Dim> std::optional<Failure> BoundedSteering<Dim>::depart() {
         next_to_ = departure.value().closes;
         departure_ = departure.value().settled;
         arc_options_.leaving = departure.value().leaving;
-        arc_options_.resting = departure.value().resting;
+        resting_ = departure.value().resting;
+        arc_options_.resting = resting_;
     }
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their
     // own block costs next to nothing.
@@ -104,7 +105,7 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
     arc.end = std::move(path.end);
     arc.tangent = std::move(path.tangent);
     arc.stays = next_to_.has_value();
-    arc.resting = arc_options_.resting;
+    arc.resting = resting_;
     arc.settled = departure_;
     arc.contacts = IsostaticStructure<Dim>::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
     if (arc.contacts) {
@@ -118,11 +119,28 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
     return arc;
 }
 
+/// Its power is proved negative at the end: it turned before.
+template <int Dim> bool BoundedSteering<Dim>::went_too_far(const ArcProof<Dim>& refused) const {
+    const ArcRecord<Dim>& record = refused.record;
+    return refused.reached && !refused.next && !record.power_turn && !next_to_ && !arc_options_.sharp_power &&
+           record.power + record.power_bound < 0;
+}
+
+template <int Dim> bool BoundedSteering<Dim>::may_graze(const ArcProof<Dim>& refused) const {
+    const Contact& closed = refused.record.closed;
+    return !refused.vertex && !next_to_ && from_.perturbed && from_.perturbed->statics.chooses() &&
+           closed.kind != ContactKind::held && closed != opened_ && !arc_options_.closes;
+}
+
 template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refused) {
     if (refused.closed_before) {
         (next_to_ ? next_to_ : arc_options_.closes) = refused.closed_before;
     } else if (!refused.vertex && !fresh_ && !next_to_ && !from_.factorisation.is_fresh()) {
         fresh_.emplace(from_.structure); // old factors may also have ended it badly
+    } else if (went_too_far(refused)) {
+        arc_options_.sharp_power = true;
+    } else if (may_graze(refused)) {
+        arc_options_.resting.push_back(refused.record.closed); // the gaps at the end tell whether it did
     } else {
         return false;
     }

@@ -9,7 +9,9 @@
 namespace isostat {
 
 /// The arc from a vertex, with its factors or fresh ones where these serve badly. A proof that finds another contact
-/// closed before, or nothing at all with old factors, is answered by another proposal.
+/// closed before, a power that is negative at the end, or nothing at all with old factors, is answered by another
+/// proposal; where ties are chosen also one that finds no regular vertex with fresh factors: the pair that seemed to
+/// close may only graze, and is passed by.
 /// Failures besides those of `follow_arc`: `undecided` when first-order rates do not tell what happens to pairs that
 /// touch at the start, or when the order of the contacts that close is not settled in a few proposals.
 template <int Dim> class BoundedSteering final : public Steering<Dim> {
@@ -26,6 +28,8 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
     std::optional<Failure> depart();
     Result<Arc<Dim>> attempt();
     ArcProposal<Dim> proposal(Arc<Dim> path) const;
+    [[nodiscard]] bool went_too_far(const ArcProof<Dim>& refused) const;
+    [[nodiscard]] bool may_graze(const ArcProof<Dim>& refused) const;
 
     std::shared_ptr<const Vertex<Dim>> vertex_;
     const Vertex<Dim>& from_; ///< the same
@@ -35,6 +39,7 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
     ArcOptions arc_options_;
     std::optional<Contact> next_to_;     ///< closes on a way of length O(eps)
     std::vector<TieDecision> departure_; ///< what was settled there
+    std::vector<Contact> resting_;       ///< pairs that touch all along
     std::optional<Factorisation> fresh_; ///< instead of the factors of the vertex
     int proposals_ = 0;
     bool proposed_ = false;

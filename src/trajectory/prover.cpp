@@ -51,6 +51,11 @@ template <int Dim> ZeroGaps touch_still(const Vertex<Dim>& from, const ArcPropos
     return still;
 }
 
+template <int Dim> bool overlaps_at_first_order(const Vertex<Dim>& vertex) {
+    return vertex.perturbed && std::any_of(vertex.perturbed->touching.begin(), vertex.perturbed->touching.end(),
+                                           [](const auto& pair) { return pair.second.negative(); });
+}
+
 } // namespace
 
 template <int Dim> void ArcProof<Dim>::count(const Decision& decision) {
@@ -152,16 +157,19 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         return at_end(found.failure());
     }
     proof.closed_before = found.value().negative;
-    return proof.closed_before ? std::nullopt : arrive(proof, arc, found.value());
+    if (proof.closed_before) {
+        return std::nullopt;
+    }
+    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, arc.resting, overlaps_at_first_order(from)},
+                  found.value());
 }
 
 /// Pairs that touch at the end, at first order.
 template <int Dim>
-std::optional<Failure> Prover<Dim>::arrive(ArcProof<Dim>& proof, const ArcProposal<Dim>& arc,
+std::optional<Failure> Prover<Dim>::arrive(ArcProof<Dim>& proof, std::vector<TieDecision> settled, const Way& way,
                                            const typename Vertex<Dim>::Gaps& gaps) const {
-    std::vector<TieDecision> settled = arc.settled;
     if (first_order_ != nullptr && !gaps.zero.empty()) {
-        auto arrival = isostat::arrive(*proof.vertex, gaps.zero, arc.opening.contact, arc.stays, arc.resting);
+        auto arrival = isostat::arrive(*proof.vertex, gaps.zero, way);
         if (!arrival.ok()) {
             return arrival.failure();
         }

@@ -7,6 +7,7 @@
 #include "trajectory/kept_candidates.hpp"
 #include "trajectory/record.hpp"
 #include "trajectory/steering.hpp"
+#include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -95,7 +96,7 @@ template <int Dim> class Prover {
     void certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening, const Load<Dim>& load) const;
     std::optional<Failure> reach(ArcProof<Dim>& proof, const Vertex<Dim>& from, ArcProposal<Dim>& arc,
                                  const LimitLoad<Dim>& at);
-    std::optional<Failure> arrive(ArcProof<Dim>& proof, const ArcProposal<Dim>& arc,
+    std::optional<Failure> arrive(ArcProof<Dim>& proof, std::vector<TieDecision> settled, const Way& way,
                                   const typename Vertex<Dim>::Gaps& gaps) const;
     static std::optional<Failure> descend(ArcProof<Dim>& proof, const Vertex<Dim>& from, const Opening& opening,
                                           const Load<Dim>& load);

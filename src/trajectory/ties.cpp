@@ -23,7 +23,7 @@ std::string shown(const Enclosure& e) {
 }
 
 /// c / |rate| of a pair that closes.
-Enclosure way(const Enclosure& gap, const Enclosure& rate) {
+Enclosure length_of_way(const Enclosure& gap, const Enclosure& rate) {
     const double value = gap.value / std::abs(rate.value);
     const double smallest = std::abs(rate.value) - rate.radius;
     return {value, (gap.radius + std::abs(value) * rate.radius) / smallest * (1 + 16 * u) + 4 * u * std::abs(value)};
@@ -135,7 +135,9 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
                    (!rate.negative() && chooses && terms.bends_away(rate, opened, direction, contact))) {
             departure.leaving.push_back(contact);
         } else if (rate.negative()) {
-            closing.push_back({contact, way(c, rate)});
+            closing.push_back({contact, length_of_way(c, rate)});
+        } else if (chooses && from.perturbed->first.moves_as_linkage(opened, contact)) {
+            departure.resting.push_back(contact);
         } else {
             return failed(FailureKind::undecided,
                           "{} touch without being a contact, and the rate of their gap when {} opens is "
@@ -154,28 +156,37 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
     return departure;
 }
 
-template <int Dim>
-Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slot, bool stayed,
-                            const std::vector<Contact>& resting) {
+namespace {
+
+/// What is chosen of a pair that touches and stays watched.
+TieChoice watched(const Enclosure& gap) {
+    return gap.positive() ? TieChoice::none : gap.negative() ? TieChoice::watched : TieChoice::zero;
+}
+
+} // namespace
+
+template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, const Way& way) {
     Arrival<Dim> arrival;
     FirstOrderVertex<Dim>& side = *to.perturbed;
+    const bool chooses = side.statics.chooses();
     side.touching.clear();
     side.zero = zero;
-    const Contact& closed = to.structure.contacts()[slot.index()];
+    const Contact& closed = to.structure.contacts()[way.slot.index()];
     Terms<Dim> terms(to);
     for (const auto& [contact, order] : zero) {
         const Enclosure c = terms.gap(contact);
-        const bool watched = !c.decided() && side.statics.chooses();
-        if (!c.decided() && !watched) {
+        if (!c.decided() && !chooses) {
             return failed(FailureKind::undecided,
                           "{} touch where {} closes, and their first-order gap is not told from 0: {}",
                           named<Dim>(contact), named<Dim>(closed), shown(c));
         }
-        const bool rests = std::find(resting.begin(), resting.end(), contact) != resting.end();
-        if (!stayed && !rests) {
+        bool touched = way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end();
+        if (!touched) {
             // Simple roots (P3): going back opens both.
-            const Enclosure back = closed.kind == ContactKind::held ? Enclosure{0, 0} : terms.rate(slot, +1, contact);
-            if (!back.positive()) {
+            const Enclosure back =
+                closed.kind == ContactKind::held ? Enclosure{0, 0} : terms.rate(way.slot, +1, contact);
+            touched = chooses && !back.positive() && terms.bends_away(back, way.slot, +1, contact); // it grazes
+            if (!back.positive() && !touched) {
                 return failed(FailureKind::undecided,
                               "{} touch where {} closes, but are not proved to close there: the rate of "
                               "their gap is {} times that of the other; grazing is not followed at first "
@@ -183,8 +194,9 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slo
                               named<Dim>(contact), named<Dim>(closed), shown(back));
             }
         }
-        if (c.negative()) {
-            if (rests) {
+        const bool may_overlap = chooses && (way.stays ? way.overlapped : touched);
+        if (c.negative() && !may_overlap) {
+            if (touched && !way.stays) {
                 return failed(FailureKind::undecided, "{} at rest overlap at first order: {}", named<Dim>(contact),
                               shown(c));
             }
@@ -192,14 +204,7 @@ Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slo
             return arrival;
         }
         side.touching.emplace_back(contact, c);
-        arrival.settled.push_back({"gap",
-                                   closed,
-                                   {0, 0},
-                                   contact,
-                                   c,
-                                   order.exponent,
-                                   order.bits,
-                                   watched ? TieChoice::zero : TieChoice::none});
+        arrival.settled.push_back({"gap", closed, {0, 0}, contact, c, order.exponent, order.bits, watched(c)});
     }
     return arrival;
 }
@@ -216,7 +221,7 @@ template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, c
             return failed(FailureKind::undecided, "{} touch, and their first-order gap is not told from 0: {}",
                           named<Dim>(contact), shown(c));
         }
-        if (c.negative()) {
+        if (c.negative() && !side.statics.chooses()) {
             names += words("{}{}", names.empty() ? "" : ", ", named<Dim>(contact));
         }
         side.touching.emplace_back(contact, c);
@@ -228,7 +233,7 @@ template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, c
 }
 
 template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
-template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, ContactId, bool, const std::vector<Contact>&);
+template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, const Way&);
 template std::optional<Failure> settle_touching<2>(Vertex<2>&, const ZeroGaps&);
 
 } // namespace isostat

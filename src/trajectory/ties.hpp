@@ -9,7 +9,8 @@ namespace isostat {
 /// What becomes of the pairs that touch at the start of an arc besides the contacts.
 template <int Dim> struct Departure {
     std::vector<Contact> leaving; ///< proved to separate at once
-    std::vector<Contact> resting; ///< their gaps do not change, whatever the positions of the grains
+    std::vector<Contact>
+        resting; ///< they keep touching: grains of one body (R1), or where ties are chosen a linkage (R2)
     /// The first pair to close, when some approach: the way is of length O(eps), the configuration stays.
     std::optional<Contact> closes;
     std::vector<TieDecision> settled;
@@ -18,19 +19,26 @@ template <int Dim> struct Departure {
 /// chosen the first of these by name closes (C1).
 template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction);
 
-/// Judges the pairs that touch at the end of an arc, whose new contact is in the place `slot`: `touching` of `to` is
-/// set. `stayed`: the arc has length O(eps), or the pairs `resting` did not move; all other pairs must be proved to
-/// close there, not to graze. Where ties are chosen a pair whose first-order gap is not told from 0 stays watched (C1).
-/// Success: nothing, or the pair that closed before the new contact.
+/// The way that ends at a vertex.
+struct Way {
+    ContactId slot;                      ///< of the new contact
+    bool stays;                          ///< its length is O(eps)
+    const std::vector<Contact>& resting; ///< pairs that touch all along
+    bool overlapped;                     ///< pairs that touch at its start overlap at first order
+};
+
+/// Judges the pairs that touch at the end of a way: `touching` of `to` is set. Those that moved must be proved to close
+/// there, not to graze. Where ties are chosen a pair whose first-order gap is not told from 0 stays watched, and so
+/// does one that grazes, as far as its second derivative is proved positive, or touched all along, whatever its
+/// first-order gap is (C1). Success: nothing, or the pair that closed before the new contact.
 template <int Dim> struct Arrival {
     std::optional<Contact> earlier;
     std::vector<TieDecision> settled;
 };
-template <int Dim>
-Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, ContactId slot, bool stayed,
-                            const std::vector<Contact>& resting);
+template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, const Way& way);
 
-/// At a start: `touching` is set. Failure: `overlap` naming the pairs that overlap at first order.
+/// At a start: `touching` is set. Failure, where ties are not chosen: `overlap` naming the pairs that overlap at first
+/// order.
 template <int Dim> std::optional<Failure> settle_touching(Vertex<Dim>& vertex, const ZeroGaps& zero);
 
 /// What was settled at a vertex since the last call goes into a record.
@@ -43,7 +51,7 @@ template <int Dim> void take_log(Vertex<Dim>& vertex, std::vector<TieDecision>& 
 }
 
 extern template Result<Departure<2>> depart<2>(const Vertex<2>&, ContactId, int);
-extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, ContactId, bool, const std::vector<Contact>&);
+extern template Result<Arrival<2>> arrive<2>(Vertex<2>&, const ZeroGaps&, const Way&);
 extern template std::optional<Failure> settle_touching<2>(Vertex<2>&, const ZeroGaps&);
 
 } // namespace isostat

@@ -2,6 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
+#include "rigidity/linkage.hpp"
 #include "rigidity/rigid_group.hpp"
 #include "verified/norm.hpp"
 #include "verified/vertex_bounds.hpp"
@@ -39,12 +40,12 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     return {disks, disks};
 }
 
-/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
-/// tried: the grains whose contacts carry the force of the pair, as far as doubles tell, and all contacts among them.
+/// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
+/// fail. None when `opened` is one of them, or a held coordinate.
 template <int Dim>
-bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-           ContactId opened, const Contact& pair) {
-    constexpr double carries = 1e-8; // a guess: what it leaves out or takes in makes the count fail
+std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                              const Factorisation& factorisation, ContactId opened, const Contact& pair) {
+    constexpr double carries = 1e-8;
     const GapGradient<Dim> g = gap_gradient(packing, pair);
     std::vector<double> a(static_cast<std::size_t>(structure.size()), 0.0);
     for (int k = 0; k < g.count; ++k) {
@@ -55,7 +56,25 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
         }
     }
     factorisation.solve_forces(a);
-    if (std::abs(a[opened.index()]) > carries) {
+    std::vector<Contact> list;
+    for (std::size_t l = 0; l < a.size(); ++l) {
+        if (std::abs(a[l]) > carries) {
+            if (l == opened.index() || structure.contacts()[l].kind == ContactKind::held) {
+                return {};
+            }
+            list.push_back(structure.contacts()[l]);
+        }
+    }
+    return list;
+}
+
+/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
+/// tried: the grains whose contacts carry the force of the pair, and all contacts among them.
+template <int Dim>
+bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+           ContactId opened, const Contact& pair) {
+    const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
+    if (carrying.empty()) {
         return false;
     }
     const auto& contacts = structure.contacts();
@@ -67,16 +86,9 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
         }
     };
     join(pair);
-    for (std::size_t l = 0; l < a.size(); ++l) {
-        if (std::abs(a[l]) > carries) {
-            if (contacts[l].kind == ContactKind::held) {
-                return false;
-            }
-            join(contacts[l]);
-        }
-    }
+    std::for_each(carrying.begin(), carrying.end(), join);
     std::vector<Contact> among;
-    for (std::size_t l = 0; l < a.size(); ++l) {
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto grains = grains_of(contacts[l], disks);
         if (l != opened.index() && contacts[l].kind != ContactKind::held && in_body[grains[0]] != 0 &&
             in_body[grains[1]] != 0) {
@@ -188,6 +200,11 @@ template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int directi
     const Enclosure rate = gap_rate(contact, velocity(approach, 0));
     const bool told = rate.decided() || !rests(*packing_, *structure_, *factorisation_, opened, contact);
     return told ? rate : Enclosure{0, 0};
+}
+
+template <int Dim> bool FirstOrder<Dim>::moves_as_linkage(ContactId opened, const Contact& contact) const {
+    const std::vector<Contact> carrying = carriers(*packing_, *structure_, *factorisation_, opened, contact);
+    return !carrying.empty() && isostat::moves_as_linkage(*packing_, carrying, contact);
 }
 
 template <int Dim>

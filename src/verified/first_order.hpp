@@ -29,6 +29,10 @@ template <int Dim> class FirstOrder {
     /// Rate of the gap of `contact` when the gap of `opened` grows at unit rate (`direction` -1: falls, for held
     /// coordinates) and all others stay closed. Exactly 0, radius 0, when it vanishes for structural reasons.
     [[nodiscard]] Enclosure rate(ContactId opened, int direction, const Contact& contact) const;
+    /// Whether the gap of a pair that touches stays 0 on the whole motion that opens `opened`, though grains between
+    /// the two move against each other (R2, degenerate.md). False says nothing. At first order it need not stay as it
+    /// is.
+    [[nodiscard]] bool moves_as_linkage(ContactId opened, const Contact& contact) const;
     /// f1 in f = f0 + eps f1 + O(eps^2) at a fixed stress: H f1 = F1 - H1 f0, H1 and F1 the derivatives of the normals
     /// and (true stresses) of the load along v. `f0`, `structural_zero`: one per contact; f1 is {0, 0} where the second
     /// says that the force vanishes for all positions of the grains. The loaded stress is known to `stress_error`.

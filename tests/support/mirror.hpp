@@ -94,4 +94,26 @@ inline State<2> triangular(int columns, int rows) {
     return state;
 }
 
+/// A row of `columns` unit disks on the bottom, disks of radius 3/2 in the gaps between them that touch each other,
+/// under the top wall; F1 = 1, F2 = `load`. h = `columns` - 3. With P = F1 / 0.6 the load of the top wall is carried by
+/// end contacts of force P and inner contacts of forces 0 <= p <= P, 1.6 (P + sum p) = F2: the row stands for 8/3 <= F2
+/// <= 8/3 (columns - 1), and spreads at the upper end until all disks of radius 3/2 reach the bottom at once.
+inline State<2> pile(int columns, double load) {
+    std::vector<DiskAt> disks;
+    std::vector<Contact> contacts{left(0), right(columns - 1)};
+    for (int c = 0; c < columns; ++c) {
+        disks.push_back({1, 1.0 + 3 * c, 1});
+        contacts.push_back(bottom(c));
+    }
+    for (int c = 0; c + 1 < columns; ++c) {
+        const int i = columns + c;
+        disks.push_back({1.5, 2.5 + 3 * c, 3});
+        contacts.insert(contacts.end(), {pair(c, i), pair(c + 1, i), top(i)});
+        if (c > 0) {
+            contacts.push_back(pair(i - 1, i));
+        }
+    }
+    return in_box(disks, 3 * columns - 1, 4.5, 1, load, contacts);
+}
+
 } // namespace crafted

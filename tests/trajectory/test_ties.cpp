@@ -1,9 +1,8 @@
 // Ties: stopped, or settled at first order in R_i + eps rho_i. The same packings with radii that are really changed by
 // a small eps, run under `stop`, must open and close the same contacts in the same order.
-#include "linear/factorisation.hpp"
-#include "preparation/backbone.hpp"
 #include "support/course.hpp"
 #include "support/mirror.hpp"
+#include "support/really_perturbed.hpp"
 
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
@@ -14,40 +13,6 @@ using namespace isostat;
 using namespace ::crafted;
 
 namespace {
-
-/// The contacts that a run under `perturb` starts from.
-std::vector<Contact> starting_contacts(const State<2>& state, const std::vector<double>& rho) {
-    if (static_cast<int>(state.contacts.size()) == DofMap<2>(state.packing).dof_count()) {
-        return state.contacts;
-    }
-    const auto kept = first_order_backbone(state.packing, state.load, state.contacts, rho);
-    BOOST_TEST_REQUIRE(kept.ok());
-    return kept.value();
-}
-
-/// The packing with radii R + eps rho and the same contacts closed, by Newton's method.
-State<2> really_perturbed(State<2> state, const std::vector<double>& rho, double eps) {
-    state.contacts = starting_contacts(state, rho);
-    for (std::size_t i = 0; i < rho.size(); ++i) {
-        state.packing.radius[i] += eps * rho[i];
-    }
-    for (int step = 0; step < 12; ++step) {
-        auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(structure.ok());
-        const Factorisation factorisation(structure.value());
-        std::vector<double> v;
-        for (const Contact& c : state.contacts) {
-            v.push_back(gap(state.packing, c));
-        }
-        factorisation.solve_velocities(v);
-        for (std::size_t mu = 0; mu < v.size(); ++mu) {
-            state.packing.q[static_cast<std::size_t>(structure.value().dofs().coordinate_of(static_cast<int>(mu)))] +=
-                v[mu];
-        }
-        snap_to_grid(state.packing);
-    }
-    return state;
-}
 
 /// Both runs, for several directions rho: the symbolic one may end undecided where first order does not tell, and is
 /// then the beginning of the real one.

@@ -11,19 +11,21 @@ namespace isostat {
 
 /// What a decision rests on where first-order terms do not tell, under `ties = "choose"` (statement C1).
 enum class TieChoice : unsigned char {
-    none,  ///< nothing was chosen: first-order terms decided
-    loads, ///< the infinitesimal loads, by the rule
-    names, ///< the order of contacts: disks by their numbers, then walls
-    zero   ///< what vanishes in the base is left at 0: such a force opens nothing, such a gap stays watched
+    none,   ///< nothing was chosen: first-order terms decided
+    loads,  ///< the infinitesimal loads, by the rule
+    names,  ///< the order of contacts: disks by their numbers, then walls
+    zero,   ///< what vanishes in the base is left at 0: such a force opens nothing, such a gap stays watched
+    watched ///< a gap of 0 stays watched though radii R + eps rho would have closed it on the way
 };
 constexpr const char* to_string(TieChoice choice) {
     switch (choice) {
     case TieChoice::none: return "none";
     case TieChoice::loads: return "infinitesimal loads";
     case TieChoice::names: return "names";
-    case TieChoice::zero: break;
+    case TieChoice::zero: return "zero";
+    case TieChoice::watched: break;
     }
-    return "zero";
+    return "watched";
 }
 
 /// One decision that a first-order comparison settled: in the base, quantities that cannot be told apart; their

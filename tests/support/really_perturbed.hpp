@@ -1,0 +1,48 @@
+#pragma once
+// The same packing with radii that are really changed by a little: what a rule for ties is compared with.
+
+#include "linear/factorisation.hpp"
+#include "preparation/backbone.hpp"
+#include "support/crafted.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+#include <vector>
+
+namespace crafted {
+
+/// The contacts that a run under `perturb` starts from.
+inline std::vector<Contact> starting_contacts(const State<2>& state, const std::vector<double>& rho) {
+    if (static_cast<int>(state.contacts.size()) == isostat::DofMap<2>(state.packing).dof_count()) {
+        return state.contacts;
+    }
+    const auto kept = isostat::first_order_backbone(state.packing, state.load, state.contacts, rho);
+    BOOST_TEST_REQUIRE(kept.ok());
+    return kept.value();
+}
+
+/// The packing with radii R + eps rho and the same contacts closed, by Newton's method.
+inline State<2> really_perturbed(State<2> state, const std::vector<double>& rho, double eps) {
+    state.contacts = starting_contacts(state, rho);
+    for (std::size_t i = 0; i < rho.size(); ++i) {
+        state.packing.radius[i] += eps * rho[i];
+    }
+    for (int step = 0; step < 12; ++step) {
+        auto structure = isostat::IsostaticStructure<2>::prove(state.packing, state.contacts);
+        BOOST_TEST_REQUIRE(structure.ok());
+        const isostat::Factorisation factorisation(structure.value());
+        std::vector<double> v;
+        for (const Contact& c : state.contacts) {
+            v.push_back(isostat::gap(state.packing, c));
+        }
+        factorisation.solve_velocities(v);
+        for (std::size_t mu = 0; mu < v.size(); ++mu) {
+            state.packing.q[static_cast<std::size_t>(structure.value().dofs().coordinate_of(static_cast<int>(mu)))] +=
+                v[mu];
+        }
+        isostat::snap_to_grid(state.packing);
+    }
+    return state;
+}
+
+} // namespace crafted

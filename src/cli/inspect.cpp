@@ -1,6 +1,7 @@
 #include "cli/cell_text.hpp"
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/face_text.hpp"
 #include "cli/true_vertex_text.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -224,6 +225,7 @@ int inspect(const InspectArguments& arguments) {
         if (cell) {
             object["cell"] = cell_json(state.packing, *cell);
         }
+        add_face(object, state);
         if (const auto forces = compared_forces(file, truth)) {
             object["forces_in_file"] = {{"difference", number(forces->difference)},
                                         {"contact", to_string<2>(forces->where)}};
@@ -241,6 +243,7 @@ int inspect(const InspectArguments& arguments) {
         if (cell) {
             print_cell(*cell);
         }
+        print_face(state);
         if (const auto forces = compared_forces(file, truth)) {
             fmt::print("forces in the file       differ from these by at most {}, in {}\n",
                        rounded_up(forces->difference, 2), to_string<2>(forces->where));

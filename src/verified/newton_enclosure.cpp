@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 
 namespace isostat {
 
@@ -46,39 +47,48 @@ struct Constraints {
     double lipschitz = 0;      ///< of the derivative of F, scaled (V4 (a))
 };
 
+/// F of one contact, and the bound of its error.
+struct Constraint {
+    double f = 0;
+    double error = 0;
+};
+
+/// Of two disks at the distance `distance` of their centres, by coordinates; d = R_i + R_j.
+template <std::size_t Dim> Constraint between_disks(const std::array<Pair, Dim>& distance, Pair d) {
+    constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
+    const Pair target_square = exact_square(d.sum);
+    Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
+    for (const Pair& x : distance) {
+        const Pair square = exact_square(x.sum);
+        const Pair sum = exact_sum(value.sum, square.sum);
+        value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
+    }
+    const double inverse = 1 / d.sum;
+    const double f = (value.sum + value.error) * 0.5 * inverse;
+    return {f, 4 * u * std::abs(f) + 0x1p-98 * d.sum + underflow * inverse};
+}
+
 template <int Dim>
 Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>& contacts, double scale) {
-    constexpr double underflow = 0x1p-1000; // far above 16 * 2^-1074, which is slow to multiply with
     const std::size_t n = contacts.size();
     Constraints result{std::vector<double>(n), std::vector<double>(n)};
     std::vector<int> count(packing.radius.size(), 0);
     const auto at = [scale, q = packing.q.data()](std::size_t k) { return scale * q[k]; };
     const auto minus = [](double a, double b) { return exact_sum(a, -b); };
     const double* const radius = packing.radius.data();
-    double smallest = std::numeric_limits<double>::infinity();
+    double smallest = roundoff::infinity;
     double ratio = 0;
     double largest = 0;
     for (std::size_t l = 0; l < n; ++l) {
         const auto i = static_cast<std::size_t>(contacts[l].i);
-        const auto j = static_cast<std::size_t>(contacts[l].j);
         const Separation<Dim> separation(contacts[l], packing.disk_count());
+        Constraint found;
         switch (contacts[l].kind) {
         case ContactKind::disk_disk: {
+            const auto j = static_cast<std::size_t>(contacts[l].j);
             const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
-            const Pair target_square = exact_square(d.sum);
-            Pair value{-target_square.sum, -(target_square.error + 2 * d.sum * d.error)};
-            for (const Pair& x : separation.of_centres(at, minus)) {
-                const Pair square = exact_square(x.sum);
-                const Pair sum = exact_sum(value.sum, square.sum);
-                value = {sum.sum, value.error + (sum.error + (square.error + 2 * x.sum * x.error))};
-            }
-            const double inverse = 1 / d.sum;
-            const double f = (value.sum + value.error) * 0.5 * inverse;
-            const double size = std::abs(f);
-            result.f[l] = f;
-            result.error[l] = 4 * u * size + 0x1p-98 * d.sum + underflow * inverse;
-            ratio = std::max(ratio, size * inverse);
-            largest = std::max(largest, size);
+            found = between_disks(separation.of_centres(at, minus), d);
+            ratio = std::max(ratio, std::abs(found.f) * (1 / d.sum));
             smallest = std::min(smallest, d.sum);
             ++count[i];
             ++count[j];
@@ -86,9 +96,7 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
         }
         case ContactKind::lower_wall: {
             const double f = separation.of_wall(at, std::minus<>()) - scale * radius[i];
-            result.f[l] = f;
-            result.error[l] = 2 * u * std::abs(f);
-            largest = std::max(largest, std::abs(f));
+            found = {f, 2 * u * std::abs(f)};
             break;
         }
         case ContactKind::upper_wall: {
@@ -96,13 +104,14 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
             const Pair x = separation.of_wall(at, minus);
             const Pair sum = exact_sum(x.sum, -(scale * radius[i]));
             const double f = sum.sum + (sum.error + x.error);
-            result.f[l] = f;
-            result.error[l] = 4 * u * std::abs(f) + 0x1p-98 * std::abs(length);
-            largest = std::max(largest, std::abs(f));
+            found = {f, 4 * u * std::abs(f) + 0x1p-98 * std::abs(length)};
             break;
         }
         case ContactKind::held: break;
         }
+        result.f[l] = found.f;
+        result.error[l] = found.error;
+        largest = std::max(largest, std::abs(found.f));
     }
     // From |F| to the gap: F = g (1 + g / 2D) gives |g| <= |F| (1 + |F| / D) while |F| / D < 1/4.
     result.worst = ratio * 1.0011 + 0x1p-90;
@@ -112,42 +121,17 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
     return result;
 }
 
-} // namespace
+/// What a step leaves of F: r = F - approach, and a bound of what it leaves of the exact F.
+struct Rest {
+    std::vector<double> r;
+    std::vector<double> bound;
 
-template <int Dim>
-VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                               const Factorisation& factorisation, const InverseBound& inverse) {
-    double longest = 0;
-    for (const double x : packing.q) {
-        longest = std::max(longest, std::abs(x));
-    }
-    int exponent = 0;
-    std::frexp(longest, &exponent);
-    const bool displaced = packing.cell.any(); // `Constraints` knows no images
-    if (inverse.verdict != Verdict::proved || std::abs(exponent) > 400 || displaced) {
-        return enclose_vertex(packing, structure, inverse);
-    }
-    const double scale = std::ldexp(1.0, -exponent);
-    const Constraints at = constraints(packing, structure.contacts(), scale);
-    if (!(at.worst < 1e-3)) {
-        return enclose_vertex(packing, structure, inverse);
-    }
-    VertexEnclosure vertex;
-    vertex.max_gap = at.largest;
-    vertex.lipschitz = at.lipschitz * scale;
-    vertex.radius = std::numeric_limits<double>::infinity();
-    const sparse::Matrix<double>& h = structure.matrix();
-    const auto n = static_cast<std::size_t>(structure.size());
-    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * at.worst + 8 * u);
-    std::vector<double> step = at.f; // with approach velocities equal to the gaps they close
-    factorisation.approximate().velocities(step);
-    std::vector<double> r(n);
-    std::vector<double> bound(n);
-    constexpr int max_passes = 4;
-    for (int pass = 1; pass <= max_passes; ++pass) {
+    explicit Rest(std::size_t n) : r(n), bound(n) {}
+
+    void after(const std::vector<double>& step, const Constraints& at, const sparse::Matrix<double>& h) {
         const double* const value = h.value.data();
         const int* const row = h.row.data();
-        for (std::size_t l = 0; l < n; ++l) {
+        for (std::size_t l = 0; l < r.size(); ++l) {
             double approach = 0;
             double size = 0;
             const int end = h.start[l + 1];
@@ -160,32 +144,83 @@ VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStruc
             // 5u of the entries, products and sums; the row of DF is that of G times d / D.
             bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (16 * u + 1.01 * at.worst) * size;
         }
+    }
+};
+
+/// Power of two that brings the largest coordinate near 1, unless it is out of the range in which F is computed.
+std::optional<double> scale_of(const std::vector<double>& q) {
+    double longest = 0;
+    for (const double x : q) {
+        longest = std::max(longest, std::abs(x));
+    }
+    int exponent = 0;
+    std::frexp(longest, &exponent);
+    return std::abs(exponent) > 400 ? std::nullopt : std::optional(std::ldexp(1.0, -exponent));
+}
+
+/// Steps of Newton's method from the stored place, and the enclosure around each that is proved (V4); lengths are those
+/// of `at`.
+VertexEnclosure newton(const Constraints& at, const sparse::Matrix<double>& h, const Factorisation& factorisation,
+                       double inverse_norm) {
+    constexpr int max_passes = 4;
+    constexpr double enough = 2; // more passes would at most divide the radius by 3
+    VertexEnclosure vertex;
+    vertex.radius = roundoff::infinity;
+    std::vector<double> step = at.f; // with approach velocities equal to the gaps they close
+    factorisation.approximate().velocities(step);
+    Rest left(step.size());
+    for (int pass = 1; pass <= max_passes; ++pass) {
+        left.after(step, at, h);
         const double length = norm_above(step);
-        const double rest = inverse_norm * norm_above(bound) * (1 + 4 * u);
+        const double rest = inverse_norm * norm_above(left.bound) * (1 + 4 * u);
         const double eta = (length + rest) * (1 + 4 * u);
         const double product = inverse_norm * at.lipschitz * eta * (1 + 8 * u);
-        const double radius = eta * (1 + product) * (1 + 8 * u) / scale; // (1 - sqrt(1 - 2h)) / h <= 1 + h up to 1/4
+        const double radius = eta * (1 + product) * (1 + 8 * u); // (1 - sqrt(1 - 2h)) / h <= 1 + h up to 1/4
         if (product <= 0.25 && radius < vertex.radius) {
             vertex.verdict = Verdict::proved;
             vertex.radius = radius;
         }
         // The exact step is `rest` away, and the vertex at most eta * product from where that leads.
-        vertex.step_radius =
-            product <= 0.25 ? (rest + eta * product) * (1 + 8 * u) / scale : std::numeric_limits<double>::infinity();
-        constexpr double enough = 2; // more passes would at most divide the radius by 3
+        vertex.step_radius = product <= 0.25 ? (rest + eta * product) * (1 + 8 * u) : roundoff::infinity;
         if (!(rest > enough * length) || pass == max_passes) {
             break;
         }
-        factorisation.approximate().velocities(r);
-        for (std::size_t l = 0; l < n; ++l) {
-            step[l] += r[l];
+        factorisation.approximate().velocities(left.r);
+        for (std::size_t l = 0; l < step.size(); ++l) {
+            step[l] += left.r[l];
         }
     }
-    for (double& s : step) {
-        s /= scale; // a power of two
-    }
     vertex.step = std::move(step);
-    return vertex.verdict == Verdict::proved ? vertex : enclose_vertex(packing, structure, inverse);
+    return vertex;
+}
+
+} // namespace
+
+template <int Dim>
+VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                               const Factorisation& factorisation, const InverseBound& inverse) {
+    const std::optional<double> scale = scale_of(packing.q);
+    const bool displaced = packing.cell.any(); // `Constraints` knows no images
+    if (inverse.verdict != Verdict::proved || !scale || displaced) {
+        return enclose_vertex(packing, structure, inverse);
+    }
+    const Constraints at = constraints(packing, structure.contacts(), *scale);
+    if (!(at.worst < 1e-3)) {
+        return enclose_vertex(packing, structure, inverse);
+    }
+    const double inverse_norm = 1 / inverse.sigma_min * (1 + 2 * at.worst + 8 * u);
+    VertexEnclosure vertex = newton(at, structure.matrix(), factorisation, inverse_norm);
+    if (vertex.verdict != Verdict::proved) {
+        return enclose_vertex(packing, structure, inverse);
+    }
+    vertex.max_gap = at.largest;
+    vertex.lipschitz = at.lipschitz * *scale;
+    vertex.radius /= *scale; // a power of two
+    vertex.step_radius /= *scale;
+    for (double& s : vertex.step) {
+        s /= *scale;
+    }
+    return vertex;
 }
 
 template VertexEnclosure enclose_vertex<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,

@@ -27,7 +27,8 @@ void play(State<2> state, int direction, int equilibria, const fs::path& folder)
     RunOptions options;
     options.ties = TiePolicy::choose;
     directory.begin_segment(0, segment, 0, 0);
-    (void)run_segment<2>(state, segment, 0, options, counters, directory);
+    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
+    BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));
     directory.finish(RunStatus::completed, "");
 }
 
@@ -101,6 +102,24 @@ BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
     for (const std::string& open : run.undecided) {
         BOOST_TEST_MESSAGE(open);
     }
+}
+
+/// Bounds of its records end next to the number: the checker needs more digits than its usual ones.
+BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_replayed_and_proved) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    State<2> state = crafted::pile(5, 4);
+    state.load.reference_length = {16, 4}; // the same forces; strains stay below the cap
+    state.load.stress = {0.25, 0.25};
+    play(state, +1, 3, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.equilibria == 4);
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    const RunVerification forged =
+        altered(folder, "events.jsonl", "\"decision\":\"gap\"", "\"choice\":\"watched\",\"decision\":\"gap\"");
+    BOOST_TEST((forged.verdict == Verdict::refuted));
+    BOOST_TEST(forged.wrong.find("does not overlap at first order") != std::string::npos, forged.wrong);
 }
 
 BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {

@@ -47,6 +47,17 @@ BOOST_AUTO_TEST_CASE(ties_stop_the_run_or_are_settled_and_the_records_say_how) {
             const Outcome verified = run({"verify", out});
             expect(verified, 0);
             BOOST_TEST(contains(verified.out, "first-order decisions checked"));
+            const Outcome seen = run({"inspect", (folder / "run/states/eq_000001.json").string()});
+            const Outcome json = run({"inspect", (folder / "run/states/eq_000001.json").string(), "--json"});
+            if (name == "two-gaps") { // the other disk may carry load too, from nothing to all but what the first needs
+                BOOST_TEST(contains(seen.out, "touching besides"));
+                BOOST_TEST(contains(seen.out, "1 self-stresses"));
+                BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("h") == 1);
+                BOOST_TEST(nlohmann::json::parse(json.out).at("face").at("forces_between").size() == 4U);
+            } else {
+                BOOST_TEST(contains(seen.out, "left at force 0"));
+                BOOST_TEST(nlohmann::json::parse(json.out).at("left_at_zero").size() == 1U);
+            }
         }
     }
 }

@@ -1,0 +1,229 @@
+// The ends of supported intervals: which force vanishes first.
+#include "checker/limit.hpp"
+
+#include "checker/bounds.hpp"
+#include "checker/choice.hpp"
+#include "checker/index.hpp"
+#include "checker/structural_zeros.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat::checker {
+
+namespace {
+
+/// Roundings of the quotient that is written as the stress at a limit.
+constexpr double limit_rounding = 0x1p-50;
+
+/// The largest bound of an end of the supported interval that is accepted.
+double loosest_end(const Place& place, const Bounded& stress) {
+    return force_tolerance * std::max(std::abs(place.stress()), std::abs(stress.value));
+}
+
+/// What the infinitesimal loads compare where forces vanish together: how soon each does.
+Range soon(const Place& place, std::size_t l) {
+    const Range& slope = place.evidence->slopes()[l];
+    return place.evidence->infinitesimal()[l] / (slope.negative() ? Range(Rational(0)) - slope : slope);
+}
+
+} // namespace
+
+Range step_to_limit(const Place& place, std::size_t contact) {
+    return Range(Rational(0)) - place.evidence->forces[contact] / place.evidence->slopes()[contact];
+}
+
+std::vector<Range> forces_after(const Place& place, const Range& step) {
+    const Evidence& e = *place.evidence;
+    std::vector<Range> there;
+    for (std::size_t l = 0; l < e.forces.size(); ++l) {
+        there.push_back(e.forces[l] + step * e.slopes()[l]);
+    }
+    return there;
+}
+
+Range limit_rate(const Range& first, const Range& slope) {
+    return Range(Rational(0)) - first / slope;
+}
+
+Objections check_load_end(const Place& place, const Bounded& stress, std::size_t opened, int direction) {
+    const Evidence& e = *place.evidence;
+    const LoadEndClaim claim{false,
+                             {next_below(stress.value - stress.bound), next_above(stress.value + stress.bound)},
+                             place.state->contacts[opened]};
+    std::string text;
+    const Verdict verdict = judge_load_end(e, claim, direction, text);
+    if (verdict != Verdict::proved) {
+        return Objection{verdict == Verdict::refuted,
+                         fmt::format("the stress is {} +- {}, found {}", stress.value, stress.bound, text)};
+    }
+    const Range found = Range(Rational(place.stress())) + step_to_limit(place, opened);
+    return compare("the stress", stress, found, loosest_end(place, stress));
+}
+
+namespace {
+
+/// A limit in a run that settles ties at first order, where one contact opens.
+struct Limit {
+    const Place& place;
+    std::size_t opened;
+    const std::vector<TieRecord>* said; ///< of ties, by a record; null: there is none
+    ChoiceRule choice;
+    std::vector<Range> there; ///< the forces
+    std::vector<Range> first; ///< their first-order terms
+    ExactLoad load;
+    int direction;
+
+    /// Whether another force vanishes before, or with it: `together`.
+    [[nodiscard]] Objections before(std::size_t l, bool& together) const;
+    /// Whether, of forces that vanish together, the infinitesimal loads take the one that opens.
+    [[nodiscard]] Objections among(const std::vector<int>& together) const;
+};
+
+Objections Limit::before(std::size_t l, bool& together) const {
+    const Evidence& e = *place.evidence;
+    const Range& slope = e.slopes()[l];
+    together = false;
+    if (contains(place.zeros, l) || place.is_held(l) || there[l].positive() ||
+        (said != nullptr && recorded_choice(*said, "limit", e.name(opened), e.name(l)) != nullptr)) {
+        return {};
+    }
+    if (there[l].negative()) {
+        return Objection{true, fmt::format("the force of {} vanishes before that of {}", e.name(l), e.name(opened))};
+    }
+    if (slope.has_zero()) {
+        if (first[l].positive() || place.chooses) {
+            return {};
+        }
+        return Objection{
+            false, fmt::format("the force of {} may vanish all along, and its first-order term at the limit is in {}",
+                               e.name(l), shown(first[l]))};
+    }
+    if ((direction > 0) == slope.positive()) {
+        return {}; // it grows from a force that is not negative
+    }
+    const Range later = (limit_rate(first[l], slope) - load.rate) * Range(Rational(direction));
+    if (later.negative()) { // a run has more digits to tell the two loads apart
+        return Objection{false, fmt::format("the forces of {} and {} vanish at one load as far as is seen, and that of "
+                                            "{} first: by {} at first order",
+                                            e.name(l), e.name(opened), e.name(l), shown(later))};
+    }
+    together = !later.positive() && !(place.chooses && said == nullptr && comes_first(place, opened, l, choice));
+    return {};
+}
+
+Objections Limit::among(const std::vector<int>& together) const {
+    const Evidence& e = *place.evidence;
+    Forces loaded = e.finite_load;
+    for (std::size_t j = 0; j < loaded.size(); ++j) {
+        loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
+    }
+    const Range mine = soon(place, opened);
+    for (const int l : together) {
+        const auto other = static_cast<std::size_t>(l);
+        if (other == opened) {
+            continue;
+        }
+        const Range its = soon(place, other);
+        const bool this_one = mine.upper < its.lower;
+        if (place.chooses && this_one) {
+            continue; // any of them may open, and the rule takes this one (C1)
+        }
+        const bool comparable = vary_together(e.problem, together, loaded);
+        if (!comparable || !this_one) {
+            const bool earlier = comparable && its.upper < mine.lower;
+            return Objection{earlier,
+                             fmt::format("{} and {} vanish together{}", e.name(opened), e.name(other),
+                                         earlier ? ", and under the infinitesimal loads the second first" : "")};
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit,
+                          const std::vector<TieRecord>* said) {
+    const Evidence& e = *place.evidence;
+    const Range& slope = e.slopes()[opened];
+    if (slope.has_zero()) {
+        return Objection{false, fmt::format("the slope of the force of {} is not told from 0", e.name(opened))};
+    }
+    const Range step = step_to_limit(place, opened);
+    const Range found = Range(Rational(place.stress())) + place.load.shift + step;
+    if (Objections wrong = compare("the stress", stress, found, loosest_end(place, stress))) {
+        wrong->text += fmt::format(" ({} opens)", e.name(opened));
+        return wrong;
+    }
+    const int direction = slope.negative() ? 1 : -1;
+    if (direction > 0 ? step.negative() : step.positive()) {
+        return Objection{true, fmt::format("the force of {} grows in this direction", e.name(opened))};
+    }
+    const std::vector<Range> there = forces_after(place, step);
+    const std::vector<Range> first = place.first->forces(there);
+    at_limit = {found - Range(Rational(stress.value)), limit_rate(first[opened], slope)};
+    const ChoiceRule choice{"limit", [&](std::size_t l) { return there[l].has_zero() && !e.slopes()[l].has_zero(); },
+                            [&](std::size_t l) { return soon(place, l); }};
+    if (said != nullptr) {
+        if (Objections wrong = check_choice(place, *said, opened, choice)) {
+            return wrong;
+        }
+    }
+    const Limit limit{place, opened, said, choice, there, first, at_limit, direction};
+    std::vector<int> together{static_cast<int>(opened)};
+    for (std::size_t l = 0; l < there.size(); ++l) {
+        bool with_it = false;
+        if (Objections wrong = l == opened ? Objections() : limit.before(l, with_it)) {
+            return wrong;
+        }
+        if (with_it) {
+            together.push_back(static_cast<int>(l));
+        }
+    }
+    std::sort(together.begin(), together.end());
+    return together.size() == 1 ? Objections() : limit.among(together);
+}
+
+Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
+                       ExactLoad& at_limit) {
+    const Evidence& e = *place.evidence;
+    if (event.force != 0 || !(event.force_bound == 0 || event.estimated)) {
+        return Objection{true,
+                         fmt::format("the force at a limit is {} +- {}, not 0 +- 0", event.force, event.force_bound)};
+    }
+    // The row says the same with the digits of an earlier rung.
+    const double size = std::abs(event.stress) + std::abs(place.stress());
+    const Bounded limit{event.stress, bound + limit_rounding * size};
+    if (place.first) {
+        return check_limit_at(place, limit, opened, at_limit, &event.ties);
+    }
+    // An equilibrium that stands at the end of its interval leaves it on the side on which the force falls.
+    const bool up = event.stress == place.stress() ? e.slopes()[opened].negative() : event.stress > place.stress();
+    const int direction = up ? 1 : -1;
+    if (Objections wrong = check_load_end(place, limit, opened, direction)) {
+        // The arc may have been found on a lower rung than the row, and has no bound of its own.
+        const Bounded roughly{event.stress, bound + record_tolerance * size};
+        wrong->wrong = wrong->wrong && check_load_end(place, roughly, opened, direction);
+        return wrong;
+    }
+    // Forces that vanish together: the infinitesimal loads decide which one comes first.
+    const Range step = step_to_limit(place, opened);
+    for (std::size_t l = 0; l < e.forces.size(); ++l) {
+        const bool other = l != opened && !contains(place.zeros, l);
+        if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
+            continue;
+        }
+        if (e.slopes()[l].has_zero()) {
+            return Objection{false, fmt::format("the force of {} may vanish at the limit too", e.name(l))};
+        }
+        if (soon(place, l).upper < soon(place, opened).lower) {
+            return Objection{
+                true, fmt::format("{} vanishes at the same load, and first under the infinitesimal loads", e.name(l))};
+        }
+        if (!(soon(place, opened).upper < soon(place, l).lower)) {
+            return Objection{false, fmt::format("{} and {} vanish together", e.name(opened), e.name(l))};
+        }
+    }
+    return {};
+}
+
+} // namespace isostat::checker

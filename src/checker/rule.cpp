@@ -1,0 +1,148 @@
+// What the rule opens, and what it holds.
+#include "checker/choice.hpp"
+#include "checker/index.hpp"
+#include "checker/replay.hpp"
+#include "checker/strut.hpp"
+
+#include <fmt/format.h>
+
+namespace isostat::checker {
+
+Objections check_turn(const Place& place, const EventRecord& event, bool rattles) {
+    const Evidence& e = *place.evidence;
+    const auto held = static_cast<std::size_t>(place.fresh);
+    const std::vector<Range>& forces = rattles ? e.infinitesimal() : e.forces;
+    const Rational room = Rational(turn_tolerance) * Rational(largest_force(forces));
+    if (forces[held].lower > room || forces[held].upper < -room) {
+        return Objection{true,
+                         fmt::format("the power of the load does not vanish where {} is held: its multiplier is in "
+                                     "{}",
+                                     event.closed, shown(forces[held]))};
+    }
+    const Velocities velocities(e);
+    const Velocities::Solution motion = velocities.opening(held, 1);
+    const auto k = static_cast<std::size_t>(place.state->contacts[held].i);
+    Rational fastest = 0;
+    for (const Rational& v : motion.middle) {
+        fastest = std::max<Rational>(fastest, abs(v));
+    }
+    if (abs(motion.middle[k]) + motion.radius < fastest * Rational(1 - turn_tolerance)) {
+        return Objection{true, fmt::format("{} is held, but another coordinate is {} times as fast", event.closed,
+                                           Rational(fastest / abs(motion.middle[k])).get_d())};
+    }
+    return {};
+}
+
+namespace {
+
+/// Order of two contacts by what the rule compares: -1 when `a` has the smaller key, 0 when it is not known.
+/// `at_first_order`: the finite forces did not tell.
+int compare_keys(const Place& place, bool finite, std::size_t a, std::size_t b, bool& at_first_order) {
+    const Evidence& e = *place.evidence;
+    const auto key = [&](std::size_t l, bool first) {
+        const Range& force = finite ? e.forces[l] : e.infinitesimal()[l];
+        const bool flipped = place.is_held(l) && force.positive(); // it competes with minus its magnitude
+        const Range& value = first ? place.first_force[l] : force;
+        return flipped ? Range(Rational(0)) - value : value;
+    };
+    Range difference = key(a, false) - key(b, false);
+    at_first_order = difference.has_zero() && finite && place.first;
+    if (at_first_order) {
+        difference = key(a, true) - key(b, true);
+    }
+    return difference.negative() ? -1 : difference.positive() ? 1 : 0;
+}
+
+ChoiceRule opening_choice(const Place& place, std::size_t opened, const std::string& rule) {
+    const auto tied = [&place, opened](std::size_t l) {
+        bool at_first_order = false;
+        (void)compare_keys(place, true, l, opened, at_first_order);
+        return at_first_order;
+    };
+    const auto load = [&place, least = rule == "least_negative"](std::size_t l) {
+        const Range& f = place.evidence->infinitesimal()[l];
+        return least ? Range(Rational(0)) - f : f;
+    };
+    return {"opening", tied, load};
+}
+
+/// Nothing, or why the rule does not put `opened` before another contact that may open.
+Objections check_order(const Place& place, const std::string& kind, std::size_t opened, std::size_t other,
+                       const std::string& rule) {
+    const Evidence& e = *place.evidence;
+    const std::vector<Range>& forces = kind == "rattler" ? e.infinitesimal() : e.forces;
+    const bool most = rule == "most_negative";
+    const bool by_name = rule == "least_index";
+    bool at_first_order = false; // where a run has more digits to tell the forces apart
+    int sign = compare_keys(place, kind != "rattler", other, opened, at_first_order);
+    if (by_name) {
+        sign = place.state->contacts[other] < place.state->contacts[opened] ? -1 : 1;
+        at_first_order = false;
+    } else if (kind != "rattler" && same_at_turn(place, opened, other)) {
+        // Finite forces tell only where the turn was rounded to.
+        sign = strut_order(place, other, opened).value_or(0);
+    }
+    if (most || by_name ? sign < 0 : rule == "least_negative" && sign > 0) {
+        const bool holds = holds_may_explain(place, other, opened);
+        return Objection{!holds && !at_first_order,
+                         fmt::format("{} opens with {}, but the rule '{}' takes {} with {}{}", e.name(opened),
+                                     shown(forces[opened]), rule, e.name(other), shown(forces[other]),
+                                     holds ? ", unless a coordinate held earlier was released and turned back where it "
+                                             "stood"
+                                           : "")};
+    }
+    if (sign == 0 && (most || rule == "least_negative")) {
+        return Objection{false, fmt::format("the rule cannot order {} and {}", e.name(opened), e.name(other))};
+    }
+    return {};
+}
+
+} // namespace
+
+Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule) {
+    if (event.stress != place.stress()) {
+        return Objection{
+            true, fmt::format("the stress is {}, and was {} in the same rearrangement", event.stress, place.stress())};
+    }
+    Decision decision;
+    if (Objections open = decide(place, decision)) {
+        return open;
+    }
+    const Evidence& e = *place.evidence;
+    if (decision.kind.empty()) {
+        return Objection{true, "all forces are positive: an equilibrium was reached before this arc"};
+    }
+    if (place.is_held(opened) ? event.kind != "release" : decision.kind != event.kind) {
+        return Objection{true, fmt::format("the kind is '{}': there is a {}force < 0 in {}", event.kind,
+                                           decision.kind == "rattler" ? "infinitesimal " : "",
+                                           e.name(static_cast<std::size_t>(decision.candidates[0])))};
+    }
+    const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
+    if (Objections wrong = check_choice(place, place.said, opened, opening_choice(place, opened, rule))) {
+        return wrong;
+    }
+    if (!contains(decision.candidates, opened)) {
+        return Objection{true, fmt::format("{} opens, but its force is in {}", e.name(opened), shown(forces[opened]))};
+    }
+    for (const int l : decision.candidates) {
+        const auto other = static_cast<std::size_t>(l);
+        if (other == opened || recorded_choice(place.said, "opening", e.name(opened), e.name(other)) != nullptr) {
+            continue;
+        }
+        if (Objections wrong = check_order(place, decision.kind, opened, other, rule)) {
+            return wrong;
+        }
+    }
+    const double size = largest_force(forces);
+    if (Objections wrong = compare("force", {event.force, event.force_bound}, forces[opened], force_tolerance * size,
+                                   event, 100 * size)) {
+        return wrong;
+    }
+    if (rule != "most_negative" && rule != "least_negative" && rule != "least_index") {
+        return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule),
+                         true};
+    }
+    return {};
+}
+
+} // namespace isostat::checker

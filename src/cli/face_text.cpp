@@ -1,0 +1,108 @@
+#include "cli/face_text.hpp"
+
+#include <isostat/preparation/force_face.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace isostat::cli {
+
+namespace {
+
+/// Names of what a run noted.
+std::vector<std::string> names_of(const std::vector<std::pair<Contact, Enclosure>>& noted) {
+    std::vector<std::string> names;
+    for (const auto& [contact, term] : noted) {
+        names.push_back(to_string<2>(contact));
+    }
+    return names;
+}
+
+bool takes_part(const ForceFace& face, std::size_t l) {
+    return std::any_of(face.self_stresses.begin(), face.self_stresses.end(),
+                       [l](const std::vector<double>& stress) { return stress[l] != 0; });
+}
+
+Result<ForceFace> face_of(const State<2>& state) {
+    std::vector<Contact> touching;
+    for (const auto& [pair, gap] : state.perturbation->open) {
+        touching.push_back(pair);
+    }
+    return force_face(state.packing, state.load, state.contacts, touching);
+}
+
+void print_ends(const ForceFace& face) {
+    for (std::size_t l = 0; l < face.pairs.size(); ++l) {
+        if (takes_part(face, l)) {
+            fmt::print("  force {:<16} from {:.6g} to {:.6g}\n", to_string<2>(face.pairs[l]), face.least[l],
+                       face.most[l]);
+        }
+    }
+    fmt::print("  (the run found that these touch; the ends are computed in double, not proved)\n");
+}
+
+Json face_json(const Result<ForceFace>& result) {
+    if (!result.ok()) {
+        return {{"undecided", result.failure().message()}};
+    }
+    const ForceFace& face = result.value();
+    Json stresses = Json::array();
+    for (const std::vector<double>& stress : face.self_stresses) {
+        Json one;
+        for (std::size_t l = 0; l < stress.size(); ++l) {
+            if (stress[l] != 0) {
+                one[to_string<2>(face.pairs[l])] = number(stress[l]);
+            }
+        }
+        stresses.push_back(std::move(one));
+    }
+    Json between = Json::array();
+    for (std::size_t l = 0; l < face.pairs.size(); ++l) {
+        if (takes_part(face, l)) {
+            between.push_back({to_string<2>(face.pairs[l]), number(face.least[l]), number(face.most[l])});
+        }
+    }
+    return {{"h", face.self_stresses.size()},
+            {"self_stresses", std::move(stresses)},
+            {"forces_between", std::move(between)},
+            {"proved", false}};
+}
+
+} // namespace
+
+void print_face(const State<2>& state) {
+    if (!state.perturbation) {
+        return;
+    }
+    if (!state.perturbation->open.empty()) {
+        fmt::print("touching besides         {}: {} self-stresses, the forces above are one choice of many\n",
+                   fmt::join(names_of(state.perturbation->open), ", "), state.perturbation->open.size());
+        const Result<ForceFace> face = face_of(state);
+        if (face.ok()) {
+            print_ends(face.value());
+        } else {
+            fmt::print("  {}: {}\n", to_string(face.failure().kind), face.failure().message());
+        }
+    }
+    if (!state.perturbation->zero.empty()) {
+        fmt::print("left at force 0          {}: an equilibrium of the finite loads, whatever infinitesimal ones do\n",
+                   fmt::join(names_of(state.perturbation->zero), ", "));
+    }
+}
+
+void add_face(Json& object, const State<2>& state) {
+    if (!state.perturbation) {
+        return;
+    }
+    if (!state.perturbation->open.empty()) {
+        object["face"] = face_json(face_of(state));
+        object["face"]["touching"] = names_of(state.perturbation->open);
+    }
+    if (!state.perturbation->zero.empty()) {
+        object["left_at_zero"] = names_of(state.perturbation->zero);
+    }
+}
+
+} // namespace isostat::cli

@@ -60,6 +60,22 @@ bool goes_to_end(ClpSimplex& simplex, int pair, double direction, double& end) {
     return simplex.status() == 0;
 }
 
+/// Least and most of every force, from a simplex that stands somewhere on the face.
+bool find_ends(ClpSimplex& simplex, const std::vector<unsigned char>& varies, double size, ForceFace& face) {
+    bool ended = true;
+    for (std::size_t l = 0; l < varies.size() && ended; ++l) {
+        double least = simplex.primalColumnSolution()[l]; // unique, unless it varies
+        double most = least;
+        if (varies[l] != 0) {
+            const int pair = static_cast<int>(l);
+            ended = goes_to_end(simplex, pair, -1, least) && goes_to_end(simplex, pair, +1, most);
+        }
+        face.least.push_back(least * size);
+        face.most.push_back(most * size);
+    }
+    return ended;
+}
+
 } // namespace
 
 template <int Dim>
@@ -97,21 +113,11 @@ Result<ForceFace> force_face(const Packing<Dim>& packing, const Load<Dim>& load,
     ClpSimplex simplex;
     load_balance(simplex, packing, face.pairs, force, size);
     simplex.primal();
-    bool ended = simplex.status() == 0;
-    for (std::size_t l = 0; l < face.pairs.size() && ended; ++l) {
-        double least = simplex.primalColumnSolution()[l]; // unique, unless it varies
-        double most = least;
-        if (varies[l] != 0) {
-            const int pair = static_cast<int>(l);
-            ended = goes_to_end(simplex, pair, -1, least) && goes_to_end(simplex, pair, +1, most);
-        }
-        face.least.push_back(least * size);
-        face.most.push_back(most * size);
-    }
-    if (!ended) {
-        return Failure{FailureKind::undecided,
-                       "no forces >= 0 of the pairs that touch were found to balance the load (a "
-                       "linear programme in double precision, not a proof that there are none)"};
+    if (simplex.status() != 0 || !find_ends(simplex, varies, size, face)) {
+        return Failure{
+            FailureKind::undecided,
+            "no forces >= 0 of the pairs that touch were found to balance the load, or no end of them (linear "
+            "programmes in double precision, not a proof that there are none)"};
     }
     return face;
 }

@@ -4,6 +4,7 @@
 
 #include "motion/arc.hpp"
 #include "oracle/reference_vertex.hpp"
+#include "support/recorder.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -45,18 +46,6 @@ struct ReferencePath {
 
 namespace path_parts {
 
-struct Recorder : RunObserver<2> {
-    std::vector<ArcRecord<2>> arcs;
-    std::vector<EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
-    void on_arc(const ArcRecord<2>& arc) override { arcs.push_back(arc); }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
-        equilibria.push_back(record);
-        states.push_back(state);
-    }
-};
-
 /// Smallest gap of a pair that is no contact at q, in 320 bits where it is small in double.
 inline double lowest_gap(const Packing<2>& near, const std::vector<Reference>& q,
                          const std::vector<Contact>& contacts) {
@@ -82,7 +71,7 @@ inline double lowest_gap(const Packing<2>& near, const std::vector<Reference>& q
 /// arcs are left out.
 inline ReferencePath reference_path(const State<2>& start, int equilibria) {
     ReferencePath path;
-    path_parts::Recorder records;
+    crafted::Recorder records;
     State<2> state = start;
     Segment segment;
     segment.equilibria = equilibria;

@@ -2,6 +2,8 @@
 // Small packings with closed-form answers, built by hand. Box with fixed lower walls and movable upper walls, dead wall
 // forces F1 (right wall) and F2 (top wall): reference lengths 1, so that stress and force have the same number.
 
+#include "support/recorder.hpp"
+
 #include <isostat/contact/state.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -134,19 +136,6 @@ inline State<2> triangular_patch(int rows, int columns) {
     }
     return state;
 }
-
-/// Collects the records of a run.
-struct Recorder : isostat::RunObserver<2> {
-    std::vector<isostat::ArcRecord<2>> arcs;
-    std::vector<isostat::EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
-    void on_arc(const isostat::ArcRecord<2>& arc) override { arcs.push_back(arc); }
-    void on_equilibrium(const isostat::EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
-        equilibria.push_back(record);
-        states.push_back(state);
-    }
-};
 
 /// One segment from a state, with the records.
 struct Played {

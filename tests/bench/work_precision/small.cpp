@@ -2,6 +2,7 @@
 #include "bench/work_precision/report.hpp"
 #include "motion/arc.hpp"
 #include "shortcuts/small_displacements.hpp"
+#include "support/recorder.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -15,18 +16,6 @@ using namespace isostat;
 namespace work_precision {
 
 namespace {
-
-struct Recorder : RunObserver<2> {
-    std::vector<ArcRecord<2>> arcs;
-    std::vector<EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
-    void on_arc(const ArcRecord<2>& arc) override { arcs.push_back(arc); }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
-        equilibria.push_back(record);
-        states.push_back(state);
-    }
-};
 
 /// One exact arc, followed again from the records, with its linear prediction.
 struct Compared {
@@ -72,7 +61,7 @@ bool small_displacements(const Settings& settings) {
         double exact_time[5] = {};
         for (const std::uint64_t seed : settings.seeds) {
             const State<2> start = prepared(n, seed);
-            Recorder exact;
+            crafted::Recorder exact;
             State<2> state = start;
             Segment segment;
             segment.equilibria = settings.drift_equilibria;

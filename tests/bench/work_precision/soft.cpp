@@ -1,6 +1,7 @@
 // Soft grains against the rigid states that they approximate: contacts, forces, strain, the next rearrangement.
 #include "bench/work_precision/report.hpp"
 #include "shortcuts/soft_grains.hpp"
+#include "support/recorder.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/trajectory/trajectory.hpp>
@@ -19,18 +20,6 @@ namespace work_precision {
 namespace {
 
 constexpr int load_steps = 8; ///< from the middle of one interval of loads to the middle of the next
-
-struct Recorder : RunObserver<2> {
-    std::vector<ArcRecord<2>> arcs;
-    std::vector<EquilibriumRecord<2>> equilibria;
-    std::vector<State<2>> states;
-    void on_arc(const ArcRecord<2>& arc) override { arcs.push_back(arc); }
-    void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
-                        const std::vector<double>&) override {
-        equilibria.push_back(record);
-        states.push_back(state);
-    }
-};
 
 /// The rigid answer at a load: force-carrying contacts.
 std::map<Contact, double> rigid_forces(State<2> state, double stress) {
@@ -110,7 +99,7 @@ bool soft_grains(const Settings& settings) {
             if (n >= 200 && seed != settings.seeds.front()) {
                 continue;
             }
-            Recorder exact;
+            crafted::Recorder exact;
             State<2> state = prepared(n, seed);
             const State<2> start = state;
             Segment segment;

@@ -1,4 +1,4 @@
-#include <isostat/certificate/inspect_cell.hpp>
+#include <isostat/certificate/inspect.hpp>
 
 #include <fmt/format.h>
 

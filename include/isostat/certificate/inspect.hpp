@@ -44,8 +44,8 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
 /// no true vertex near the given place was. Cost: as `certify`.
 template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma);
 
-/// An answer, and the words why.
-struct Answer {
+/// Whether a packing is jammed, and the words why.
+struct JammingAnswer {
     Verdict verdict = Verdict::undecided;
     std::string reason;
 };
@@ -63,7 +63,7 @@ struct CellInspection {
     StrainCounts all;
     std::optional<StrainCounts> backbone; ///< none: the forces are not known
     int backbone_disks = 0;
-    Answer local, collective, strict;
+    JammingAnswer local, collective, strict;
 };
 
 /// \pre every axis is periodic; `truth` is of this state. Cost: up to eight ranks.

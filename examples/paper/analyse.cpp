@@ -3,9 +3,9 @@
 //   RESULTS/summary.md)
 // Intervals are at the level of 95 %: percentile bootstrap over whole samples unless another method is named.
 #include "data.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

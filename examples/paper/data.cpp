@@ -1,7 +1,8 @@
 #include "data.hpp"
 
+#include "io/files.hpp"
+
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <algorithm>
 #include <regex>

@@ -1,29 +1,32 @@
-// Which disks touch? Three crafted disks in a box: every pair that could come into contact, from the regular
-// triangulation, with its gap.
-#include <isostat/contact/candidates.hpp>
+// Which disks touch? Three crafted disks in a box, their coordinates exact numbers: contacts are the pairs whose gap is
+// exactly 0, and no pair overlaps. A radius that is larger by 1e-30 does. In doubles no gap need be 0: the contacts of
+// a vertex are part of it, never found from a threshold.
+#include <isostat/crafted/exact_packing.hpp>
 
-#include <cmath>
 #include <cstdio>
 
 int main() {
     using namespace isostat;
-    Packing<2> packing; // the paper's box: left and bottom fixed, right and top movable
-    packing.radius = {1.0, 1.0, 0.75};
-    const double height = std::sqrt(1.75 * 1.75 - 1.0); // disk 2 rests on both others
-    packing.q = {1.0, 1.0, 3.0, 1.0, 2.0, 1.0 + height, /* Lx */ 4.0, /* Ly */ 1.75 + height};
-    validate(packing, "crafted");
-    snap_to_grid(packing);
+    using exact::Number;
+    const Number height = Number::parse("1/4*sqrt(33)"); // disk 2 rests on both others: sqrt((7/4)^2 - 1)
+    crafted::ExactPacking packing;
+    packing.walls = Walls<2>::box(); // the paper's: left and bottom fixed, right and top movable
+    packing.radius = {1, 1, Number::parse("3/4")};
+    packing.centre = {{1, 1}, {3, 1}, {2, 1 + height}};
+    packing.length = {4, Number::parse("7/4") + height};
 
-    const double touching =
-        1e-12; // only for this print-out: contacts of a vertex are part of it, never found from a threshold
-    int contacts = 0;
-    for (const Contact& candidate : find_candidates(packing, 0.8).contacts) {
-        const double distance = gap(packing, candidate);
-        const bool touches = distance < touching;
-        contacts += touches ? 1 : 0;
-        std::printf("%-10s gap %10.3e%s\n", to_string<2>(candidate).c_str(), distance, touches ? "  contact" : "");
+    const Result<std::vector<Contact>> contacts = crafted::exact_contacts(packing);
+    if (!contacts.ok()) {
+        std::printf("%s\n", contacts.failure().message().c_str());
+        return 1;
     }
-    const Admissibility overlap = certify_admissible(packing, touching);
-    std::printf("no overlap beyond %g: %s\n", touching, std::string(to_string(overlap.verdict)).c_str());
-    return contacts == 8 && overlap.verdict == Verdict::proved ? 0 : 1;
+    const Packing<2> nearest = crafted::approximate(packing);
+    for (const Contact& contact : contacts.value()) {
+        std::printf("%-10s gap 0; %9.2e of the nearest doubles\n", to_string<2>(contact).c_str(),
+                    gap(nearest, contact));
+    }
+    packing.radius[2] += Number::parse("1e-30");
+    const Result<std::vector<Contact>> larger = crafted::exact_contacts(packing);
+    std::printf("larger by 1e-30: %s\n", larger.ok() ? "no overlap" : larger.failure().message().c_str());
+    return contacts.value().size() == 8 && !larger.ok() ? 0 : 1;
 }

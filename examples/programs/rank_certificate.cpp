@@ -1,12 +1,13 @@
 // A certificate of full rank for a proof assistant: coordinates, contacts and the inverse of the contact matrix mod
 // 2^61 - 1, as a Coq file that proofs/coq/contact_certificate.v checks. Usage: rank_certificate [STATE.json | DISKS
 // [SEED]] > file.v; without a file a random packing is prepared.
+#include "exact/rank.hpp"
+#include "rigidity/isostatic.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/exact/number.hpp>
-#include <isostat/exact/rank.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <cmath>
 #include <cstdio>

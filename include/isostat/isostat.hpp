@@ -1,40 +1,36 @@
 #pragma once
 /// \file
-/// The whole library for its users. Each header below can be included alone; include/README.md says what is in which.
+/// The whole library for its users: every public header. Each of them can be included alone; include/README.md says
+/// what is in which.
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/checker/verify_run.hpp>
 #include <isostat/compare/compare.hpp>
-#include <isostat/compare/series.hpp>
 #include <isostat/compare/snap.hpp>
-#include <isostat/compare/soft_limit.hpp>
-#include <isostat/contact/candidates.hpp>
 #include <isostat/contact/contact.hpp>
 #include <isostat/contact/state.hpp>
+#include <isostat/core/contact.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/threads.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/genericity.hpp>
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/crafted/packing_file.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/exact/kernel.hpp>
 #include <isostat/exact/number.hpp>
-#include <isostat/exact/rank.hpp>
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/motion/arc_certificate.hpp>
 #include <isostat/packing/load.hpp>
 #include <isostat/packing/packing.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/report/picture.hpp>
 #include <isostat/rigidity/counting.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/scene_run.hpp>
+#include <isostat/statics/rules.hpp>
 #include <isostat/trajectory/programme.hpp>
+#include <isostat/trajectory/records.hpp>
+#include <isostat/trajectory/trajectory.hpp>

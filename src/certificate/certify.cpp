@@ -1,11 +1,11 @@
 #include "certificate/exact_counting.hpp"
 #include "certificate/true_vertex.hpp"
+#include "contact/candidates.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/roundoff.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/contact/candidates.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 
@@ -40,6 +40,15 @@ template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& sta
         }
     }
     return std::nullopt;
+}
+
+/// Why nothing is claimed of a state.
+template <int Dim> std::optional<std::string> beyond_claims(const State<Dim>& state) {
+    const auto held = std::find_if(state.contacts.begin(), state.contacts.end(),
+                                   [](const Contact& c) { return c.kind == ContactKind::held; });
+    return held == state.contacts.end()
+               ? out_of_range(state)
+               : fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
 }
 
 /// Largest coordinate or radius.
@@ -105,6 +114,12 @@ template <int Dim> double far_weight(const Packing<Dim>& packing, double reach) 
     return root2 + (2 * packing.max_radius() + reach + extent) / least_stretch(packing) * (1 + 1e-12);
 }
 
+/// Words for the first force that is negative, and for the first whose sign is not known; empty: there is none.
+struct SignFailures {
+    std::string negative;
+    std::string doubtful;
+};
+
 /// Makes the claims one after the other; what one needs of those before it is checked where it is used.
 template <int Dim> class Prover {
   public:
@@ -147,12 +162,18 @@ template <int Dim> class Prover {
     static std::string shown(const Interval& interval) {
         return fmt::format("[{:.17g}, {:.17g}]", interval.lower, interval.upper);
     }
-    std::string name(std::size_t l) const { return to_string<Dim>(state_.contacts[l]); }
+    std::string in_contact(std::size_t l, const Interval& f) const {
+        return fmt::format("in contact {} is in {}", to_string<Dim>(state_.contacts[l]), shown(f));
+    }
 
     bool prove_counting();
+    void claim_that_nothing_moves();
+    void claim_other_counts();
     bool put_on_grid();
     bool prove_vertex();
     bool prove_forces();
+    ForceSigns look_at(const std::vector<Interval>& finite, SignFailures& failures) const;
+    void look_at_zeros(ForcesClaim& claim, SignFailures& failures) const;
     bool prove_gaps();
     void prove_load_interval();
     void prove_stability(bool forces, bool gaps);
@@ -188,17 +209,7 @@ template <int Dim> bool Prover<Dim>::exists_on_some_rung() {
 }
 
 template <int Dim> bool Prover<Dim>::prove_counting() {
-    const auto held = std::find_if(state_.contacts.begin(), state_.contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
-    if (held != state_.contacts.end()) {
-        result_.counting = count_contacts(state_.packing, state_.contacts);
-        const std::string reason =
-            fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
-        absent("counting", reason);
-        absent_from_vertex_on(reason);
-        return false;
-    }
-    if (const auto reason = out_of_range(state_)) {
+    if (const auto reason = beyond_claims(state_)) {
         result_.counting = count_contacts(state_.packing, state_.contacts);
         absent("counting", *reason);
         absent_from_vertex_on(*reason);
@@ -207,16 +218,7 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
     const int dof_count = DofMap<Dim>(state_.packing).dof_count();
     const int count = static_cast<int>(state_.contacts.size());
     if (count == 0 && dof_count == 0) {
-        result_.claims.counting = CountingClaim{};
-        result_.counting.rank_exact = Verdict::proved;
-        const std::string reason = "N_f = 0: there are no degrees of freedom, no grain can move";
-        refute("vertex", reason);
-        for (const char* claim : {"forces", "gaps", "load interval", "stability"}) {
-            absent(claim, reason);
-        }
-        if (const auto pair = fixed_overlap(state_.packing)) {
-            refute("gaps", fixed_and_overlap(*pair));
-        }
+        claim_that_nothing_moves();
         return false;
     }
     if (dof_count == count) {
@@ -228,6 +230,25 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
             return true;
         }
     }
+    claim_other_counts();
+    return false;
+}
+
+template <int Dim> void Prover<Dim>::claim_that_nothing_moves() {
+    result_.claims.counting = CountingClaim{};
+    result_.counting.rank_exact = Verdict::proved;
+    const std::string reason = "N_f = 0: there are no degrees of freedom, no grain can move";
+    refute("vertex", reason);
+    for (const char* claim : {"forces", "gaps", "load interval", "stability"}) {
+        absent(claim, reason);
+    }
+    if (const auto pair = fixed_overlap(state_.packing)) {
+        refute("gaps", fixed_and_overlap(*pair));
+    }
+}
+
+/// Of a structure that is not isostatic, or not proved to be.
+template <int Dim> void Prover<Dim>::claim_other_counts() {
     const Counting counting = exact_counting(state_);
     result_.counting = counting;
     const std::string numbers =
@@ -242,7 +263,7 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
         absent("counting", "the rank of the stored matrix was only bounded: " + numbers);
     }
     const std::string reason = "the structure is not isostatic: " + numbers;
-    if (counting.rank_exact == Verdict::proved || dof_count != count) {
+    if (counting.rank_exact == Verdict::proved || counting.dof_count != counting.contact_count) {
         refute("vertex", reason);
     } else {
         absent("vertex", reason);
@@ -250,7 +271,6 @@ template <int Dim> bool Prover<Dim>::prove_counting() {
     for (const char* claim : {"forces", "gaps", "load interval", "stability"}) {
         absent(claim, "the structure is not isostatic, or not proved to be");
     }
-    return false;
 }
 
 /// The bounds of the true vertex ask for exact differences: in a cell, for coordinates on the grid.
@@ -316,66 +336,70 @@ template <int Dim> bool Prover<Dim>::prove_vertex() {
 }
 
 template <int Dim> bool Prover<Dim>::prove_forces() {
-    const std::size_t count = state_.contacts.size();
     ForcesClaim claim;
     result_.structural_zero = subject_->zero;
-    for (std::size_t l = 0; l < count; ++l) {
+    for (std::size_t l = 0; l < state_.contacts.size(); ++l) {
         if (subject_->zero[l] != 0) {
             claim.structural_zeros.push_back(static_cast<int>(l));
         }
     }
-    const auto with_name = [this](std::size_t l, const Interval& f) {
-        return fmt::format("in contact {} is in {}", name(l), shown(f));
-    };
-    std::string negative;
-    std::string doubtful;
+    SignFailures failures;
     do {
         claim.rung = vertex_->rung();
         claim.finite = vertex_->forces();
-        claim.infinitesimal.clear();
-        negative.clear();
-        doubtful.clear();
-        ForceSigns signs;
-        for (std::size_t l = 0; l < count; ++l) {
-            const Interval& f = claim.finite[l];
-            if (subject_->zero[l] != 0) {
-                ++signs.structural_zero;
-            } else if (f.lower > 0) {
-                ++signs.positive;
-            } else if (f.upper < 0) {
-                ++signs.negative;
-                negative = negative.empty() ? "the force " + with_name(l, f) : negative;
-            } else {
-                ++signs.undecided;
-                doubtful = doubtful.empty() ? "the force " + with_name(l, f) : doubtful;
-            }
-        }
-        result_.signs = signs;
+        failures = {};
+        result_.signs = look_at(claim.finite, failures);
         result_.finite = claim.finite;
-        if (!claim.structural_zeros.empty()) {
-            const std::vector<Interval> infinitesimal = vertex_->infinitesimal();
-            for (const int zero : claim.structural_zeros) {
-                const auto l = static_cast<std::size_t>(zero);
-                const Interval& f = infinitesimal[l];
-                claim.infinitesimal.push_back(f);
-                if (f.upper < 0 && negative.empty()) {
-                    negative = "the finite force is exactly 0 and the infinitesimal one " + with_name(l, f);
-                } else if (!(f.lower > 0) && doubtful.empty()) {
-                    doubtful = "the finite force is exactly 0 and the infinitesimal one " + with_name(l, f);
-                }
-            }
-        }
-    } while (negative.empty() && !doubtful.empty() && climb());
-    if (!negative.empty()) {
-        refute("forces", negative + ": not an equilibrium at this load");
+        look_at_zeros(claim, failures);
+    } while (failures.negative.empty() && !failures.doubtful.empty() && climb());
+    if (!failures.negative.empty()) {
+        refute("forces", failures.negative + ": not an equilibrium at this load");
         return false;
     }
-    if (!doubtful.empty()) {
-        absent("forces", fmt::format("{} ({})", doubtful, to_string(vertex_->rung())));
+    if (!failures.doubtful.empty()) {
+        absent("forces", fmt::format("{} ({})", failures.doubtful, to_string(vertex_->rung())));
         return false;
     }
     result_.claims.forces = std::move(claim);
     return true;
+}
+
+template <int Dim> ForceSigns Prover<Dim>::look_at(const std::vector<Interval>& finite, SignFailures& failures) const {
+    ForceSigns signs;
+    for (std::size_t l = 0; l < finite.size(); ++l) {
+        const Interval& f = finite[l];
+        if (subject_->zero[l] != 0) {
+            ++signs.structural_zero;
+        } else if (f.lower > 0) {
+            ++signs.positive;
+        } else if (f.upper < 0) {
+            ++signs.negative;
+            failures.negative = failures.negative.empty() ? "the force " + in_contact(l, f) : failures.negative;
+        } else {
+            ++signs.undecided;
+            failures.doubtful = failures.doubtful.empty() ? "the force " + in_contact(l, f) : failures.doubtful;
+        }
+    }
+    return signs;
+}
+
+/// The infinitesimal forces, where the finite ones are exactly 0.
+template <int Dim> void Prover<Dim>::look_at_zeros(ForcesClaim& claim, SignFailures& failures) const {
+    claim.infinitesimal.clear();
+    if (claim.structural_zeros.empty()) {
+        return;
+    }
+    const std::vector<Interval> infinitesimal = vertex_->infinitesimal();
+    for (const int zero : claim.structural_zeros) {
+        const auto l = static_cast<std::size_t>(zero);
+        const Interval& f = infinitesimal[l];
+        claim.infinitesimal.push_back(f);
+        if (f.upper < 0 && failures.negative.empty()) {
+            failures.negative = "the finite force is exactly 0 and the infinitesimal one " + in_contact(l, f);
+        } else if (!(f.lower > 0) && failures.doubtful.empty()) {
+            failures.doubtful = "the finite force is exactly 0 and the infinitesimal one " + in_contact(l, f);
+        }
+    }
 }
 
 template <int Dim> bool Prover<Dim>::prove_gaps() {

@@ -1,4 +1,4 @@
-#include <isostat/certificate/inspect_cell.hpp>
+#include <isostat/certificate/inspect.hpp>
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 /// N = N_f of full strain, h = k = 0: the forces under an isotropic pressure are unique, and say whether it is jammed
 /// strictly (C7). They are those of the load at one value of the loaded stress, where the tilt bears no shear.
-Answer strictly(const State<2>& state, const CertificateClaims& claims) {
+JammingAnswer strictly(const State<2>& state, const CertificateClaims& claims) {
     if (state.load.shear[0] != 0 || !claims.load_interval) {
         return {Verdict::undecided,
                 "k = 0 for full strain; its forces under an isotropic pressure are not those of its "
@@ -75,9 +75,10 @@ template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Ce
     const auto& on_disks = state.load.disk_force;
     const bool loaded = std::any_of(on_disks.begin(), on_disks.end(), [](double f) { return f != 0; });
     if (!equilibrium || loaded) {
-        const Answer unknown{Verdict::undecided, loaded ? "forces on disks: no self-stress is known"
-                                                        : "no equilibrium of this state is proved: the counts alone do "
-                                                          "not tell"};
+        const JammingAnswer unknown{Verdict::undecided,
+                                    loaded ? "forces on disks: no self-stress is known"
+                                           : "no equilibrium of this state is proved: the counts alone do "
+                                             "not tell"};
         out.local = out.collective = out.strict = unknown;
         return out;
     }

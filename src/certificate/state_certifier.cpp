@@ -1,9 +1,9 @@
 #include "certificate/state_certifier.hpp"
 
 #include "contact/words.hpp"
+#include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

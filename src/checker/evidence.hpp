@@ -59,15 +59,12 @@ std::string shown(const Interval& interval);
 /// The check with an answer.
 ClaimCheck answer(ClaimCheck check, Verdict verdict, const std::string& detail);
 
-// One function per claim; the claims are there.
-ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, bool at_vertex);
-/// `exists`: a true vertex within the claimed radius is proved, whatever the answer to the rest of the claim.
-ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool& exists);
+/// The answers to all claims, from evidence of their state.
+Verification judge(const CertificateClaims& claims, const Evidence& evidence);
+/// Parts of it with a file of their own; the claims are there.
 ClaimCheck judge_forces(const Evidence& evidence, const ForcesClaim& claim);
-ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim);
+ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim);
 /// One end of the interval; direction 1 is the upper one. `text`: what was found.
 Verdict judge_load_end(const Evidence& evidence, const LoadEndClaim& claim, int direction, std::string& text);
-ClaimCheck judge_load_interval(const Evidence& evidence, const LoadIntervalClaim& claim);
-ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimCheck>& others);
 
 } // namespace isostat::checker

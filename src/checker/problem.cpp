@@ -155,6 +155,29 @@ Structure::Structure(const Packing<2>& packing, const std::vector<Contact>& cont
     std::frexp(mean, &wall_exponent);
 }
 
+namespace {
+
+/// Why a contact is not one of the packing, or is none; empty: nothing.
+std::string unsupported_contact(const Packing<2>& packing, const Contact& contact) {
+    for (std::size_t a = 0; a < contact.image.m.size(); ++a) {
+        if (contact.image.m[a] != 0 && (a >= 2 || !packing.cell.periodic[a])) {
+            return "the contact " + to_string<2>(contact) + " is with an image along an axis with walls";
+        }
+    }
+    if (contact.kind == ContactKind::held) {
+        return "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
+    }
+    const auto axis = static_cast<std::size_t>(contact.j);
+    const bool lower = contact.kind == ContactKind::lower_wall;
+    if (contact.kind != ContactKind::disk_disk &&
+        (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
+        return "there is no wall for the contact " + to_string<2>(contact);
+    }
+    return {};
+}
+
+} // namespace
+
 Problem::Problem(const State<2>& state, bool held_allowed, int asked)
     : Structure(state.packing, state.contacts), digits(asked) {
     const Packing<2>& packing = state.packing;
@@ -169,21 +192,8 @@ Problem::Problem(const State<2>& state, bool held_allowed, int asked)
         if (contact.kind == ContactKind::held && held_allowed) {
             continue;
         }
-        for (std::size_t a = 0; a < contact.image.m.size(); ++a) {
-            if (contact.image.m[a] != 0 && (a >= 2 || !packing.cell.periodic[a])) {
-                unsupported = "the contact " + to_string<2>(contact) + " is with an image along an axis with walls";
-                return;
-            }
-        }
-        if (contact.kind == ContactKind::held) {
-            unsupported = "the state has a " + to_string<2>(contact) + ", which is no contact: not checked";
-            return;
-        }
-        const auto axis = static_cast<std::size_t>(contact.j);
-        const bool lower = contact.kind == ContactKind::lower_wall;
-        if (contact.kind != ContactKind::disk_disk &&
-            (lower ? packing.walls.lower : packing.walls.upper)[axis] == WallKind::absent) {
-            unsupported = "there is no wall for the contact " + to_string<2>(contact);
+        unsupported = unsupported_contact(packing, contact);
+        if (!unsupported.empty()) {
             return;
         }
     }

@@ -183,15 +183,13 @@ bool stays_watched(const EventRecord& event, const Contact& pair) {
     });
 }
 
-} // namespace
+/// The way of the arc is of length O(eps): no finite motion.
+bool is_first_order_step(const EventRecord& event) {
+    return std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+}
 
-Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    const Load<2>& load = to.state->load;
-    const Range strain = strain_of(to, load.loaded_axis);
-    if (Objections wrong =
-            compare("eps2", {event.strain, event.strain_bound}, strain, arc_strain_tolerance, event, 1)) {
-        return wrong;
-    }
+/// No pair overlaps where an arc ends.
+Objections check_no_overlap(const Place& to, const EventRecord& event) {
     for (const Gap& gap : to.gaps()) {
         if (gap.value.has_zero() && to.first) {
             const Range first = to.first->gap(gap.pair);
@@ -210,44 +208,46 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
             return Objection{false, fmt::format("{} may overlap at the end of the arc", to_string<2>(gap.pair))};
         }
     }
-    const bool stays =
-        std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
-    if (event.power_turn) {
-        const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces));
-        if (!(std::abs(event.power) <= room) || !std::isnan(event.power_bound)) {
-            return Objection{true, fmt::format("the power is {} +- {} at a power turn: expected 0, without a bound",
-                                               event.power, event.power_bound)};
-        }
-    } else if (!stays) {
-        // F . v = f_c for the motion v on which the gap of the new contact c closes at the rate 1 and no other changes.
-        const Evidence& e = *to.evidence;
-        const auto& contacts = to.state->contacts;
-        const auto slot = std::find_if(contacts.begin(), contacts.end(),
-                                       [&](const Contact& c) { return to_string<2>(c) == event.closed; });
-        const auto l = static_cast<std::size_t>(slot - contacts.begin());
-        const std::vector<Range>& forces = rattles ? e.infinitesimal() : e.forces;
-        const Range& power = forces[l];
-        if (!power.positive() && !(to.first && power.has_zero())) {
-            return Objection{power.negative(),
-                             fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
-        }
-        const double size = largest_force(forces);
-        if (Objections wrong = compare("power", {event.power, event.power_bound}, power, force_tolerance * size, event,
-                                       std::numeric_limits<double>::max())) {
-            return wrong;
-        }
+    return {};
+}
+
+/// The recorded power is 0 where the arc ends at a power turn.
+Objections check_power_at_turn(const Place& to, const EventRecord& event) {
+    const double room = turn_tolerance * std::max(1e-300, largest_force(to.evidence->forces));
+    if (!(std::abs(event.power) <= room) || !std::isnan(event.power_bound)) {
+        return Objection{true, fmt::format("the power is {} +- {} at a power turn: expected 0, without a bound",
+                                           event.power, event.power_bound)};
     }
-    if (load.kind != LoadKind::nominal) {
-        return {};
+    return {};
+}
+
+/// The recorded power is that of the load where the arc ends at a new contact, and positive: F . v = f_c for the motion
+/// v on which the gap of the new contact c closes at the rate 1 and no other changes.
+Objections check_power_at_contact(const Place& to, const EventRecord& event, bool rattles) {
+    const auto& contacts = to.state->contacts;
+    const auto slot = std::find_if(contacts.begin(), contacts.end(),
+                                   [&](const Contact& c) { return to_string<2>(c) == event.closed; });
+    const auto l = static_cast<std::size_t>(slot - contacts.begin());
+    const std::vector<Range>& forces = rattles ? to.evidence->infinitesimal() : to.evidence->forces;
+    const Range& power = forces[l];
+    if (!power.positive() && !(to.first && power.has_zero())) {
+        return Objection{power.negative(),
+                         fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }
+    return compare("power", {event.power, event.power_bound}, power, force_tolerance * largest_force(forces), event,
+                   std::numeric_limits<double>::max());
+}
+
+/// The recorded work is that of the finite loads, and the potential falls.
+Objections check_work(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     double size = 0;
     const Range done = work(from, to, to.evidence->finite_load, size);
     if (Objections wrong =
             compare("work", {event.work, event.work_bound}, done, record_tolerance * size, event, size)) {
         return wrong;
     }
-    if (stays) {
-        return {}; // no finite motion, no work
+    if (is_first_order_step(event)) {
+        return {}; // no work
     }
     // Rattlers move without any work of the finite load: then the infinitesimal one decides.
     double unused = 0;
@@ -259,24 +259,29 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
     return {};
 }
 
-Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
-    const Evidence& e = *place.evidence;
-    const Load<2>& load = place.state->load;
+/// No force is negative.
+Objections check_forces(const Place& place) {
     Decision decision;
     if (Objections open = decide(place, decision)) {
         return open;
     }
-    if (!decision.kind.empty()) {
-        const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
-        // What is 0 as far as is seen here, the run may have told from 0 with more digits; the others refute.
-        const auto told = [&](int l) { return !forces[static_cast<std::size_t>(l)].has_zero(); };
-        const auto first = std::find_if(decision.candidates.begin(), decision.candidates.end(), told);
-        const bool wrong = first != decision.candidates.end();
-        const auto l = static_cast<std::size_t>(wrong ? *first : decision.candidates[0]);
-        return Objection{wrong,
-                         fmt::format("no equilibrium: the {}force of {} is in {}",
-                                     decision.kind == "rattler" ? "infinitesimal " : "", e.name(l), shown(forces[l]))};
+    if (decision.kind.empty()) {
+        return {};
     }
+    const Evidence& e = *place.evidence;
+    const std::vector<Range>& forces = decision.kind == "rattler" ? e.infinitesimal() : e.forces;
+    // What is 0 as far as is seen here, the run may have told from 0 with more digits; the others refute.
+    const auto told = [&](int l) { return !forces[static_cast<std::size_t>(l)].has_zero(); };
+    const auto first = std::find_if(decision.candidates.begin(), decision.candidates.end(), told);
+    const bool wrong = first != decision.candidates.end();
+    const auto l = static_cast<std::size_t>(wrong ? *first : decision.candidates[0]);
+    return Objection{wrong,
+                     fmt::format("no equilibrium: the {}force of {} is in {}",
+                                 decision.kind == "rattler" ? "infinitesimal " : "", e.name(l), shown(forces[l]))};
+}
+
+Objections check_counts(const Place& place, const EquilibriumLine& line) {
+    const Evidence& e = *place.evidence;
     const int contacts = e.problem.contacts();
     const auto zeros = static_cast<int>(place.zeros.size());
     const std::vector<std::pair<const char*, int>> counts{{"dofs", e.problem.dofs()},
@@ -293,10 +298,14 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
             return wrong;
         }
     }
-    const auto loaded = static_cast<std::size_t>(load.loaded_axis);
-    const std::size_t other = 1 - loaded;
+    return {};
+}
+
+/// W, and in `size` what its rounding is measured in.
+Range potential_of(const Place& place, double& size) {
+    const Evidence& e = *place.evidence;
     Range potential(Rational(0));
-    double size = 0;
+    size = 0;
     for (std::size_t j = 0; j < e.finite_load.size(); ++j) {
         const auto k = static_cast<std::size_t>(e.problem.coordinate_of[j]);
         if (e.finite_load[j].lower != 0 || e.finite_load[j].upper != 0) {
@@ -304,6 +313,14 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
             size += std::abs(e.finite_load[j].lower.get_d() * place.coordinate(k).lower.get_d());
         }
     }
+    return potential;
+}
+
+/// Stresses, strains, lengths, potential and solid fraction.
+Objections check_measures(const Place& place, const EquilibriumLine& line) {
+    const Load<2>& load = place.state->load;
+    const auto loaded = static_cast<std::size_t>(load.loaded_axis);
+    const std::size_t other = 1 - loaded;
     const double box = std::max(place.state->packing.length(0), place.state->packing.length(1));
     const Range stress{Rational(load.stress[loaded])};
     const std::vector<std::tuple<const char*, Range, double>> without_bound{
@@ -320,6 +337,8 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
         {"L1", place.length(static_cast<int>(other)), box},
         {"L2", place.length(static_cast<int>(loaded)), box}};
     if (load.kind == LoadKind::nominal) {
+        double size = 0;
+        const Range potential = potential_of(place, size);
         with_bound.emplace_back("potential", potential, size);
     }
     for (const auto& [name, found, scale] : with_bound) {
@@ -331,7 +350,33 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
         return Objection{true, fmt::format("solid_fraction is {}, found {}", line.at("solid_fraction"),
                                            place.state->packing.solid_fraction())};
     }
-    for (const auto& check : {check_smallest_gap, check_smallest_force}) {
+    return {};
+}
+
+} // namespace
+
+Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
+    const Load<2>& load = to.state->load;
+    if (Objections wrong = compare("eps2", {event.strain, event.strain_bound}, strain_of(to, load.loaded_axis),
+                                   arc_strain_tolerance, event, 1)) {
+        return wrong;
+    }
+    if (Objections wrong = check_no_overlap(to, event)) {
+        return wrong;
+    }
+    if (Objections wrong = event.power_turn             ? check_power_at_turn(to, event)
+                           : is_first_order_step(event) ? Objections()
+                                                        : check_power_at_contact(to, event, rattles)) {
+        return wrong;
+    }
+    return load.kind == LoadKind::nominal ? check_work(from, to, event, rattles) : Objections();
+}
+
+Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
+    if (Objections wrong = check_forces(place)) {
+        return wrong;
+    }
+    for (const auto& check : {check_counts, check_measures, check_smallest_gap, check_smallest_force}) {
         if (Objections wrong = check(place, line)) {
             return wrong;
         }

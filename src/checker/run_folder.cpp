@@ -1,11 +1,11 @@
 #include "checker/run_folder.hpp"
 
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 #include "checker/run_records.hpp"
 
+#include "io/files.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "checker/foresight.hpp"
+#include "checker/lookahead.hpp"
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"
 #include "checker/way.hpp"
 #include "io/record_digests.hpp"
 
-#include <isostat/checker/verify_run.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ using namespace checker;
 class Replay {
   public:
     Replay(const RunRecords& records, RunVerification& result)
-        : records_(records), result_(result), witnesses_(records.directory / witness_records), foresight_(records) {
+        : records_(records), result_(result), witnesses_(records.directory / witness_records), lookahead_(records) {
         result.arcs = static_cast<int>(records.events.size());
         result.equilibria = static_cast<int>(records.equilibria.size());
         reached_.resize(records.equilibria.size());
@@ -100,7 +100,7 @@ class Replay {
         Place place;
         place.chooses = records_.chooses;
         here_ = {};
-        foresight_.forget();
+        lookahead_.forget();
         if (judged(make_place(std::move(state), place, load), where)) {
             here_ = std::move(place);
         }
@@ -225,7 +225,7 @@ class Replay {
     /// One arc from `here_`, which becomes its end. False: undecided, or wrong.
     bool arc(const EventRecord& event) {
         if (!records_.certified_arcs) { // arcs with a witness are proved from it
-            foresight_.look_ahead(here_, index_of(event));
+            lookahead_.look_ahead(here_, index_of(event));
         }
         std::optional<Change> change = change_of(event);
         if (!change) {
@@ -338,8 +338,8 @@ class Replay {
 
     /// The end where steps in double lead.
     Objections arrive(Place& next, const EventRecord& event, const Change& change, bool slowly) {
-        Arrival arrival = slowly ? foresight_.arrive_slowly(here_, index_of(event), change.opening(), change.load)
-                                 : foresight_.arrive(here_, index_of(event), change.opening(), change.load);
+        Arrival arrival = slowly ? lookahead_.arrive_slowly(here_, index_of(event), change.opening(), change.load)
+                                 : lookahead_.arrive(here_, index_of(event), change.opening(), change.load);
         if (!arrival.followed.wrong.empty()) {
             return Objection{false, arrival.followed.wrong + ", as far as steps in double tell"};
         }
@@ -443,7 +443,7 @@ class Replay {
     std::function<void(const VerificationProgress&)> progress_;
     int arcs_before_ = 0; ///< of the equilibria that are done
     int arcs_here_ = 0;
-    Foresight foresight_;
+    Lookahead lookahead_;
     Place here_; ///< empty: lost
     int here_number_ = -1;
     const EquilibriumLine* before_ = nullptr; ///< where the rearrangement started

@@ -27,7 +27,7 @@ std::string marked(int value, const Counting& c) {
     return fmt::format("{}{}", c.rank_exact == Verdict::proved ? "" : "<=", value);
 }
 
-void print_answer(const char* title, const Answer& answer) {
+void print_answer(const char* title, const JammingAnswer& answer) {
     fmt::print("{:<24} {}: {}\n", title, to_string(answer.verdict), answer.reason);
 }
 

@@ -4,7 +4,7 @@
 
 #include "cli/common.hpp"
 
-#include <isostat/certificate/inspect_cell.hpp>
+#include <isostat/certificate/inspect.hpp>
 
 namespace isostat::cli {
 

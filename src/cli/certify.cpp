@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/true_vertex_text.hpp"
+#include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

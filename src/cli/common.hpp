@@ -6,7 +6,6 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/scene_run.hpp>
 
 #include <nlohmann/json.hpp>
 

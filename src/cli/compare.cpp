@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
+#include "compare/report.hpp"
 
 #include <isostat/compare/compare.hpp>
-#include <isostat/compare/report.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 

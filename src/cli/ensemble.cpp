@@ -3,14 +3,14 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #ifdef ISOSTAT_WITH_MPI
-#include "cli/mpi/dealer.hpp"
+#include "cli/mpi/sample_queue.hpp"
 #endif
 
 #include "ensemble/ensemble.hpp"
 #include "ensemble/processes.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 
@@ -27,16 +27,16 @@ namespace isostat::cli {
 
 namespace {
 
-std::unique_ptr<Dealer> make_dealer(std::size_t count) {
+std::unique_ptr<SampleQueue> make_queue(std::size_t count) {
 #ifdef ISOSTAT_WITH_MPI
     // Set by mpirun and its like. Without them MPI would only start a helper process of its own.
     for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}) {
         if (std::getenv(variable) != nullptr) { // NOLINT(concurrency-mt-unsafe): one thread
-            return std::make_unique<MpiDealer>(count);
+            return std::make_unique<MpiQueue>(count);
         }
     }
 #endif
-    return std::make_unique<LocalDealer>(count);
+    return std::make_unique<LocalQueue>(count);
 }
 
 /// The last line of a log: what `isostat run` had to say.
@@ -142,7 +142,7 @@ class Board {
 };
 
 /// Runs what this rank is given; on rank 0 `board` tells of all of them.
-void work(const SampleFolders& folders, Dealer& dealer, int jobs, Board* board) {
+void work(const SampleFolders& folders, SampleQueue& queue, int jobs, Board* board) {
     std::set<std::size_t> mine;
     const auto command_of = [&](std::size_t number) -> std::optional<Command> {
         if (folders.sample(number).finished()) {
@@ -169,7 +169,7 @@ void work(const SampleFolders& folders, Dealer& dealer, int jobs, Board* board) 
             board->show();
         }
     };
-    run_processes(dealer, jobs, stop_flag(), command_of, on_start, on_end, on_wait);
+    run_processes(queue, jobs, stop_flag(), command_of, on_start, on_end, on_wait);
 }
 
 int default_jobs(int ranks) {
@@ -220,14 +220,14 @@ void print_outcome(const std::filesystem::path& path, const std::vector<Sample>&
                samples.size(), words, equilibria, proved, arcs, path.string());
 }
 
-int deal_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& header, Dealer& dealer) {
+int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& header, SampleQueue& queue) {
     const auto mode = arguments.resume  ? EnsembleDirectory::Mode::resume
                       : arguments.force ? EnsembleDirectory::Mode::force
                                         : EnsembleDirectory::Mode::fresh;
     const bool quiet = arguments.common.quiet || arguments.common.json;
     const EnsembleDirectory directory(arguments.output, header, mode);
-    const int jobs = arguments.jobs.value_or(default_jobs(dealer.ranks()));
-    Board board(directory.samples(), jobs * dealer.ranks(), quiet);
+    const int jobs = arguments.jobs.value_or(default_jobs(queue.ranks()));
+    Board board(directory.samples(), jobs * queue.ranks(), quiet);
     std::vector<bool> was_finished;
     for (std::size_t k = 0; k < static_cast<std::size_t>(header.samples); ++k) {
         was_finished.push_back(directory.samples().sample(k).finished());
@@ -235,19 +235,19 @@ int deal_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& hea
             board.found();
         }
     }
-    dealer.on_done = [&](std::size_t number) {
+    queue.on_done = [&](std::size_t number) {
         if (!was_finished[number]) {
             board.ended(number);
         }
     };
     if (!quiet) {
         fmt::print("{} samples, seeds {} to {}, {} at a time{}\n", header.samples, header.first_seed,
-                   header.first_seed + static_cast<std::uint64_t>(header.samples) - 1, jobs * dealer.ranks(),
-                   dealer.ranks() > 1 ? fmt::format(" on {} ranks", dealer.ranks()) : "");
+                   header.first_seed + static_cast<std::uint64_t>(header.samples) - 1, jobs * queue.ranks(),
+                   queue.ranks() > 1 ? fmt::format(" on {} ranks", queue.ranks()) : "");
         std::fflush(stdout);
     }
-    work(directory.samples(), dealer, jobs, &board);
-    dealer.finish();
+    work(directory.samples(), queue, jobs, &board);
+    queue.finish();
     board.clear();
     const std::vector<Sample> samples = directory.merge();
     if (!quiet || arguments.common.json) {
@@ -269,7 +269,7 @@ int deal_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& hea
 
 int ensemble(const EnsembleArguments& arguments) {
     catch_interrupts();
-    const auto dealer = make_dealer(static_cast<std::size_t>(arguments.samples));
+    const auto queue = make_queue(static_cast<std::size_t>(arguments.samples));
     EnsembleHeader header;
     header.program = program_name();
     header.command = arguments.common.command;
@@ -283,15 +283,15 @@ int ensemble(const EnsembleArguments& arguments) {
                         fmt::format("{}: has no [[programme]]: expected at least one segment to run", arguments.scene));
         }
         header.scene_text = scene.text;
-        if (dealer->rank() == 0) {
-            return deal_and_merge(arguments, header, *dealer);
+        if (queue->rank() == 0) {
+            return run_and_merge(arguments, header, *queue);
         }
-        work(SampleFolders(arguments.output, header), *dealer, arguments.jobs.value_or(1), nullptr);
-        dealer->finish();
+        work(SampleFolders(arguments.output, header), *queue, arguments.jobs.value_or(1), nullptr);
+        queue->finish();
         return done;
     } catch (...) {
-        dealer->stop(); // nobody waits for this rank
-        dealer->finish();
+        queue->stop(); // nobody waits for this rank
+        queue->finish();
         throw;
     }
 }

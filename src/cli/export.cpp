@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

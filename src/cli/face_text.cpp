@@ -1,6 +1,6 @@
 #include "cli/face_text.hpp"
 
-#include <isostat/preparation/force_face.hpp>
+#include "preparation/force_face.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,12 +1,13 @@
+#include "crafted/genericity.hpp"
+
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "io/files.hpp"
 #include "io/vertex_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/genericity.hpp>
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>

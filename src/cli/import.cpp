@@ -2,6 +2,7 @@
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/soft_list.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 
 #include <isostat/certificate/certify.hpp>
@@ -9,7 +10,6 @@
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>

@@ -1,10 +1,10 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "crafted/enclosed_bases.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/enclosed_bases.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/crafted/packing_file.hpp>
 
 #include <fmt/format.h>
 

@@ -6,8 +6,7 @@
 #include "core/memory.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <CLI/CLI.hpp>
 

@@ -1,10 +1,10 @@
 #include "cli/members.hpp"
 
 #include "ensemble/ensemble.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <charconv>
 #include <limits>

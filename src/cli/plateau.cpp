@@ -2,10 +2,10 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
 #include "cli/read_packing.hpp"
 
+#include "io/files.hpp"
 #include "io/vertex_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/packing_file.hpp>
-#include <isostat/io/files.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -3,11 +3,11 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
 #include "core/work.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "report/run_report.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -101,6 +101,40 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
     fmt::print("figures: {}\n", (directory.path() / "figures").string());
 }
 
+/// Says what is worth knowing of how a run begins.
+void announce(const Scene& scene, const std::optional<State<2>>& from_file) {
+    if (const double moved = from_file ? moved_to_grid(*from_file) : 0; moved > 0) {
+        fmt::print("start: coordinates of what can move are put on a grid, each moved by at most {}\n",
+                   rounded_up(moved, 3));
+    }
+    if (scene.run.certify == CertifyLevel::plain) {
+        fmt::print(
+            "certify = \"plain\": the equilibria are proved; the way between them is NOT certified, it is steered "
+            "by double precision without stated bounds\n");
+    }
+}
+
+/// The last line of a run that has its say.
+std::string last_line(const Scene& scene, const SceneEnding& ending, const RunCounters& counters) {
+    return fmt::format("{}{}{}: {} arcs{}, {} equilibria, {}\n", to_string(ending.status),
+                       ending.reason.empty() ? "" : ": ", ending.reason, counters.steps,
+                       scene.run.certify == CertifyLevel::plain ? " (not certified)" : "", counters.equilibria,
+                       clock_text(counters.seconds));
+}
+
+/// What went otherwise than asked, on standard error. `open`: as `left_open` says it.
+void complain(const RunArguments& arguments, const SceneEnding& ending, const std::string& open) {
+    if (!open.empty()) {
+        fmt::print(stderr, "isostat: {}: {}\n", arguments.output, open);
+    }
+    if (ending.status != RunStatus::completed) {
+        fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
+    }
+    if (ending.status == RunStatus::interrupted) {
+        fmt::print(stderr, "isostat: to go on: isostat run {} -o {} --resume\n", arguments.scene, arguments.output);
+    }
+}
+
 } // namespace
 
 int run(const RunArguments& arguments) {
@@ -130,15 +164,8 @@ int run(const RunArguments& arguments) {
                    point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
     }
     const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
-    if (const double moved = from_file && !quiet ? moved_to_grid(*from_file) : 0; moved > 0) {
-        fmt::print("start: coordinates of what can move are put on a grid, each moved by at most {}\n",
-                   rounded_up(moved, 3));
-    }
-    const bool plain = scene.run.certify == CertifyLevel::plain;
-    if (plain && !quiet) {
-        fmt::print(
-            "certify = \"plain\": the equilibria are proved; the way between them is NOT certified, it is steered "
-            "by double precision without stated bounds\n");
+    if (!quiet) {
+        announce(scene, from_file);
     }
     SceneEnding ending;
     if (start.ok()) {
@@ -152,20 +179,10 @@ int run(const RunArguments& arguments) {
     if (arguments.common.json) {
         fmt::print("{}", directory.summary());
     } else if (!quiet) {
-        fmt::print("{}{}{}: {} arcs{}, {} equilibria, {}\n", to_string(ending.status),
-                   ending.reason.empty() ? "" : ": ", ending.reason, counters.steps, plain ? " (not certified)" : "",
-                   counters.equilibria, clock_text(counters.seconds));
+        fmt::print("{}", last_line(scene, ending, counters));
     }
     const std::string open = left_open(counters);
-    if (!open.empty()) {
-        fmt::print(stderr, "isostat: {}: {}\n", arguments.output, open);
-    }
-    if (ending.status != RunStatus::completed) {
-        fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
-    }
-    if (ending.status == RunStatus::interrupted) {
-        fmt::print(stderr, "isostat: to go on: isostat run {} -o {} --resume\n", arguments.scene, arguments.output);
-    }
+    complain(arguments, ending, open);
     if ((scene.pictures || scene.vtk) && ending.status != RunStatus::interrupted && start.ok()) {
         if (start.value().packing.cell.any()) {
             fmt::print(stderr, "isostat: {}: no figures: of a periodic cell there are none yet\n", arguments.output);

@@ -1,11 +1,11 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/soft_list.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 
 #include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -1,8 +1,8 @@
 #include "cli/soft_list.hpp"
 
+#include "contact/candidates.hpp"
 #include "crafted/peeling.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
 #include <isostat/io/foreign.hpp>

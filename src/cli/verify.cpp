@@ -2,10 +2,10 @@
 #include "cli/common.hpp"
 #include "cli/members.hpp"
 #include "cli/verify_run.hpp"
+#include "io/files.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>

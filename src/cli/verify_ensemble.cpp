@@ -2,9 +2,9 @@
 #include "cli/members.hpp"
 #include "cli/progress.hpp"
 #include "cli/verify_run.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 
 #include <string>
 

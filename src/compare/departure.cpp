@@ -1,6 +1,6 @@
 #include "compare/departure.hpp"
 
-#include <isostat/compare/soft_limit.hpp>
+#include <isostat/compare/snap.hpp>
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
 #include "compare/dump.hpp"
 
+#include "io/files.hpp"
+
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,9 +1,8 @@
 #include "compare/frame.hpp"
 
+#include "rigidity/isostatic.hpp"
 #include "statics/statics.hpp"
 #include "verified/inverse_bound.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <fmt/format.h>
 

@@ -1,8 +1,7 @@
 #include "compare/local.hpp"
 
 #include "compare/path.hpp"
-
-#include <isostat/core/threads.hpp>
+#include "core/parallel.hpp"
 
 #include <cstddef>
 #include <string>

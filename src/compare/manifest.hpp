@@ -2,7 +2,7 @@
 /// \file
 /// The manifest of a series, as it stands.
 
-#include <isostat/compare/series.hpp>
+#include <isostat/compare/compare.hpp>
 
 #include <array>
 #include <optional>

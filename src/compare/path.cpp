@@ -1,6 +1,6 @@
 #include "compare/path.hpp"
 
-#include <isostat/compare/soft_limit.hpp>
+#include <isostat/compare/snap.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Frames of a series, matched by time step.
 #include "compare/dump.hpp"
 #include "compare/manifest.hpp"
+#include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

@@ -1,9 +1,8 @@
 #include "compare/reading.hpp"
 
+#include "contact/candidates.hpp"
 #include "contact/separation.hpp"
 #include "crafted/peeling.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <fmt/format.h>
 

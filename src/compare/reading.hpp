@@ -2,7 +2,7 @@
 /// \file
 /// The list of contacts of one frame, and whether lists, forces and overlaps of the files agree.
 
-#include <isostat/compare/series.hpp>
+#include <isostat/compare/compare.hpp>
 
 #include <string>
 #include <vector>

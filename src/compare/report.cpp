@@ -1,9 +1,9 @@
+#include "compare/report.hpp"
+
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
-
-#include <isostat/compare/report.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

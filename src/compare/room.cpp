@@ -1,9 +1,8 @@
 #include "compare/room.hpp"
 
+#include "contact/candidates.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <fmt/format.h>
 

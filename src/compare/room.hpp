@@ -2,8 +2,9 @@
 /// \file
 /// Room for rattlers beside a vertex.
 
+#include "contact/candidates.hpp"
+
 #include <isostat/compare/snap.hpp>
-#include <isostat/contact/candidates.hpp>
 
 #include <string>
 

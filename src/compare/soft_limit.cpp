@@ -1,7 +1,7 @@
 #include "linear/factorisation.hpp"
+#include "rigidity/isostatic.hpp"
 
-#include <isostat/compare/soft_limit.hpp>
-#include <isostat/rigidity/isostatic.hpp>
+#include <isostat/compare/snap.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,12 @@
+#include "contact/candidates.hpp"
+
 #include "contact/cell_drift.hpp"
 #include "contact/gap_sign.hpp"
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "core/work.hpp"
 
-#include <isostat/contact/candidates.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <algorithm>
 #include <cassert>

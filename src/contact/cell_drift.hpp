@@ -1,7 +1,7 @@
 #pragma once
 // How far a list of candidates has come from where it was found, in a periodic cell: private to the library.
 
-#include <isostat/contact/candidates.hpp>
+#include "contact/candidates.hpp"
 
 namespace isostat {
 

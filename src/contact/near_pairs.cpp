@@ -1,10 +1,9 @@
 #include "contact/near_pairs.hpp"
 
+#include "contact/candidates.hpp"
 #include "contact/images.hpp"
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <algorithm>
 #include <cassert>

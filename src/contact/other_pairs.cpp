@@ -1,9 +1,8 @@
 #include "contact/other_pairs.hpp"
 
+#include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
 #include "contact/near_pairs.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <cmath>
 #include <limits>

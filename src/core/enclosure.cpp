@@ -1,5 +1,5 @@
 // Not in the header: a user's compiler may have other flags.
-#include <isostat/core/enclosure.hpp>
+#include <isostat/core/verdict.hpp>
 
 namespace isostat {
 

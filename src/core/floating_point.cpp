@@ -1,5 +1,5 @@
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <cfenv>
 #include <string>

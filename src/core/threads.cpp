@@ -1,7 +1,7 @@
+#include "core/parallel.hpp"
 #include "core/work.hpp"
 
-#include <isostat/core/floating_point.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <mpfr.h>
 #include <sched.h>

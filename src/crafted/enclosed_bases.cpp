@@ -1,10 +1,10 @@
+#include "crafted/enclosed_bases.hpp"
+
 #include "contact/separation.hpp"
 #include "core/roundoff.hpp"
+#include "rigidity/isostatic.hpp"
 #include "verified/force_solution.hpp"
 #include "verified/inverse_bound.hpp"
-
-#include <isostat/crafted/enclosed_bases.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,10 @@
+#include "crafted/genericity.hpp"
+
+#include "core/parallel.hpp"
+
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
-#include <isostat/core/threads.hpp>
-#include <isostat/crafted/genericity.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <algorithm>

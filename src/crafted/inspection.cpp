@@ -2,7 +2,7 @@
 #include "crafted/rigid_motions.hpp"
 #include "crafted/second_order.hpp"
 
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/crafted/inspection.hpp>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
+#include "io/files.hpp"
 #include "io/toml.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/packing_file.hpp>
-#include <isostat/io/files.hpp>
+#include <isostat/crafted/exact_packing.hpp>
 
 #include <algorithm>
 #include <initializer_list>

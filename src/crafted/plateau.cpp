@@ -2,13 +2,14 @@
 #include "crafted/gap_order.hpp"
 #include "crafted/peeling.hpp"
 #include "crafted/rigid_motions.hpp"
+#include "exact/rank.hpp"
 #include "preparation/neighbours.hpp"
+#include "rigidity/isostatic.hpp"
+#include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/exact/rank.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <fmt/format.h>
 

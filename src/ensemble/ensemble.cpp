@@ -1,11 +1,11 @@
 #include "ensemble/ensemble.hpp"
 
 #include "io/descriptor.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "report/statistics.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>

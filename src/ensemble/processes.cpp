@@ -72,7 +72,7 @@ pid_t ended(ProcessEnd& ending, pid_t which) {
 
 } // namespace
 
-void run_processes(Dealer& dealer, int jobs, const std::atomic<bool>& stop,
+void run_processes(SampleQueue& queue, int jobs, const std::atomic<bool>& stop,
                    const std::function<std::optional<Command>(std::size_t)>& command_of,
                    const std::function<void(std::size_t)>& on_start,
                    const std::function<void(std::size_t, const ProcessEnd&)>& on_end,
@@ -86,27 +86,27 @@ void run_processes(Dealer& dealer, int jobs, const std::atomic<bool>& stop,
         if (stop && !told) {
             told = true;
             more = false;
-            dealer.stop();
+            queue.stop();
             for (const auto& [pid, number] : running) {
                 ::kill(pid, SIGTERM);
             }
         }
         while (more && running.size() < static_cast<std::size_t>(jobs)) {
-            const auto number = dealer.next();
+            const auto number = queue.next();
             if (!number) {
                 more = false;
                 break;
             }
             const auto command = command_of(*number);
             if (!command) {
-                dealer.done(*number);
+                queue.done(*number);
                 continue;
             }
             on_start(*number);
             const pid_t pid = start(*command);
             if (pid < 0) {
                 on_end(*number, ProcessEnd{errno, -1});
-                dealer.done(*number);
+                queue.done(*number);
             } else {
                 running.emplace(pid, *number);
             }
@@ -119,10 +119,10 @@ void run_processes(Dealer& dealer, int jobs, const std::atomic<bool>& stop,
                 continue;
             }
             on_end(entry->second, ending);
-            dealer.done(entry->second);
+            queue.done(entry->second);
             entry = running.erase(entry);
         }
-        dealer.idle();
+        queue.idle();
         on_wait();
         if (!running.empty()) {
             std::this_thread::sleep_for(pause);

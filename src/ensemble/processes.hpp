@@ -2,7 +2,7 @@
 /// \file
 /// Samples as processes of their own: what one of them does to itself (crash, no memory, exit) it does to no other.
 
-#include "ensemble/dealer.hpp"
+#include "ensemble/sample_queue.hpp"
 
 #include <atomic>
 #include <filesystem>
@@ -25,11 +25,11 @@ struct ProcessEnd {
     int signal = 0; ///< otherwise: what killed it; -1 when it could not be started (status: errno)
 };
 
-/// Takes numbers from the dealer and runs command_of(number) for each (none: nothing to do, it is done), at most `jobs`
+/// Takes numbers from the queue and runs command_of(number) for each (none: nothing to do, it is done), at most `jobs`
 /// at a time, until there are no more or `stop` is set; then the running ones get SIGTERM once and are waited for.
 /// Every process has a process group of its own (Ctrl-C reaches only the caller) and gets SIGTERM when the caller dies
 /// in any way. `on_start` and `on_end` are called from this thread. Throws nothing of its own.
-void run_processes(Dealer& dealer, int jobs, const std::atomic<bool>& stop,
+void run_processes(SampleQueue& queue, int jobs, const std::atomic<bool>& stop,
                    const std::function<std::optional<Command>(std::size_t)>& command_of,
                    const std::function<void(std::size_t)>& on_start,
                    const std::function<void(std::size_t, const ProcessEnd&)>& on_end,

@@ -1,9 +1,9 @@
 #include "ensemble/ensemble.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "scene/seed.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

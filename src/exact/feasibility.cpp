@@ -1,4 +1,4 @@
-#include <isostat/exact/feasibility.hpp>
+#include <isostat/exact/kernel.hpp>
 
 #include <cassert>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #pragma once
 // Arithmetic mod p = 2^bits - 1 (bits = 61, 31) on unreduced words: the bounds are part of each function's contract.
 
-#include <isostat/exact/rank.hpp>
+#include "exact/rank.hpp"
 
 #include <array>
 #include <bit>

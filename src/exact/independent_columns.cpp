@@ -1,6 +1,6 @@
 #include "exact/independent_columns.hpp"
 
-#include <isostat/exact/rank.hpp>
+#include "exact/rank.hpp"
 
 #include <algorithm>
 #include <functional>

@@ -2,7 +2,7 @@
 /// \file
 /// The first independent columns of a matrix over the prime field.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <cstdint>
 #include <vector>

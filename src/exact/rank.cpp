@@ -1,6 +1,6 @@
-#include "exact/elimination.hpp"
+#include "exact/rank.hpp"
 
-#include <isostat/exact/rank.hpp>
+#include "exact/elimination.hpp"
 
 #include <colamd.h>
 

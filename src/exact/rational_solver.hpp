@@ -1,7 +1,7 @@
 #pragma once
 // Exact solutions of sparse integer systems by p-adic lifting.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <gmpxx.h>
 

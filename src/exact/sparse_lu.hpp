@@ -1,7 +1,7 @@
 #pragma once
 // Sparse LU factors over any field that a small class of arithmetic describes: residues mod p, MPFR numbers.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <cstddef>
 #include <functional>

@@ -1,19 +1,25 @@
 #pragma once
 /// \file
-/// What reader and writer of certificates share.
+/// Parts of the text of a certificate.
 
 #include "io/json.hpp"
 
-#include <isostat/core/verdict.hpp>
+#include <isostat/io/certificate_file.hpp>
 
-#include <array>
 #include <string>
 
 namespace isostat::json {
 
-/// The rungs that can settle a claim, by their words.
-inline constexpr std::array<Rung, 5> settling_rungs{Rung::combinatorial, Rung::double_bound, Rung::double_double,
-                                                    Rung::multiprecision, Rung::exact};
+/// A member of a document in one line.
+inline std::string member_line(const char* name, const Json& value) {
+    return "\"" + std::string(name) + "\": " + dumped(value);
+}
+
+/// The member "claims", each claim in one line. Throws `Error(bad_input)` as `certificate_text` does.
+std::string claims_text(const CertificateClaims& claims);
+
+/// What `claims_text` wrote. Throws as `parse_certificate` does.
+CertificateClaims claims_of(const Field& field, const State<2>& state);
 
 /// SHA-256 of a document without its field "digest", dumped without white space and with sorted keys.
 std::string digest_of(const Json& document);

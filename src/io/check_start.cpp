@@ -1,7 +1,7 @@
+#include "contact/candidates.hpp"
 #include "exact/independent_columns.hpp"
 #include "linear/factorisation.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/rigidity/counting.hpp>

@@ -1,7 +1,8 @@
+#include "io/files.hpp"
+
 #include "io/descriptor.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>

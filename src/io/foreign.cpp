@@ -1,9 +1,9 @@
 #include "io/cell_wrap.hpp"
+#include "io/files.hpp"
 #include "io/foreign_source.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
-#include <isostat/io/files.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/io/foreign.hpp>
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // LAMMPS dumps of style local: rows of pairs.
+#include "io/files.hpp"
 #include "io/foreign_source.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

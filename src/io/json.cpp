@@ -1,7 +1,7 @@
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

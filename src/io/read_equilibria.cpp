@@ -1,7 +1,7 @@
+#include "io/files.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>

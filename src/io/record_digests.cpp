@@ -1,8 +1,9 @@
 #include "io/record_digests.hpp"
 
+#include "io/files.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/io/certificate_file.hpp>
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

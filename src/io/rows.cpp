@@ -1,8 +1,9 @@
 #include "io/rows.hpp"
 
+#include "io/files.hpp"
+
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
-#include <isostat/io/files.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

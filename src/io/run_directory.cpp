@@ -1,12 +1,12 @@
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/certificate_file.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

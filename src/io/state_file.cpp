@@ -1,11 +1,11 @@
 #include "io/contact_json.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/perturbation_json.hpp"
 #include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

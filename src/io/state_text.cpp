@@ -1,10 +1,10 @@
 #include "core/work.hpp"
 #include "io/contact_json.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/perturbation_json.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fmt/format.h>
@@ -94,54 +94,60 @@ template <int Dim> void append_disks(std::string& text, const Packing<Dim>& pack
     json::append_rows(text, "disks", rows);
 }
 
+/// The member "load", without the forces on disks.
+template <int Dim> std::string load_text(const State<Dim>& state) {
+    const Load<Dim>& load = state.load;
+    Json object;
+    object["kind"] = load.kind == LoadKind::nominal ? "nominal" : "true";
+    object["stress"] = numbers(load.stress, "load.stress");
+    object["loaded_axis"] = load.loaded_axis;
+    object["reference_length"] = numbers(load.reference_length, "load.reference_length");
+    if (state.packing.cell.any()) {
+        object["shear"] = numbers(load.shear, "load.shear");
+    }
+    return fmt::format("  \"load\": {},\n", object.dump());
+}
+
+/// The member "walls".
+template <int Dim> std::string walls_text(const Walls<Dim>& walls) {
+    Json object;
+    for (std::size_t a = 0; a < Dim; ++a) {
+        object["lower"].push_back(word(walls.lower[a]));
+        object["upper"].push_back(word(walls.upper[a]));
+    }
+    return fmt::format("  \"walls\": {},\n", object.dump());
+}
+
+/// A further member, unless it has no rows.
+void append_member(std::string& text, const char* name, const std::vector<Json>& rows) {
+    if (!rows.empty()) {
+        text += ",\n";
+        json::append_rows(text, name, rows);
+    }
+}
+
 } // namespace
 
 template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces) {
     const Packing<Dim>& packing = state.packing;
-    const Load<Dim>& load = state.load;
     std::string text = "{\n  \"format\": \"isostat-state\",\n  \"version\": 1,\n";
     text += fmt::format("  \"dimension\": {},\n  \"equilibrium\": {},\n", Dim, state.equilibrium);
     text +=
         fmt::format("  \"provenance\": {},\n", state.provenance.empty() ? "{}" : Json::parse(state.provenance).dump());
-
-    Json head;
-    head["kind"] = load.kind == LoadKind::nominal ? "nominal" : "true";
-    head["stress"] = numbers(load.stress, "load.stress");
-    head["loaded_axis"] = load.loaded_axis;
-    head["reference_length"] = numbers(load.reference_length, "load.reference_length");
-    if (packing.cell.any()) {
-        head["shear"] = numbers(load.shear, "load.shear");
-    }
-    text += fmt::format("  \"load\": {},\n", head.dump());
-
-    Json walls;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        walls["lower"].push_back(word(packing.walls.lower[a]));
-        walls["upper"].push_back(word(packing.walls.upper[a]));
-    }
-    text += fmt::format("  \"walls\": {},\n", walls.dump());
+    text += load_text(state);
+    text += walls_text(packing.walls);
     text += cell_text(packing);
     append_disks(text, packing);
-    std::vector<Json> rows;
 
+    std::vector<Json> rows;
     for (std::size_t i = 0; i < packing.fixed.size(); ++i) {
         if (packing.fixed[i] != 0) {
             rows.emplace_back(i);
         }
     }
-    if (!rows.empty()) {
-        text += ",\n";
-        json::append_rows(text, "fixed", rows);
-    }
-    if (!load.disk_force.empty()) {
-        text += ",\n";
-        json::append_rows(text, "disk_force", vectors<Dim>(load.disk_force, "disk_force"));
-    }
-    if (!load.infinitesimal.empty()) {
-        text += ",\n";
-        json::append_rows(text, "infinitesimal", vectors<Dim>(load.infinitesimal, "infinitesimal"));
-    }
-
+    append_member(text, "fixed", rows);
+    append_member(text, "disk_force", vectors<Dim>(state.load.disk_force, "disk_force"));
+    append_member(text, "infinitesimal", vectors<Dim>(state.load.infinitesimal, "infinitesimal"));
     if (state.perturbation) {
         text += fmt::format(",\n  \"perturbation\": {}", json::perturbation_to_json<Dim>(*state.perturbation).dump());
     }
@@ -151,14 +157,11 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
     }
     text += ",\n";
     json::append_rows(text, "contacts", rows);
-    if (!forces.empty()) {
-        rows.clear();
-        for (const double f : forces) {
-            rows.emplace_back(finite(f, "forces"));
-        }
-        text += ",\n";
-        json::append_rows(text, "forces", rows);
+    rows.clear();
+    for (const double f : forces) {
+        rows.emplace_back(finite(f, "forces"));
     }
+    append_member(text, "forces", rows);
     return text + "\n}\n";
 }
 

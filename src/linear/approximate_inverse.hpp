@@ -2,7 +2,7 @@
 /// \file
 /// LU factors of one matrix that serve its neighbours: contacts exchanged one by one, while the grains move.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <memory>
 #include <span>

@@ -140,6 +140,23 @@ struct Factorisation::Implementation {
                    : std::numeric_limits<double>::infinity();
     }
 
+    /// Puts x and r at the start of a refinement, multiplied by `up`. Returns the largest component of the right side.
+    double start_from(Side side, std::span<const double> rhs, std::span<const double> guess, double up) {
+        const auto scaled = [up](double c) { return c * up; };
+        error = 0;
+        x.assign(rhs.size(), 0.0);
+        r.resize(rhs.size());
+        std::transform(rhs.begin(), rhs.end(), r.begin(), scaled);
+        const double size_of_rhs = largest(r);
+        if (!guess.empty()) {
+            std::transform(guess.begin(), guess.end(), x.begin(), scaled);
+            std::vector<double> carried(rhs.size());
+            multiply(side, x, carried);
+            std::transform(r.begin(), r.end(), carried.begin(), r.begin(), std::minus<>());
+        }
+        return size_of_rhs;
+    }
+
     /// Iterates to rounding; false when it does not converge. Each pass makes a direction; the residual is minimised
     /// over the last few of them (generalised conjugate residuals, truncated), which needs fewer passes than plain
     /// refinement and converges where that does not.
@@ -152,17 +169,7 @@ struct Factorisation::Implementation {
         exponent = std::clamp(exponent, -1000, 1000);
         const double up = std::ldexp(1.0, -exponent);
         const double down = std::ldexp(1.0, exponent);
-        error = 0;
-        x.assign(n, 0.0);
-        r.resize(n);
-        std::transform(rhs.begin(), rhs.end(), r.begin(), [up](double c) { return c * up; });
-        const double size_of_rhs = largest(r);
-        if (!guess.empty()) {
-            std::transform(guess.begin(), guess.end(), x.begin(), [up](double c) { return c * up; });
-            std::vector<double> carried(n);
-            multiply(side, x, carried);
-            std::transform(r.begin(), r.end(), carried.begin(), r.begin(), std::minus<>());
-        }
+        const double size_of_rhs = start_from(side, rhs, guess, up);
         const auto deliver = [&] {
             std::transform(x.begin(), x.end(), rhs.begin(), [down](double c) { return c * down; });
             return true;

@@ -3,8 +3,7 @@
 /// Solves with a contact matrix that was proved regular.
 
 #include "linear/approximate_inverse.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
+#include "rigidity/isostatic.hpp"
 
 #include <functional>
 #include <memory>

@@ -1,9 +1,8 @@
 #pragma once
 // The solves with KLU's factors, laid out for speed: private to the room.
 
+#include "core/parallel.hpp"
 #include "linear/triangle.hpp"
-
-#include <isostat/core/threads.hpp>
 
 #include <klu.h>
 

@@ -2,9 +2,9 @@
 /// \file
 /// One arc: open a contact, keep the others, follow the mechanism to the first event.
 
+#include "contact/candidates.hpp"
 #include "linear/factorisation.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/packing/load.hpp>
 

@@ -4,7 +4,7 @@
 #include "motion/moving_part.hpp"
 #include "motion/power_watch.hpp"
 
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 #include "linear/factorisation.hpp"
 #include "motion/acceleration.hpp"
 #include "motion/factorised_structure.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <cstddef>
 #include <memory>

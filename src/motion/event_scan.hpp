@@ -1,10 +1,9 @@
 #pragma once
 // The gaps that may close along an arc: where the next one does, and what a step may have missed. Private to the room.
 
+#include "contact/candidates.hpp"
 #include "motion/arc.hpp"
 #include "motion/curve_course.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <cstddef>
 #include <limits>

@@ -2,8 +2,7 @@
 // A structure with its factors: private to the room.
 
 #include "linear/factorisation.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
+#include "rigidity/isostatic.hpp"
 
 #include <utility>
 

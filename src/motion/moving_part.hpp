@@ -2,11 +2,10 @@
 /// \file
 /// The grains that move during an arc and their equations: private to the room (statement A7, proofs/arcs.md).
 
+#include "contact/candidates.hpp"
 #include "motion/arc_centre.hpp"
 #include "motion/certify_arc.hpp"
 #include "motion/curve_piece.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <memory>
 #include <string>

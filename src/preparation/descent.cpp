@@ -132,6 +132,23 @@ InteriorPoint ContactProgramme<Dim>::first_point(const Packing<Dim>& packing, co
     return point;
 }
 
+namespace {
+
+/// Moves the degrees of freedom; the largest displacement of a disk's coordinate.
+template <int Dim>
+double displace(Packing<Dim>& packing, const DofMap<Dim>& dofs, const std::vector<double>& x, std::size_t disks) {
+    double largest = 0;
+    for (int c = 0; c < dofs.dof_count(); ++c) {
+        const auto k = static_cast<std::size_t>(dofs.coordinate_of(c));
+        const double step = x[static_cast<std::size_t>(c)];
+        packing.q[k] += step;
+        largest = k < disks ? std::max(largest, std::abs(step)) : largest;
+    }
+    return largest;
+}
+
+} // namespace
+
 template <int Dim>
 ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
                                              const std::function<void(const ProgrammeStep&)>& watch) {
@@ -179,12 +196,7 @@ ProgrammeStep ContactProgramme<Dim>::descend(Packing<Dim>& packing, double eps,
             break;
         }
         ++step.iterations;
-        step.largest = 0;
-        for (std::size_t c = 0; c < rows.columns(); ++c) {
-            const auto k = static_cast<std::size_t>(rows.dofs.coordinate_of(static_cast<int>(c)));
-            packing.q[k] += made.x[c];
-            step.largest = k < disks ? std::max(step.largest, std::abs(made.x[c])) : step.largest;
-        }
+        step.largest = displace(packing, rows.dofs, made.x, disks);
         count_changes(active, made.active, rows.columns(), step);
         active = std::move(made.active);
         const bool low = made.product < settled_product && made.violation < feasible;

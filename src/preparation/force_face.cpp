@@ -1,8 +1,8 @@
+#include "preparation/force_face.hpp"
+
 #include "contact/separation.hpp"
 #include "core/work.hpp"
 #include "linear/factorisation.hpp"
-
-#include <isostat/preparation/force_face.hpp>
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>

@@ -1,10 +1,9 @@
 #include "preparation/pivots.hpp"
 
+#include "contact/candidates.hpp"
 #include "contact/words.hpp"
 #include "statics/statics.hpp"
 #include "verified/configuration.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <algorithm>
 #include <cmath>

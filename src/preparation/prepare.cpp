@@ -6,7 +6,7 @@
 #include "preparation/stage.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 #include "verified/real.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/preparation/radii.hpp>
+#include <isostat/preparation/preparation.hpp>
 
 #include <fmt/format.h>
 

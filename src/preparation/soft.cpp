@@ -1,10 +1,10 @@
 #include "preparation/soft.hpp"
 
+#include "core/parallel.hpp"
 #include "core/work.hpp"
 #include "preparation/pair_forces.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/threads.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,7 @@
 #include "preparation/soft_newton.hpp"
 
+#include "core/parallel.hpp"
 #include "preparation/neighbours.hpp"
-
-#include <isostat/core/threads.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,6 @@
 /// verdicts as the Python enumeration, failures as exceptions.
 
 #include <isostat/contact/contact.hpp>
-#include <isostat/core/enclosure.hpp>
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/io/certificate_file.hpp>

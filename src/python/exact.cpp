@@ -1,11 +1,10 @@
 // Exact numbers and crafted packings.
 #include "convert.hpp"
+#include "crafted/enclosed_bases.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/enclosed_bases.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/inspection.hpp>
-#include <isostat/crafted/packing_file.hpp>
 #include <isostat/exact/number.hpp>
 
 #include <pybind11/operators.h>

@@ -1,7 +1,7 @@
 #include "convert.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 namespace isostat::python {
 

@@ -1,12 +1,11 @@
 // inspect, certify, verify: what is known and proved of one state, and of a run.
 #include "convert.hpp"
+#include "io/files.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/checker/verify_run.hpp>
 #include <isostat/io/certificate_file.hpp>
-#include <isostat/io/files.hpp>
 
 namespace isostat::python {
 
@@ -54,24 +53,11 @@ py::object load_end(const LoadEndClaim& end) {
     return end.unbounded ? py::object(py::none()) : py::make_tuple(end.stress, end.opens);
 }
 
-void bind_certificate(py::module_& module) {
+using CertificateClass = py::class_<Certified>;
+
+void bind_claims(CertificateClass& certificate) {
     using Claims = CertificateClaims;
-    py::class_<Certified>(
-        module, "Certificate",
-        "What is proved of a state, for `verify`. A claim that was not proved is None; `undecided` says why.")
-        .def_property_readonly(
-            "verdict", [](const Certified& self) { return self.verdict; },
-            "Verdict on: the true vertex is an isostatic, stable equilibrium without overlap.")
-        .def_readonly("refuted", &Certified::refuted, "Sentences: claims that are proved to be wrong.")
-        .def_property_readonly(
-            "undecided", [](const Certified& self) { return self.certificate.claims.undecided; },
-            "Sentences: one per claim that is absent.")
-        .def_property_readonly(
-            "state",
-            [](const Certified& self) {
-                return PyState{self.certificate.state, {}};
-            },
-            "The state it speaks of.")
+    certificate
         .def_property_readonly("counting",
                                claim(&Claims::counting,
                                      [](const CountingClaim& c) {
@@ -110,7 +96,29 @@ void bind_certificate(py::module_& module) {
             "opens there. None: unbounded or not proved.")
         .def_property_readonly(
             "high", claim(&Claims::load_interval, [](const LoadIntervalClaim& c) { return load_end(c.high); }),
-            "((lower, upper), contact): upper end. None: unbounded or not proved.")
+            "((lower, upper), contact): upper end. None: unbounded or not proved.");
+}
+
+void bind_certificate(py::module_& module) {
+    CertificateClass certificate(
+        module, "Certificate",
+        "What is proved of a state, for `verify`. A claim that was not proved is None; `undecided` says why.");
+    certificate
+        .def_property_readonly(
+            "verdict", [](const Certified& self) { return self.verdict; },
+            "Verdict on: the true vertex is an isostatic, stable equilibrium without overlap.")
+        .def_readonly("refuted", &Certified::refuted, "Sentences: claims that are proved to be wrong.")
+        .def_property_readonly(
+            "undecided", [](const Certified& self) { return self.certificate.claims.undecided; },
+            "Sentences: one per claim that is absent.")
+        .def_property_readonly(
+            "state",
+            [](const Certified& self) {
+                return PyState{self.certificate.state, {}};
+            },
+            "The state it speaks of.");
+    bind_claims(certificate);
+    certificate
         .def_property_readonly(
             "stable", [](const Certified& self) { return self.certificate.claims.stable; },
             "True: claimed a strict local minimum of the potential. False: no claim.")

@@ -5,7 +5,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/scene/scene.hpp>
-#include <isostat/scene/scene_run.hpp>
 
 #include <atomic>
 #include <optional>

@@ -1,9 +1,9 @@
 // State and Packing: arrays that look into the library's memory.
 #include "convert.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 namespace isostat::python {
 
@@ -124,41 +124,36 @@ void bind_packing(py::module_& module) {
                                "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
 }
 
-void bind_state_class(py::module_& module) {
-    const auto state = [](const py::object& self) -> const State<2>& { return self.cast<const PyState&>().state; };
-    py::class_<PyState, std::shared_ptr<PyState>>(
-        module, "State",
-        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.")
-        .def_static("read", &read_state<2>, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
-                    "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
-        .def_static("parse", &parse_state<2>, py::arg("text"), py::arg("source") = "State",
-                    py::call_guard<py::gil_scoped_release>(),
-                    "Reads a state from the text of a file; `source` begins messages.")
-        .def(
-            "text", [](const PyState& self) { return state_text<2>(self.state, self.forces); },
-            "The JSON text of the state file.")
-        .def(
-            "write",
-            [](const PyState& self, const std::filesystem::path& path) {
-                write_state<2>(path, self.state, self.forces);
-            },
-            py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
-        .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); })
+using StateClass = py::class_<PyState, std::shared_ptr<PyState>>;
+
+const State<2>& state_of(const py::object& self) {
+    return self.cast<const PyState&>().state;
+}
+
+void bind_grains(StateClass& state) {
+    state
         .def_property_readonly(
-            "positions", [state](const py::object& self) { return positions(state(self).packing, self); },
+            "positions", [](const py::object& self) { return positions(state_of(self).packing, self); },
             "(n, 2) centres; length. A read-only view.")
         .def_property_readonly(
-            "radii", [state](const py::object& self) { return view(state(self).packing.radius, self); },
+            "radii", [](const py::object& self) { return view(state_of(self).packing.radius, self); },
             "(n,) radii; length. A read-only view.")
         .def_property_readonly(
-            "length", [state](const py::object& self) { return lengths(state(self).packing, self); },
+            "length", [](const py::object& self) { return lengths(state_of(self).packing, self); },
             "(2,) positions of the right and the top wall; length. A read-only view.")
         .def_property_readonly(
-            "fixed", [state](const py::object& self) { return view(state(self).packing.fixed, self); },
+            "fixed", [](const py::object& self) { return view(state_of(self).packing.fixed, self); },
             "(n,) flags, 1: cannot move; empty where no disk is fixed.")
         .def_property_readonly(
             "walls", [](const PyState& self) { return walls_dict(self.state.packing.walls); },
             "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly(
+            "solid_fraction", [](const PyState& self) { return self.state.packing.solid_fraction(); },
+            "Area of the disks over that of the box.");
+}
+
+void bind_contacts(StateClass& state) {
+    state
         .def_property_readonly(
             "contacts", [](const PyState& self) { return contact_array(self.state.contacts); },
             "(N, 2) integers: disks i < j; or a disk and -1 left, -2 bottom, -3 right, -4 top wall; or a held "
@@ -171,7 +166,11 @@ void bind_state_class(py::module_& module) {
             "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".")
         .def_property_readonly("forces", vector_of(&PyState::forces),
                                "(N,) forces that the file has, stress x length, positive in compression; empty where "
-                               "it has none. For looking: `inspect` proves them.")
+                               "it has none. For looking: `inspect` proves them.");
+}
+
+void bind_load(StateClass& state) {
+    state
         .def_property_readonly(
             "stress", [](const PyState& self) { return self.state.load.stress; },
             "[sigma_1, sigma_2]: on the right and on the top wall; positive in compression.")
@@ -186,15 +185,15 @@ void bind_state_class(py::module_& module) {
             "\"nominal\": force = stress x reference length; \"true\": force = stress x length.")
         .def_property_readonly(
             "infinitesimal",
-            [state](const py::object& self) {
-                const std::vector<double>& g = state(self).load.infinitesimal;
+            [](const py::object& self) {
+                const std::vector<double>& g = state_of(self).load.infinitesimal;
                 return view(g.data(), {static_cast<py::ssize_t>(g.size() / 2), 2}, self);
             },
             "(n, 2) infinitesimal loads, on which rattlers rest, or (0, 2).")
         .def_property_readonly(
             "disk_force",
-            [state](const py::object& self) {
-                const std::vector<double>& force = state(self).load.disk_force;
+            [](const py::object& self) {
+                const std::vector<double>& force = state_of(self).load.disk_force;
                 return view(force.data(), {static_cast<py::ssize_t>(force.size() / 2), 2}, self);
             },
             "(n, 2) external forces on disks, stress x length, or (0, 2).")
@@ -205,10 +204,33 @@ void bind_state_class(py::module_& module) {
                 const std::vector<double> force = on_dofs<2>(s.load.external_force(s.packing), DofMap<2>(s.packing));
                 return py::array_t<double>(static_cast<py::ssize_t>(force.size()), force.data());
             },
-            "(N_f,) external force on each degree of freedom, stress x length, rounded to nearest.")
-        .def_property_readonly(
-            "solid_fraction", [](const PyState& self) { return self.state.packing.solid_fraction(); },
-            "Area of the disks over that of the box.")
+            "(N_f,) external force on each degree of freedom, stress x length, rounded to nearest.");
+}
+
+void bind_state_class(py::module_& module) {
+    StateClass state(
+        module, "State",
+        "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
+    state
+        .def_static("read", &read_state<2>, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+                    "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
+        .def_static("parse", &parse_state<2>, py::arg("text"), py::arg("source") = "State",
+                    py::call_guard<py::gil_scoped_release>(),
+                    "Reads a state from the text of a file; `source` begins messages.")
+        .def(
+            "text", [](const PyState& self) { return state_text<2>(self.state, self.forces); },
+            "The JSON text of the state file.")
+        .def(
+            "write",
+            [](const PyState& self, const std::filesystem::path& path) {
+                write_state<2>(path, self.state, self.forces);
+            },
+            py::arg("path"), "Writes a state file in one step: no partial file. Raises CannotWrite.")
+        .def("__len__", [](const PyState& self) { return self.state.packing.disk_count(); });
+    bind_grains(state);
+    bind_contacts(state);
+    bind_load(state);
+    state
         .def_property_readonly(
             "equilibrium", [](const PyState& self) { return self.state.equilibrium; },
             "Number of this equilibrium in its run.")

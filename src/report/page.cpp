@@ -1,12 +1,11 @@
 #include "report/page.hpp"
 
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "linear/factorisation.hpp"
 #include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
-
-#include <isostat/io/files.hpp>
-#include <isostat/rigidity/isostatic.hpp>
+#include "rigidity/isostatic.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-#include "io/cell_wrap.hpp"
+#include "report/picture.hpp"
 
-#include <isostat/report/picture.hpp>
+#include "io/cell_wrap.hpp"
 
 #include <fmt/format.h>
 
@@ -353,16 +353,18 @@ std::string force_picture(const State<2>& stored, std::span<const double> forces
     return text;
 }
 
-std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title,
-                     std::span<const double> displacement) {
-    const auto disks = state.packing.radius.size();
-    std::vector<Point> points;
-    for (std::size_t i = 0; i < disks; ++i) {
-        points.push_back(centre(state, static_cast<int>(i)));
-    }
+namespace {
+
+/// Lines of a VTK file, with the points that they add, and a force for each.
+struct VtkLines {
     std::string lines;
-    std::string line_force;
-    std::size_t line_count = 0;
+    std::string forces;
+    std::size_t count = 0;
+    std::size_t ends = 0;
+};
+
+VtkLines vtk_lines(const State<2>& state, std::span<const double> forces, std::vector<Point>& points) {
+    VtkLines made;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
         const Contact& contact = state.contacts[l];
         if (contact.kind == ContactKind::held) {
@@ -376,21 +378,34 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
             end = points.size();
             points.push_back(second_centre(state, contact));
         }
-        lines += fmt::format("2 {} {}\n", contact.i, end);
-        line_force += fmt::format("{:.17g}\n", forces.empty() ? 0 : forces[l]);
-        ++line_count;
+        made.lines += fmt::format("2 {} {}\n", contact.i, end);
+        made.forces += fmt::format("{:.17g}\n", forces.empty() ? 0 : forces[l]);
+        ++made.count;
     }
-    std::size_t ends = 2 * line_count;
+    made.ends = 2 * made.count;
     if (state.packing.cell.any()) {
         const std::size_t first = points.size();
         for (const Point& p : corners(state.packing)) {
             points.push_back(p);
         }
-        lines += fmt::format("5 {} {} {} {} {}\n", first, first + 1, first + 2, first + 3, first);
-        line_force += "0\n";
-        ++line_count;
-        ends += 5;
+        made.lines += fmt::format("5 {} {} {} {} {}\n", first, first + 1, first + 2, first + 3, first);
+        made.forces += "0\n";
+        ++made.count;
+        made.ends += 5;
     }
+    return made;
+}
+
+} // namespace
+
+std::string vtk_text(const State<2>& state, std::span<const double> forces, const std::string& title,
+                     std::span<const double> displacement) {
+    const auto disks = state.packing.radius.size();
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < disks; ++i) {
+        points.push_back(centre(state, static_cast<int>(i)));
+    }
+    const VtkLines contacts = vtk_lines(state, forces, points);
     std::vector<unsigned char> rattler(disks, 0);
     if (!forces.empty()) {
         rattler = rattler_flags(state, forces);
@@ -406,7 +421,7 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
     for (std::size_t i = 0; i < disks; ++i) {
         text += fmt::format("1 {}\n", i);
     }
-    text += fmt::format("LINES {} {}\n{}", line_count, line_count + ends, lines);
+    text += fmt::format("LINES {} {}\n{}", contacts.count, contacts.count + contacts.ends, contacts.lines);
     text += fmt::format("POINT_DATA {}\nSCALARS radius double 1\nLOOKUP_TABLE default\n", points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         text += fmt::format("{:.17g}\n", i < disks ? state.packing.radius[i] : 0.0);
@@ -423,11 +438,11 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
         }
     }
     // Cell data: vertices first, then lines, as VTK numbers the cells.
-    text += fmt::format("CELL_DATA {}\nSCALARS force double 1\nLOOKUP_TABLE default\n", disks + line_count);
+    text += fmt::format("CELL_DATA {}\nSCALARS force double 1\nLOOKUP_TABLE default\n", disks + contacts.count);
     for (std::size_t i = 0; i < disks; ++i) {
         text += "0\n";
     }
-    return text + line_force;
+    return text + contacts.forces;
 }
 
 } // namespace isostat

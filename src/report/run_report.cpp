@@ -1,19 +1,19 @@
 #include "report/run_report.hpp"
 
 #include "core/work.hpp"
+#include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
 #include "report/page.hpp"
+#include "report/picture.hpp"
 #include "report/tables.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/report/picture.hpp>
 
 #include <fmt/format.h>
 

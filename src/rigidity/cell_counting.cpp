@@ -1,8 +1,9 @@
 #include "contact/separation.hpp"
+#include "exact/rank.hpp"
+#include "rigidity/strained_matrix.hpp"
 
 #include <isostat/exact/kernel.hpp>
-#include <isostat/exact/rank.hpp>
-#include <isostat/rigidity/cell_counting.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -3,9 +3,10 @@
 /// Where the contact matrix can have entries: the one pattern by which structural zeros are told
 /// (proofs/definition.md).
 
+#include "rigidity/isostatic.hpp"
+
 #include <isostat/contact/contact.hpp>
-#include <isostat/core/ids.hpp>
-#include <isostat/rigidity/isostatic.hpp>
+#include <isostat/core/contact.hpp>
 
 #include <optional>
 #include <span>

@@ -1,9 +1,9 @@
 #include "exact/independent_columns.hpp"
+#include "exact/rank.hpp"
+#include "rigidity/isostatic.hpp"
 
-#include <isostat/core/floating_point.hpp>
-#include <isostat/exact/rank.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/rigidity/counting.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <algorithm>
 

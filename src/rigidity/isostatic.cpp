@@ -1,11 +1,12 @@
+#include "rigidity/isostatic.hpp"
+
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "core/work.hpp"
+#include "exact/rank.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
-#include <isostat/exact/rank.hpp>
-#include <isostat/rigidity/isostatic.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "rigidity/linkage.hpp"
 
-#include <isostat/exact/rank.hpp>
+#include "exact/rank.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
+#include "io/files.hpp"
 #include "io/toml.hpp"
 #include "scene/radii_file.hpp"
 #include "scene/radii_law.hpp"
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
@@ -25,6 +25,34 @@ constexpr long largest_seed = std::numeric_limits<long>::max();
 /// Below, the doubles next to a radius are too few for different ones.
 constexpr double smallest_jitter = 1e-14;
 constexpr double largest_jitter = 0.1;
+
+/// A list of radii from [packing].
+void read_radii_list(Section& section, const std::vector<double>& radii, PreparationOptions& options) {
+    if (radii.empty()) {
+        section.fail("radii", "at least one radius");
+    }
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+        if (!(radii[i] >= smallest_size && radii[i] <= largest_size)) {
+            section.refuse("radii", fmt::format("radii[{}] in [packing] is {}: expected a positive radius, from {} "
+                                                "to {}",
+                                                i, radii[i], smallest_size, largest_size));
+        }
+    }
+    options.radii = radii;
+    section.record("radii", fmt::format("[{}]", fmt::join(radii, ", ")));
+}
+
+/// A file to start from, which leaves nothing to prepare.
+void read_start(Section& section, const std::string& file, Scene& scene, const std::filesystem::path& folder) {
+    for (const char* key : {"jitter", "seed", "aspect"}) {
+        if (section.has(key)) {
+            section.refuse(
+                key, fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
+        }
+    }
+    scene.start = folder / file;
+    section.record("file", toml_text(file));
+}
 
 /// Exactly one way to say where the disks come from.
 void read_packing(Section& section, Scene& scene, const std::filesystem::path& folder) {
@@ -53,33 +81,14 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     }
     PreparationOptions& options = scene.preparation;
     if (file) {
-        for (const char* key : {"jitter", "seed", "aspect"}) {
-            if (section.has(key)) {
-                section.refuse(
-                    key,
-                    fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
-            }
-        }
-        scene.start = folder / *file;
-        section.record("file", toml_text(*file));
+        read_start(section, *file, scene, folder);
         return;
     }
     if (disks) {
         options.disks = static_cast<int>(section.integer("disks", 0, 1, 10'000'000));
         options.diameters = read_law(section);
     } else if (radii) {
-        if (radii->empty()) {
-            section.fail("radii", "at least one radius");
-        }
-        for (std::size_t i = 0; i < radii->size(); ++i) {
-            if (!((*radii)[i] >= smallest_size && (*radii)[i] <= largest_size)) {
-                section.refuse("radii", fmt::format("radii[{}] in [packing] is {}: expected a positive radius, from {} "
-                                                    "to {}",
-                                                    i, (*radii)[i], smallest_size, largest_size));
-            }
-        }
-        options.radii = *radii;
-        section.record("radii", fmt::format("[{}]", fmt::join(*radii, ", ")));
+        read_radii_list(section, *radii, options);
     } else {
         options.radii = read_radii(folder / *radii_file);
         section.record("radii_file", toml_text(*radii_file));

@@ -98,6 +98,10 @@ void add_solvers(Plan& plan, const Scene& scene) {
                        : "true stresses: the sum of sigma ln L takes the place of W");
     plan.add("solver", "random choice of the contact that opens", runs && random,
              random ? "rule = \"random\"" : "the rule is deterministic: rule_seed is not used");
+}
+
+void add_proofs(Plan& plan, const Scene& scene) {
+    const bool runs = !scene.programme.empty();
     const CertifyLevel level = scene.run.certify;
     const auto asked = [&](CertifyLevel least) {
         return runs && level >= least ? fmt::format("certify = \"{}\"", to_string(level))
@@ -118,6 +122,11 @@ void add_solvers(Plan& plan, const Scene& scene) {
     plan.add("proof", "arcs", runs && level >= CertifyLevel::arcs,
              asked(CertifyLevel::arcs) + "; each arc enclosed between its events, no contact missed; 4 to 8 "
                                          "factorisations per arc, more for long ones");
+}
+
+/// What is there for signs and orders that doubles do not tell.
+void add_last_resorts(Plan& plan, const Scene& scene) {
+    const bool runs = !scene.programme.empty();
     plan.add("solver", "multiprecision (MPFR), exact numbers", true,
              "only where double-double does not decide a sign or an order");
     const bool perturbs = runs && scene.run.ties != TiePolicy::stop;
@@ -174,6 +183,8 @@ std::vector<PlanEntry> make_plan(const Scene& scene) {
     Plan plan;
     add_stages(plan, scene);
     add_solvers(plan, scene);
+    add_proofs(plan, scene);
+    add_last_resorts(plan, scene);
     add_outputs(plan, scene);
     return plan.take();
 }

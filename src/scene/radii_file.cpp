@@ -1,8 +1,7 @@
 #include "scene/radii_file.hpp"
 
+#include "io/files.hpp"
 #include "io/rows.hpp"
-
-#include <isostat/io/files.hpp>
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include "scene/section.hpp"
 
-#include <isostat/preparation/radii.hpp>
+#include <isostat/preparation/preparation.hpp>
 
 namespace isostat {
 

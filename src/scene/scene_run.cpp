@@ -3,7 +3,7 @@
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/scene/scene_run.hpp>
+#include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>
 
@@ -139,7 +139,7 @@ SceneEnding ending_of(const Failure& failure, const std::string& where) {
 }
 
 SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directory, const std::string& program,
-                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver<2>& watcher) {
+                       RunCounters& counters, const std::atomic<bool>& stop, RunObserver<2>& further) {
     Programme<2> programme;
     programme.steps = scene.programme;
     programme.source = scene.file;
@@ -155,7 +155,7 @@ SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directo
     }
     RunOptions options = scene.run;
     options.stop = &stop;
-    Both both(directory, watcher);
+    Both both(directory, further);
     std::optional<StateCertifier> certifier;
     if (options.certify >= CertifyLevel::states) {
         certifier.emplace(directory.path(), program, counters, both);

@@ -1,10 +1,10 @@
 #include "scene/seed.hpp"
 
+#include "io/files.hpp"
 #include "io/toml.hpp"
 #include "scene/section.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "contact/words.hpp"
 #include "statics/decisions.hpp"
 
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 /// The approximation of small displacements: gaps linear along an arc, or along a whole trajectory. A shortcut to be
 /// measured against the exact path; nothing in the program relies on it.
 
+#include "contact/candidates.hpp"
 #include "linear/factorisation.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 

@@ -3,7 +3,7 @@
 #include "contact/separation.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

@@ -3,7 +3,8 @@
 /// Damped dynamics of soft grains: the usual shortcut around rigid contacts, here to measure how wrong it is. Nothing
 /// in the program relies on it.
 
-#include <isostat/contact/candidates.hpp>
+#include "contact/candidates.hpp"
+
 #include <isostat/packing/load.hpp>
 
 #include <vector>

@@ -1,4 +1,4 @@
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <btf.h>
 #include <klu.h>

@@ -6,7 +6,7 @@
 #include "statics/statics.hpp"
 
 #include <isostat/core/result.hpp>
-#include <isostat/statics/opening_rule.hpp>
+#include <isostat/statics/rules.hpp>
 
 #include <algorithm>
 #include <cstdint>

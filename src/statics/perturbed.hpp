@@ -5,7 +5,7 @@
 #include "statics/statics.hpp"
 #include "verified/first_order.hpp"
 
-#include <isostat/statics/tie_decision.hpp>
+#include <isostat/statics/rules.hpp>
 
 #include <vector>
 

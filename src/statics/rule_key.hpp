@@ -3,7 +3,7 @@
 
 #include "statics/decisions.hpp"
 
-#include <isostat/core/enclosure.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <cstddef>
 #include <cstdint>

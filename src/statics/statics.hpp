@@ -5,8 +5,8 @@
 #include "rigidity/contact_pattern.hpp"
 #include "verified/force_ladder.hpp"
 
-#include <isostat/core/enclosure.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <memory>

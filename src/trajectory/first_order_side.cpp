@@ -1,7 +1,7 @@
 #include "trajectory/first_order_side.hpp"
 
 #include "contact/words.hpp"
-#include "preparation/backbone.hpp"
+#include "statics/first_order_backbone.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 

@@ -2,13 +2,12 @@
 /// \file
 /// A vertex on the way of floating steering: private to the room.
 
+#include "contact/candidates.hpp"
+#include "core/parallel.hpp"
 #include "linear/factorisation.hpp"
 #include "motion/arc.hpp"
 #include "statics/decisions.hpp"
 #include "trajectory/predicted_vertex.hpp"
-
-#include <isostat/contact/candidates.hpp>
-#include <isostat/core/threads.hpp>
 
 #include <memory>
 #include <optional>

@@ -4,7 +4,7 @@
 #include "trajectory/record.hpp"
 #include "trajectory/vertex.hpp"
 
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

@@ -2,7 +2,9 @@
 /// \file
 /// One piece of work after the other, beside the thread that submits them: private to the room.
 
-#include <isostat/core/threads.hpp>
+#include "core/parallel.hpp"
+
+#include <isostat/core/machine.hpp>
 
 #include <deque>
 #include <functional>

@@ -3,9 +3,9 @@
 
 #include "linear/approximate_inverse.hpp"
 #include "motion/arc.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/packing/load.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -1,9 +1,8 @@
 #pragma once
 // When the factors that steer are made anew, and how: private to the room.
 
+#include "core/parallel.hpp"
 #include "linear/approximate_inverse.hpp"
-
-#include <isostat/core/threads.hpp>
 
 #include <algorithm>
 #include <memory>

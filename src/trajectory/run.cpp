@@ -3,7 +3,7 @@
 #include "trajectory/rearrangement.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>

@@ -2,13 +2,13 @@
 /// \file
 /// Who proposes the arcs of a rearrangement, and what is proposed: private to the room.
 
+#include "contact/candidates.hpp"
 #include "linear/approximate_inverse.hpp"
+#include "rigidity/isostatic.hpp"
 #include "statics/decisions.hpp"
 #include "trajectory/counting.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 #include <isostat/trajectory/records.hpp>
 
 #include <memory>

@@ -173,6 +173,20 @@ const ZeroGaps::value_type* find(const ZeroGaps& pairs, const Contact& contact) 
     return pair == pairs.end() ? nullptr : &*pair;
 }
 
+/// A candidate with an image that is farther away than the grid allows for (C2).
+template <int Dim> std::optional<Failure> too_far(const Packing<Dim>& packing, const std::vector<Contact>& candidates) {
+    constexpr int farthest = 3;
+    const auto far = packing.cell.any() ? std::find_if(candidates.begin(), candidates.end(),
+                                                       [](const Contact& c) { return is_beyond(c, farthest); })
+                                        : candidates.end();
+    if (far == candidates.end()) {
+        return std::nullopt;
+    }
+    return failed(FailureKind::undecided,
+                  "{} may touch, more than {} periods away: write the state with its disks put into the cell",
+                  named<Dim>(*far), farthest);
+}
+
 } // namespace
 
 template <int Dim>
@@ -181,14 +195,8 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
     if (!candidates.covers(packing, 1.001 * enclosure.distance())) {
         candidates = find_candidates(packing, candidate_fraction, candidates.triangulation);
     }
-    constexpr int farthest = 3; // C2
-    const auto far = packing.cell.any() ? std::find_if(candidates.contacts.begin(), candidates.contacts.end(),
-                                                       [](const Contact& c) { return is_beyond(c, farthest); })
-                                        : candidates.contacts.end();
-    if (far != candidates.contacts.end()) {
-        return failed(FailureKind::undecided,
-                      "{} may touch, more than {} periods away: write the state with its disks put into the cell",
-                      named<Dim>(*far), farthest);
+    if (auto far = too_far(packing, candidates.contacts)) {
+        return *far;
     }
     const std::vector<unsigned char>& is_kept = kept.of(candidates.contacts, structure.contacts());
     Gaps gaps;
@@ -218,6 +226,15 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
             look(contact);
         }
     }
+    if (auto tie = settle_gaps(doubtful, known, gaps)) {
+        return *tie;
+    }
+    return gaps;
+}
+
+template <int Dim>
+std::optional<Failure> Vertex<Dim>::settle_gaps(const std::vector<Contact>& doubtful, const ZeroGaps* known,
+                                                Gaps& gaps) const {
     const auto told = [known](const Contact& contact) { // that it touches
         return known == nullptr ? nullptr : find(*known, contact);
     };
@@ -254,7 +271,7 @@ Result<typename Vertex<Dim>::Gaps> Vertex<Dim>::check_gaps(CandidateList<Dim>& c
         return failed(known != nullptr ? FailureKind::undecided : FailureKind::tie,
                       "gaps that are zero beside those of the contacts kept: {}", names);
     }
-    return gaps;
+    return std::nullopt;
 }
 
 template class Vertex<2>;

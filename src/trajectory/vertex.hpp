@@ -2,12 +2,12 @@
 /// \file
 /// A vertex with everything that is known of it: private to the room.
 
+#include "contact/candidates.hpp"
 #include "statics/decisions.hpp"
 #include "statics/perturbed.hpp"
 #include "trajectory/kept_candidates.hpp"
 #include "verified/configuration.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/contact/state.hpp>
 #include <isostat/core/result.hpp>
 
@@ -105,6 +105,9 @@ template <int Dim> class Vertex {
            const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near, std::vector<double> forces);
     static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,
                                                  InverseBoundCache& cache, LadderOptions options);
+    /// Signs of the gaps that double-double left open, with as many bits as the ladder has, put into `gaps`; or the
+    /// tie.
+    std::optional<Failure> settle_gaps(const std::vector<Contact>& doubtful, const ZeroGaps* known, Gaps& gaps) const;
     /// What every vertex needs, or why not.
     std::optional<Failure> lacking();
 };

@@ -94,6 +94,46 @@ double residual_of_forces(const sparse::Matrix<double>& h, const std::vector<dou
     return std::sqrt(square) * slack;
 }
 
+constexpr double good_enough = 0.02; // enters the bound as a relative loss
+constexpr int max_passes = 4;
+
+/// Refines a guess of the motion v with G_- v = 0, of length about 1. Returns an upper bound of its distance from the
+/// line of the true one: at most |G_- v| / kept.
+double refine_mechanism(const sparse::Matrix<double>& h, int slot, const ApproximateInverse& inverse, double kept,
+                        std::vector<double>& mechanism) {
+    std::vector<double> r(mechanism.size());
+    for (int k = 0;; ++k) {
+        const double off = residual_of_mechanism(h, slot, mechanism, r) / kept;
+        if (off < good_enough || k == max_passes) {
+            return off;
+        }
+        inverse.velocities(r);
+        for (std::size_t i = 0; i < r.size(); ++i) {
+            mechanism[i] -= r[i];
+        }
+    }
+}
+
+/// Forces z that balance the mechanism, roughly. Returns an upper bound of |v - H z|_2.
+double balancing_forces(const sparse::Matrix<double>& h, const std::vector<double>& mechanism,
+                        const ApproximateInverse& inverse, std::vector<double>& z) {
+    z = mechanism;
+    inverse.forces(z);
+    std::vector<double> r(z.size());
+    std::vector<double> size(z.size());
+    std::vector<int> terms(z.size());
+    for (int k = 0;; ++k) {
+        const double open = residual_of_forces(h, mechanism, z, r, size, terms);
+        if (open < good_enough || k == max_passes) {
+            return open;
+        }
+        inverse.forces(r);
+        for (std::size_t l = 0; l < z.size(); ++l) {
+            z[l] += r[l];
+        }
+    }
+}
+
 } // namespace
 
 template <int Dim>
@@ -104,7 +144,6 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
         return std::nullopt;
     }
     const sparse::Matrix<double>& h = after.matrix();
-    const auto n = static_cast<std::size_t>(h.cols);
     const auto change = change_of_kept(before.matrix(), h, after.slot());
     const double started_with = bound.carried_from > 0 ? bound.carried_from : bound.sigma_min;
     if (!change || !(bound.sigma_min - *change > worth * started_with)) {
@@ -115,42 +154,14 @@ std::optional<ProvedExchange> carry_bound(const IsostaticStructure<Dim>& before,
     for (double& c : mechanism) {
         c /= size_of_guess;
     }
-    // Distance of the guess from the line of the true null vector: at most |G_- v| / kept.
-    std::vector<double> r(n);
-    double off = 0;
-    constexpr double good_enough = 0.02; // enters the bound as a relative loss
-    constexpr int max_passes = 4;
-    for (int k = 0;; ++k) {
-        off = residual_of_mechanism(h, after.slot(), mechanism, r) / kept;
-        if (off < good_enough || k == max_passes) {
-            break;
-        }
-        inverse.velocities(r);
-        for (std::size_t i = 0; i < n; ++i) {
-            mechanism[i] -= r[i];
-        }
-    }
+    const double off = refine_mechanism(h, after.slot(), inverse, kept, mechanism);
     const double length = euclidean_norm(mechanism);
     if (!(off < 0.1 * length)) {
         return std::nullopt;
     }
     const double along = std::sqrt(length * length - off * off) * (1 - 1e-9); // component on the null vector
-    // Forces that balance the mechanism, roughly.
-    std::vector<double> z = mechanism;
-    inverse.forces(z);
-    std::vector<double> size(n);
-    std::vector<int> terms(n);
-    double open = 0;
-    for (int k = 0;; ++k) {
-        open = residual_of_forces(h, mechanism, z, r, size, terms);
-        if (open < good_enough || k == max_passes) {
-            break;
-        }
-        inverse.forces(r);
-        for (std::size_t l = 0; l < n; ++l) {
-            z[l] += r[l];
-        }
-    }
+    std::vector<double> z;
+    const double open = balancing_forces(h, mechanism, inverse, z);
     const double lost = (off + open) / along * slack;
     if (!(lost < 0.5)) {
         return std::nullopt;

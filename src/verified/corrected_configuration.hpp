@@ -3,10 +3,9 @@
 // certificate. Every constant is counted in V5 and V6 (proofs/true_vertex.md).
 
 #include "contact/separation.hpp"
+#include "rigidity/isostatic.hpp"
 #include "verified/arithmetic.hpp"
 #include "verified/vertex_bounds.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <array>
 #include <vector>

@@ -2,9 +2,8 @@
 // Forces as exact numbers: private to the room.
 
 #include "exact/rational_solver.hpp"
+#include "rigidity/isostatic.hpp"
 #include "verified/force_solution.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <gmpxx.h>
 

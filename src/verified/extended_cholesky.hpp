@@ -2,7 +2,7 @@
 /// \file
 /// The shifted Cholesky test in double-double: private to the room.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 namespace isostat {
 

@@ -208,15 +208,11 @@ template <int Dim> bool FirstOrder<Dim>::moves_as_linkage(ContactId opened, cons
 }
 
 template <int Dim>
-std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
-                                               const std::vector<unsigned char>& structural_zero, const Load<Dim>& load,
-                                               double stress_error) const {
-    const sparse::Matrix<double>& h = structure_->matrix();
-    const DofMap<Dim>& dofs = structure_->dofs();
+typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vector<Enclosure>& f0,
+                                                                  const Load<Dim>& load, double stress_error) const {
     const auto& contacts = structure_->contacts();
     const std::vector<double>& v = change_.v;
-    std::vector<double> right(v.size(), 0.0); // on coordinates
-    std::vector<double> error(v.size(), 0.0);
+    LoadChange on{std::vector<double>(v.size(), 0.0), std::vector<double>(v.size(), 0.0)};
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const Contact& c = contacts[l];
         if (c.kind != ContactKind::disk_disk) {
@@ -241,8 +237,8 @@ std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
             const double turn = (r[e] - x[e] * dot / square) / d;
             const double push = f0[l].value * turn;
             const double unknown = f0[l].radius * (std::abs(turn) + off) + std::abs(f0[l].value) * off;
-            right[k] += sign * push; // column l of H is minus the gradient of the gap
-            error[k] += unknown + 2 * u * (std::abs(push) + std::abs(right[k]));
+            on.value[k] += sign * push; // column l of H is minus the gradient of the gap
+            on.error[k] += unknown + 2 * u * (std::abs(push) + std::abs(on.value[k]));
         });
     }
     if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other length
@@ -251,18 +247,28 @@ std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
             const auto wall = static_cast<std::size_t>(Dim * packing_->disk_count() + a);
             const auto other = static_cast<std::size_t>(Dim * packing_->disk_count() + 1 - a);
             const double stress = load.stress[static_cast<std::size_t>(a)];
-            right[wall] -= stress * v[other];
-            error[wall] += std::abs(stress) * (change_.error + 4 * u * std::abs(v[other])) +
-                           stress_error * (std::abs(v[other]) + change_.error);
+            on.value[wall] -= stress * v[other];
+            on.error[wall] += std::abs(stress) * (change_.error + 4 * u * std::abs(v[other])) +
+                              stress_error * (std::abs(v[other]) + change_.error);
         }
     }
+    return on;
+}
+
+template <int Dim>
+std::vector<Enclosure> FirstOrder<Dim>::forces(const std::vector<Enclosure>& f0,
+                                               const std::vector<unsigned char>& structural_zero, const Load<Dim>& load,
+                                               double stress_error) const {
+    const sparse::Matrix<double>& h = structure_->matrix();
+    const DofMap<Dim>& dofs = structure_->dofs();
+    const LoadChange on = load_change(f0, load, stress_error);
     const auto n = static_cast<std::size_t>(structure_->size());
     std::vector<double> b(n);
     std::vector<double> open(n);
     for (std::size_t mu = 0; mu < n; ++mu) {
         const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
-        b[mu] = right[k];
-        open[mu] = error[k];
+        b[mu] = on.value[k];
+        open[mu] = on.error[k];
     }
     std::vector<double> f1 = b;
     factorisation_->solve_forces(f1);

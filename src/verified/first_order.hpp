@@ -5,7 +5,7 @@
 #include "rigidity/contact_pattern.hpp"
 #include "verified/configuration.hpp"
 
-#include <isostat/core/enclosure.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <optional>
@@ -47,6 +47,13 @@ template <int Dim> class FirstOrder {
     };
     [[nodiscard]] Velocity velocity(const std::vector<double>& approach, double approach_error) const;
     [[nodiscard]] Enclosure gap_rate(const Contact& contact, const Velocity& velocity) const;
+    /// F1 - H1 f0: what turning normals, and walls whose force follows a length, ask the first-order forces to balance.
+    struct LoadChange {
+        std::vector<double> value; ///< on coordinates
+        std::vector<double> error; ///< bound, component by component
+    };
+    [[nodiscard]] LoadChange load_change(const std::vector<Enclosure>& f0, const Load<Dim>& load,
+                                         double stress_error) const;
 
     const Packing<Dim>* packing_;
     const IsostaticStructure<Dim>* structure_;

@@ -6,7 +6,7 @@
 #include "verified/force_solution.hpp"
 #include "verified/order.hpp"
 
-#include <isostat/core/ids.hpp>
+#include <isostat/core/contact.hpp>
 
 #include <memory>
 #include <span>

@@ -4,7 +4,6 @@
 
 #include "verified/inverse_bound.hpp"
 
-#include <isostat/core/enclosure.hpp>
 #include <isostat/core/verdict.hpp>
 
 #include <span>

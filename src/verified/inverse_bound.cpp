@@ -1,6 +1,7 @@
 #include "verified/inverse_bound.hpp"
 
 #include "core/dot.hpp"
+#include "core/parallel.hpp"
 #include "core/roundoff.hpp"
 #include "core/work.hpp"
 #include "verified/block_cholesky.hpp"
@@ -9,8 +10,7 @@
 #include "verified/row_scales.hpp"
 #include "verified/singular_value.hpp"
 
-#include <isostat/core/floating_point.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "verified/enclosed_vertex.hpp"
 #include "verified/order.hpp"
 
-#include <isostat/core/ids.hpp>
+#include <isostat/core/contact.hpp>
 
 #include <array>
 #include <memory>

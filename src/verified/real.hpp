@@ -1,7 +1,7 @@
 #pragma once
 // MPFR numbers with their lifetime, and intervals of them: private to the room.
 
-#include <isostat/core/enclosure.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <mpfr.h>
 

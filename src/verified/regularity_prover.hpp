@@ -1,7 +1,7 @@
 #pragma once
 // The only maker of `RegularityProof`: private to the room, so that each call site is next to its argument.
 
-#include <isostat/rigidity/isostatic.hpp>
+#include "rigidity/isostatic.hpp"
 
 namespace isostat {
 

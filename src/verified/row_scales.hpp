@@ -1,7 +1,7 @@
 #pragma once
 // Scaling of a contact matrix before its smallest singular value is bounded (statement V1): private to the room.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <cmath>
 #include <vector>

@@ -2,8 +2,7 @@
 // The last step of V1, from a factorisation of fl(H) to the exact matrix H: private to the room.
 
 #include "core/roundoff.hpp"
-
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -14,8 +14,7 @@
 #include "bench/shared/stretch.hpp"
 #include "motion/arc.hpp"
 #include "oracle/reference_vertex.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
+#include "rigidity/isostatic.hpp"
 
 #include <fmt/format.h>
 #include <qd/dd_real.h>

@@ -11,11 +11,10 @@
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
+#include "contact/candidates.hpp"
+#include "exact/rank.hpp"
 #include "statics/statics.hpp"
 #include "verified/configuration.hpp"
-
-#include <isostat/contact/candidates.hpp>
-#include <isostat/exact/rank.hpp>
 
 #include <fmt/format.h>
 

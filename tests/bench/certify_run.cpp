@@ -8,10 +8,10 @@
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <fmt/format.h>

@@ -7,10 +7,9 @@
 #include "bench/shared/references.hpp"
 #include "bench/shared/report.hpp"
 #include "bench/shared/stretch.hpp"
-
-#include <isostat/contact/candidates.hpp>
-#include <isostat/exact/rank.hpp>
-#include <isostat/rigidity/isostatic.hpp>
+#include "contact/candidates.hpp"
+#include "exact/rank.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,8 @@
 #include "bench/shared/sample.hpp"
 #include "bench/shared/stretch.hpp"
 
-#include <isostat/checker/verify_run.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/checker/verify.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "support/cells.hpp"
 
 #include <isostat/certificate/inspect.hpp>
-#include <isostat/certificate/inspect_cell.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -1,10 +1,10 @@
 // What is claimed of a true vertex against statements V4 to V7, with a bound of the inverse that is made worse on
 // purpose: then every term of every bound is large enough to be seen.
 #include "certificate/true_vertex.hpp"
+#include "contact/candidates.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -3,7 +3,7 @@
 #include "support/mirror.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -6,7 +6,7 @@
 #include "support/same_sequence.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>

@@ -6,9 +6,9 @@
 #include "support/scratch.hpp"
 #include "support/strut.hpp"
 
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

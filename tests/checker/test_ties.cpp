@@ -4,7 +4,7 @@
 #include "support/mirror.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

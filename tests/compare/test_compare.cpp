@@ -1,7 +1,7 @@
 // A series of LAMMPS against the exact run: what each frame is, where the series departs, and damaged files by name.
+#include "compare/report.hpp"
 #include "compare/series_copy.hpp"
 
-#include <isostat/compare/report.hpp>
 #include <isostat/core/error.hpp>
 
 #include <boost/test/unit_test.hpp>

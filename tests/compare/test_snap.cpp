@@ -2,7 +2,6 @@
 #include "compare/series_copy.hpp"
 
 #include <isostat/compare/snap.hpp>
-#include <isostat/compare/soft_limit.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 

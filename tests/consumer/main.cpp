@@ -18,10 +18,8 @@ int main() {
     if (!inspection.ok() || !inspection.value().equilibrium) {
         return 1;
     }
-    std::printf("%d contacts, isostatic equilibrium: %s, picture of %zu bytes\n",
-                inspection.value().record.contact_count,
-                std::string(to_string(inspection.value().record.verdict)).c_str(),
-                force_picture(state, inspection.value().forces, "").size());
+    std::printf("%d contacts, isostatic equilibrium: %s, table of %zu bytes\n", inspection.value().record.contact_count,
+                std::string(to_string(inspection.value().record.verdict)).c_str(), csv_text(state.packing).size());
     std::fesetround(FE_UPWARD);
     try {
         (void)inspect_vertex(state);

@@ -1,9 +1,8 @@
 #include "../../src/contact/near_pairs.hpp"
+#include "contact/candidates.hpp"
 #include "oracle/gaps.hpp"
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
-
-#include <isostat/contact/candidates.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,8 +1,8 @@
+#include "contact/candidates.hpp"
 #include "contact/images.hpp"
 #include "contact/near_pairs.hpp"
 #include "support/cells.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>
 
 #include <boost/test/unit_test.hpp>

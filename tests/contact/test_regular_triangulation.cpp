@@ -1,9 +1,9 @@
 // The triangulation that lists are read from: made by CGAL, and carried along with disks that move.
+#include "contact/candidates.hpp"
 #include "contact/near_pairs.hpp"
 #include "oracle/packings.hpp"
 #include "support/scale.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -4,7 +4,7 @@
 // records are left.
 #include "contradictions/random_runs.hpp"
 
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,15 +1,16 @@
 // The arithmetic that the bounds count with: any other is noticed, by the thread that computes.
 
+#include "contact/candidates.hpp"
 #include "io/vertex_text.hpp"
+#include "rigidity/isostatic.hpp"
 #include "support/crafted.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/checker/verify.hpp>
-#include <isostat/contact/candidates.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -17,7 +18,6 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/rigidity/counting.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 #include <isostat/scene/scene.hpp>
 
 #include <boost/test/unit_test.hpp>

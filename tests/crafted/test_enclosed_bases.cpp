@@ -1,8 +1,7 @@
 // Enclosed self-stresses and motions against the exact ones, and for lattices that have no exact bases.
 
+#include "crafted/enclosed_bases.hpp"
 #include "crafted/examples.hpp"
-
-#include <isostat/crafted/enclosed_bases.hpp>
 
 #include <boost/test/unit_test.hpp>
 

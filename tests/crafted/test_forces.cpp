@@ -1,10 +1,10 @@
 // Forces, rattlers and degenerate scenes against answers found by other means.
 
+#include "rigidity/isostatic.hpp"
 #include "support/scale.hpp"
 
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,7 +1,8 @@
 // Perturbed radii: crystals become isostatic, isostatic packings keep their contacts.
 
+#include "crafted/genericity.hpp"
+
 #include <isostat/core/error.hpp>
-#include <isostat/crafted/genericity.hpp>
 #include <isostat/crafted/inspection.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -26,10 +26,10 @@ Watch run_shell(
     const std::function<void()>& on_wait = [] {}) {
     const scratch::Folder folder;
     Watch watch;
-    LocalDealer dealer(scripts.size());
-    dealer.on_done = [&](std::size_t number) { watch.done.push_back(number); };
+    LocalQueue queue(scripts.size());
+    queue.on_done = [&](std::size_t number) { watch.done.push_back(number); };
     run_processes(
-        dealer, jobs, stop,
+        queue, jobs, stop,
         [&](std::size_t number) -> std::optional<Command> {
             if (scripts[number].empty()) {
                 return std::nullopt;

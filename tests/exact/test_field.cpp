@@ -1,6 +1,5 @@
+#include "exact/rank.hpp"
 #include "oracle/random.hpp"
-
-#include <isostat/exact/rank.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <gmpxx.h>

@@ -3,7 +3,6 @@
 
 #include "exact/reduction.hpp"
 
-#include <isostat/exact/feasibility.hpp>
 #include <isostat/exact/kernel.hpp>
 
 #include <boost/test/unit_test.hpp>

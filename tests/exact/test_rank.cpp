@@ -1,8 +1,7 @@
 #include "exact/independent_columns.hpp"
+#include "exact/rank.hpp"
 #include "oracle/matrices.hpp"
 #include "support/scale.hpp"
-
-#include <isostat/exact/rank.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,9 +1,9 @@
 // The table and the checks that every row goes through.
+#include "contact/candidates.hpp"
 #include "extreme/catalogue.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/certificate/inspect.hpp>
-#include <isostat/contact/candidates.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>

@@ -3,13 +3,13 @@
 #include "checker/run_records.hpp"
 #include "fuzz/harness.hpp"
 #include "io/certificate_json.hpp"
+#include "io/files.hpp"
 #include "report/tables.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/checker/verify_run.hpp>
+#include <isostat/checker/verify.hpp>
 #include <isostat/io/certificate_file.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -1,10 +1,10 @@
 #include "io/bad_input.hpp"
 #include "io/cell_wrap.hpp"
+#include "io/files.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/crafted/plateau.hpp>
-#include <isostat/io/files.hpp>
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 

@@ -1,8 +1,8 @@
 #include "io/bad_input.hpp"
+#include "io/files.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
-#include <isostat/io/files.hpp>
 #include <isostat/io/state_file.hpp>
 
 #include <fcntl.h>

@@ -1,10 +1,9 @@
 #pragma once
 // Sparse matrices to test with, and their dense exact twins: GMP rationals, and plain elimination mod p.
 
+#include "exact/rank.hpp"
 #include "oracle/random.hpp"
-
-#include <isostat/exact/rank.hpp>
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <gmpxx.h>
 

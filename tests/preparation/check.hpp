@@ -2,8 +2,9 @@
 // What a prepared state must be, checked without the code that made it: all pairs by brute force, forces by dense
 // elimination in long double.
 
+#include "contact/candidates.hpp"
+
 #include <isostat/certificate/inspect.hpp>
-#include <isostat/contact/candidates.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 

@@ -4,7 +4,7 @@
 #include "preparation/soft.hpp"
 
 #include <isostat/certificate/certify.hpp>
-#include <isostat/certificate/inspect_cell.hpp>
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/preparation/preparation.hpp>
 

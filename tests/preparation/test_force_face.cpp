@@ -1,7 +1,6 @@
 // Forces of vertices at which more pairs touch than there are degrees of freedom, against closed forms.
+#include "preparation/force_face.hpp"
 #include "support/mirror.hpp"
-
-#include <isostat/preparation/force_face.hpp>
 
 #include <boost/test/unit_test.hpp>
 

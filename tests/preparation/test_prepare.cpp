@@ -4,7 +4,7 @@
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 

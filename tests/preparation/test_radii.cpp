@@ -2,7 +2,7 @@
 
 #include "io/bad_input.hpp"
 
-#include <isostat/preparation/radii.hpp>
+#include <isostat/preparation/preparation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
+#include "report/picture.hpp"
 #include "support/cells.hpp"
 #include "support/crafted.hpp"
-
-#include <isostat/report/picture.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,6 +1,5 @@
 #include "support/cells.hpp"
 
-#include <isostat/rigidity/cell_counting.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <boost/test/unit_test.hpp>

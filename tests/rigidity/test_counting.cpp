@@ -1,12 +1,12 @@
 // Counting, the gate, and the identities of statics on crafted packings.
 #include "exact/independent_columns.hpp"
+#include "exact/rank.hpp"
 #include "linear/factorisation.hpp"
 #include "support/crafted.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
-#include <isostat/exact/rank.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <boost/test/unit_test.hpp>

@@ -1,8 +1,7 @@
 // The ordering of an exchanged structure, whoever asks for it first.
 
+#include "rigidity/isostatic.hpp"
 #include "support/same_sequence.hpp"
-
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,7 +1,6 @@
 #include "oracle/matrices.hpp"
+#include "sparse/pattern.hpp"
 #include "support/scale.hpp"
-
-#include <isostat/sparse/pattern.hpp>
 
 #include <boost/test/unit_test.hpp>
 

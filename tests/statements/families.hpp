@@ -3,7 +3,6 @@
 // radii.
 
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/packing_file.hpp>
 #include <isostat/exact/kernel.hpp>
 
 #include <array>

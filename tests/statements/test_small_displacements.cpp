@@ -1,10 +1,10 @@
 // T10 under the approximation of small displacements: gaps linear in the displacement, generic; the method is then the
 // primal simplex method. Written out here with dense matrices, independent of the program's own path following.
+#include "contact/candidates.hpp"
 #include "families.hpp"
+#include "rigidity/isostatic.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/preparation/preparation.hpp>
-#include <isostat/rigidity/isostatic.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <eigen3/Eigen/Dense>

@@ -2,7 +2,7 @@
 // The same packing with radii that are really changed by a little: what a rule for ties is compared with.
 
 #include "linear/factorisation.hpp"
-#include "preparation/backbone.hpp"
+#include "statics/first_order_backbone.hpp"
 #include "support/crafted.hpp"
 
 #include <boost/test/unit_test.hpp>

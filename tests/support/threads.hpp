@@ -1,7 +1,7 @@
 #pragma once
 // A number of threads for one scope: back to one when it ends, however it ends.
 
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 struct Threads {
     explicit Threads(int count) { isostat::set_threads(count); }

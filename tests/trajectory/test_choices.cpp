@@ -3,7 +3,7 @@
 #include "support/course.hpp"
 #include "support/mirror.hpp"
 
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <boost/test/unit_test.hpp>
 

@@ -1,4 +1,5 @@
 // Proved bounds against a reference in 100 digits: the bound is never below the error, and it is not useless.
+#include "contact/candidates.hpp"
 #include "oracle/random.hpp"
 #include "statics/statics.hpp"
 #include "support/crafted.hpp"
@@ -6,7 +7,6 @@
 #include "verified/force_ladder.hpp"
 #include "verified/vertex_bounds.hpp"
 
-#include <isostat/contact/candidates.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 

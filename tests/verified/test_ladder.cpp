@@ -1,10 +1,9 @@
 // Every rung of the ladder against exact rationals (FLINT), on thousands of random, special and extreme structures.
+#include "exact/rank.hpp"
 #include "oracle/forces.hpp"
 #include "oracle/structures.hpp"
 #include "verified/force_ladder.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
-
-#include <isostat/exact/rank.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <mpfr.h>

@@ -4,8 +4,10 @@
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/core/result.hpp>
+#include <isostat/rigidity/counting.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +44,33 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
 /// no true vertex near the given place was. Cost: as `certify`.
 template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma);
 
+/// Whether a packing is jammed, and the words why.
+struct JammingAnswer {
+    Verdict verdict = Verdict::undecided;
+    std::string reason;
+};
+
+/// Counts of the stored coordinates, in the order of `strains`; the rest speaks of the true vertex.
+///
+/// *Backbone*: disks and contacts with finite force, known where the forces are. Of it (proofs/cells.md, C6 and C7):
+/// - locally jammed: no disk of it can move alone while the others stay;
+/// - collectively jammed: no motion of its disks in the fixed cell keeps all gaps >= 0, but for translations of all;
+/// - strictly jammed: no motion of its disks and of the cell with a volume that does not grow, but for the same.
+/// `proved` and `refuted` need an equilibrium that is proved: positive forces are the self-stress that such proofs ask
+/// for. Without one all are `undecided`, whatever the counts. Strictly, where every strain of the cell moves: by the
+/// forces under an isotropic pressure, which are known when the tilt bears no shear stress.
+struct CellInspection {
+    StrainCounts all;
+    std::optional<StrainCounts> backbone; ///< none: the forces are not known
+    int backbone_disks = 0;
+    JammingAnswer local, collective, strict;
+};
+
+/// \pre every axis is periodic; `truth` is of this state. Cost: up to eight ranks.
+template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Certification& truth);
+
 extern template Result<std::vector<Interval>> forces_at<2>(State<2>, double);
 extern template Result<Inspection<2>> inspect_vertex<2>(const State<2>&);
+extern template CellInspection inspect_cell<2>(const State<2>&, const Certification&);
 
 } // namespace isostat

@@ -3,7 +3,7 @@
 /// What a file stores of a sample: packing, load and the contacts that define it.
 
 #include <isostat/contact/contact.hpp>
-#include <isostat/core/enclosure.hpp>
+#include <isostat/core/verdict.hpp>
 #include <isostat/packing/load.hpp>
 
 #include <optional>

@@ -1,12 +1,42 @@
 #pragma once
 /// \file
-/// The name of a contact: what touches what. Its geometry is in the room contact.
+/// The names of what a packing consists of: the dimension, disks by number, contacts. The geometry of a contact is in
+/// the room contact.
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 
 namespace isostat {
+
+/// True, or the program does not compile: everything that is a template on Dim asks it.
+template <int Dim> constexpr bool has_dimension() {
+    static_assert(Dim == 2, "Isostat has disks only, Dim = 2: spheres are not written yet");
+    return true;
+}
+
+/// An index with a meaning. `Tag` is never defined; it only keeps the families apart. Cost: that of an int.
+template <class Tag> class Id {
+  public:
+    constexpr Id() = default;
+    constexpr explicit Id(int value) : value_(value) {}
+    constexpr explicit Id(std::size_t value) : value_(static_cast<int>(value)) {}
+    /// The number, from 0; -1 means "none".
+    [[nodiscard]] constexpr int value() const { return value_; }
+    /// The number as a container index. \pre `valid()`.
+    [[nodiscard]] constexpr std::size_t index() const { return static_cast<std::size_t>(value_); }
+    [[nodiscard]] constexpr bool valid() const { return value_ >= 0; }
+    friend constexpr auto operator<=>(Id, Id) = default;
+
+  private:
+    int value_ = -1;
+};
+
+/// A disk of a packing.
+using DiskId = Id<struct DiskTag>;
+/// A position in a contact list, and the column of that contact in H.
+using ContactId = Id<struct ContactTag>;
 
 /// What touches what. `held` is not a contact: it is a coordinate kept at its value (design: power turns).
 enum class ContactKind : std::uint8_t { disk_disk, lower_wall, upper_wall, held };

@@ -3,7 +3,7 @@
 /// The one exception type of the library: bad input and failed input or output. Domain failures (no equilibrium,
 /// undecided tie, overlap) are values (`Result`), programming errors are assertions.
 
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <stdexcept>
 #include <string>

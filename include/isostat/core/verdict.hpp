@@ -1,10 +1,11 @@
 #pragma once
 /// \file
-/// Three-valued answers. A question about real numbers that are known only to a bound has three answers, and the
-/// third must not be usable as one of the other two by accident.
+/// Answers about real numbers that are known to a bound. A question about such numbers has three answers, and the third
+/// must not be usable as one of the other two by accident.
 
-#include <isostat/core/floating_point.hpp>
+#include <isostat/core/machine.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -46,5 +47,20 @@ constexpr std::string_view to_string(Rung rung) {
     }
     return "none";
 }
+
+/// The exact value lies in [value - radius, value + radius]. NaN anywhere means: nothing is known.
+struct Enclosure {
+    double value = 0;
+    double radius = 0;
+    [[nodiscard]] bool positive() const { return value > radius; }
+    [[nodiscard]] bool negative() const { return -value > radius; }
+    /// The sign is proved. False says nothing.
+    [[nodiscard]] bool decided() const { return positive() || negative(); }
+    /// |value| / radius: above 1 the sign is proved. Infinity when the radius is 0 and the value is not.
+    [[nodiscard]] double margin() const { return std::abs(value) / radius; }
+};
+
+/// Enclosure of the difference; the rounding of the subtraction is added to the radius (2 ulp).
+Enclosure operator-(const Enclosure& a, const Enclosure& b);
 
 } // namespace isostat

@@ -4,8 +4,7 @@
 
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
-#include <isostat/crafted/packing_file.hpp>
-#include <isostat/exact/feasibility.hpp>
+#include <isostat/exact/kernel.hpp>
 
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/packing/packing.hpp>
-#include <isostat/rigidity/cell_counting.hpp>
+#include <isostat/rigidity/counting.hpp>
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 /// \file
 /// Real numbers kept exactly: sums of rationals times square roots of rationals (multi-quadratic numbers).
 
-#include <isostat/core/enclosure.hpp>
+#include <isostat/core/verdict.hpp>
 
 #include <compare>
 #include <memory>

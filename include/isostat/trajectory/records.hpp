@@ -6,7 +6,7 @@
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/motion/arc_certificate.hpp>
-#include <isostat/statics/tie_decision.hpp>
+#include <isostat/statics/rules.hpp>
 
 #include <array>
 #include <limits>

@@ -1,6 +1,6 @@
 #include "bench/shared/references.hpp"
 
-#include <isostat/rigidity/isostatic.hpp>
+#include "rigidity/isostatic.hpp"
 
 #include <klu.h>
 #include <umfpack.h>

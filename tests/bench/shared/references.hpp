@@ -1,8 +1,9 @@
 #pragma once
 // The units of the tables: what other codes take for the same matrix.
 
+#include "sparse/pattern.hpp"
+
 #include <isostat/contact/state.hpp>
-#include <isostat/sparse/pattern.hpp>
 
 namespace bench {
 

@@ -2,7 +2,7 @@
 
 #include "bench/shared/references.hpp"
 
-#include <isostat/core/threads.hpp>
+#include <isostat/core/machine.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 

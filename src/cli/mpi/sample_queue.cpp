@@ -1,4 +1,4 @@
-#include "cli/mpi/dealer.hpp"
+#include "cli/mpi/sample_queue.hpp"
 
 #include <mpi.h>
 
@@ -15,29 +15,29 @@ constexpr long none = -1;
 
 } // namespace
 
-MpiDealer::MpiDealer(std::size_t count) : count_(count) {
+MpiQueue::MpiQueue(std::size_t count) : count_(count) {
     MPI_Init(nullptr, nullptr);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &ranks_);
 }
 
-MpiDealer::~MpiDealer() {
+MpiQueue::~MpiQueue() {
     MPI_Finalize();
 }
 
-std::optional<std::size_t> MpiDealer::next() {
+std::optional<std::size_t> MpiQueue::next() {
     if (stopped_) {
         return std::nullopt;
     }
     if (rank_ == 0) {
-        return deal();
+        return take();
     }
     long number = none;
     MPI_Sendrecv(&none, 1, MPI_LONG, 0, ask, &number, 1, MPI_LONG, 0, answer, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     return number == none ? std::nullopt : std::optional(static_cast<std::size_t>(number));
 }
 
-void MpiDealer::done(std::size_t number) {
+void MpiQueue::done(std::size_t number) {
     if (rank_ != 0) {
         const long text = static_cast<long>(number);
         MPI_Send(&text, 1, MPI_LONG, 0, is_done, MPI_COMM_WORLD);
@@ -46,7 +46,7 @@ void MpiDealer::done(std::size_t number) {
     }
 }
 
-void MpiDealer::idle() {
+void MpiQueue::idle() {
     if (rank_ != 0) {
         return;
     }
@@ -60,8 +60,8 @@ void MpiDealer::idle() {
         long number = none;
         MPI_Recv(&number, 1, MPI_LONG, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
         if (status.MPI_TAG == ask) {
-            const auto dealt = deal();
-            const long text = dealt ? static_cast<long>(*dealt) : none;
+            const auto taken = take();
+            const long text = taken ? static_cast<long>(*taken) : none;
             MPI_Send(&text, 1, MPI_LONG, status.MPI_SOURCE, answer, MPI_COMM_WORLD);
         } else if (status.MPI_TAG == is_done && on_done) {
             on_done(static_cast<std::size_t>(number));
@@ -71,12 +71,12 @@ void MpiDealer::idle() {
     }
 }
 
-void MpiDealer::stop() {
+void MpiQueue::stop() {
     stopped_ = true;
     count_ = next_;
 }
 
-void MpiDealer::finish() {
+void MpiQueue::finish() {
     if (rank_ != 0) {
         MPI_Send(&none, 1, MPI_LONG, 0, leave, MPI_COMM_WORLD);
         return;

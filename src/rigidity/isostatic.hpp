@@ -2,12 +2,13 @@
 /// \file
 /// The gate: a contact list whose matrix was proved regular.
 
+#include "core/parallel.hpp"
+#include "sparse/pattern.hpp"
+
 #include <isostat/contact/contact.hpp>
-#include <isostat/core/ids.hpp>
+#include <isostat/core/contact.hpp>
 #include <isostat/core/result.hpp>
-#include <isostat/core/threads.hpp>
 #include <isostat/packing/packing.hpp>
-#include <isostat/sparse/pattern.hpp>
 
 #include <cstdint>
 #include <memory>

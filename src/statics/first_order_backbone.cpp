@@ -1,4 +1,4 @@
-#include "preparation/backbone.hpp"
+#include "statics/first_order_backbone.hpp"
 
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
@@ -26,13 +26,11 @@ double largest(const std::vector<double>& x) {
     return size > 0 ? size : 1;
 }
 
-} // namespace
-
+/// The programme: variables are the velocities of the degrees of freedom, a row per contact says that its first-order
+/// gap is not negative.
 template <int Dim>
-Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
-                                                  const std::vector<Contact>& contacts,
-                                                  const std::vector<double>& rho) {
-    const DofMap<Dim> dofs(packing);
+void load_programme(ClpSimplex& simplex, const Packing<Dim>& packing, const DofMap<Dim>& dofs, const Load<Dim>& load,
+                    const std::vector<Contact>& contacts, const std::vector<double>& rho) {
     const std::vector<double> force = load.external_force(packing);
     const double force_size = largest(force);
     const double small_size = largest(load.infinitesimal) / infinitesimal_weight;
@@ -64,9 +62,19 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
     const std::vector<double> free_high(columns, COIN_DBL_MAX);
     CoinPackedMatrix matrix(true, row.data(), column.data(), value.data(), static_cast<CoinBigIndex>(row.size()));
     matrix.setDimensions(static_cast<int>(contacts.size()), static_cast<int>(columns));
-    ClpSimplex simplex;
     simplex.setLogLevel(0);
     simplex.loadProblem(matrix, free_low.data(), free_high.data(), cost.data(), lower.data(), nullptr);
+}
+
+} // namespace
+
+template <int Dim>
+Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, const Load<Dim>& load,
+                                                  const std::vector<Contact>& contacts,
+                                                  const std::vector<double>& rho) {
+    const DofMap<Dim> dofs(packing);
+    ClpSimplex simplex;
+    load_programme(simplex, packing, dofs, load, contacts, rho);
     simplex.setPrimalTolerance(tolerance);
     simplex.setDualTolerance(tolerance);
     simplex.setPerturbation(100); // none: the basis is the result
@@ -86,11 +94,11 @@ Result<std::vector<Contact>> first_order_backbone(const Packing<Dim>& packing, c
             kept.push_back(contacts[l]);
         }
     }
-    if (kept.size() != columns) {
+    if (static_cast<int>(kept.size()) != dofs.dof_count()) {
         return failed(FailureKind::undecided,
                       "the linear programme of the perturbed start kept {} of {} contacts, expected N_f = "
                       "{}: no isostatic choice was found (there may be mechanisms)",
-                      kept.size(), contacts.size(), columns);
+                      kept.size(), contacts.size(), dofs.dof_count());
     }
     return kept;
 }

@@ -1,19 +1,19 @@
 #pragma once
 /// \file
-/// Samples dealt over the ranks of `mpirun`. Only in builds with ISOSTAT_WITH_MPI.
+/// Samples handed out to the ranks of `mpirun`. Only in builds with ISOSTAT_WITH_MPI.
 
-#include "ensemble/dealer.hpp"
+#include "ensemble/sample_queue.hpp"
 
 namespace isostat::cli {
 
 /// Initialises MPI; the destructor finalises it. Ranks ask rank 0 for numbers, which answers in `idle` and `finish`: a
 /// rank that is slower or has longer samples gets fewer.
-class MpiDealer final : public Dealer {
+class MpiQueue final : public SampleQueue {
   public:
-    explicit MpiDealer(std::size_t count);
-    ~MpiDealer() override;
-    MpiDealer(const MpiDealer&) = delete;
-    MpiDealer& operator=(const MpiDealer&) = delete;
+    explicit MpiQueue(std::size_t count);
+    ~MpiQueue() override;
+    MpiQueue(const MpiQueue&) = delete;
+    MpiQueue& operator=(const MpiQueue&) = delete;
     [[nodiscard]] int rank() const override { return rank_; }
     [[nodiscard]] int ranks() const override { return ranks_; }
     std::optional<std::size_t> next() override;
@@ -23,7 +23,7 @@ class MpiDealer final : public Dealer {
     void finish() override;
 
   private:
-    std::optional<std::size_t> deal() { return next_ < count_ ? std::optional(next_++) : std::nullopt; }
+    std::optional<std::size_t> take() { return next_ < count_ ? std::optional(next_++) : std::nullopt; }
     std::size_t count_;
     std::size_t next_ = 0;
     int rank_ = 0;

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// The arithmetic that every error bound counts with: IEEE double, each operation rounded to nearest, subnormal numbers
-/// kept, no product fused into a sum. Headers with numbers include this one, so that a compiler told to compute in
-/// another way refuses them.
+/// What the library asks of the machine. Threads; and the arithmetic that every error bound counts with: IEEE double,
+/// each operation rounded to nearest, subnormal numbers kept, no product fused into a sum. Headers with numbers include
+/// this one, so that a compiler told to compute in another way refuses them.
 
 #include <cfloat>
 
@@ -26,5 +26,16 @@ const char* floating_point_defect();
 /// Throws `Error(internal)` when there is a defect. Called where work begins: by the program, by the readers, by every
 /// function that proves something, and by each thread for each piece of work that it takes over.
 void require_floating_point();
+
+/// Threads of this process, the calling one included: results have the same bits for any number. \pre count >= 1. Not
+/// while work is going on. Before the first call: 1, so that a library does not start threads unasked. Where the system
+/// refuses threads, fewer do the work.
+void set_threads(int count);
+
+/// What `set_threads` asked for.
+int threads();
+
+/// Cores that this process may use (its affinity mask), at least 1.
+int available_cores();
 
 } // namespace isostat

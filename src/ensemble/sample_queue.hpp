@@ -9,10 +9,10 @@
 namespace isostat {
 
 /// Gives out the numbers 0 ... count - 1, each of them once over all ranks, and hears what became of them.
-class Dealer {
+class SampleQueue {
   public:
-    virtual ~Dealer() = default;
-    /// Rank 0 deals, reports and merges.
+    virtual ~SampleQueue() = default;
+    /// Rank 0 hands out, reports and merges.
     [[nodiscard]] virtual int rank() const = 0;
     [[nodiscard]] virtual int ranks() const = 0;
     /// The next number for this rank; none when all are given out (or `stop` was called).
@@ -30,9 +30,9 @@ class Dealer {
 };
 
 /// One process.
-class LocalDealer final : public Dealer {
+class LocalQueue final : public SampleQueue {
   public:
-    explicit LocalDealer(std::size_t count) : count_(count) {}
+    explicit LocalQueue(std::size_t count) : count_(count) {}
     [[nodiscard]] int rank() const override { return 0; }
     [[nodiscard]] int ranks() const override { return 1; }
     std::optional<std::size_t> next() override {

@@ -1,15 +1,15 @@
-#include "checker/foresight.hpp"
+#include "checker/lookahead.hpp"
 
 namespace isostat::checker {
 
-bool Foresight::in_order(std::size_t event) const {
+bool Lookahead::in_order(std::size_t event) const {
     const EventRecord& record = records_.events[event];
     const auto row = static_cast<std::size_t>(record.equilibrium);
     return record.arc > 1 || (record.equilibrium > 0 && row < records_.equilibria.size() &&
                               records_.equilibria[row].integer("previous") == record.equilibrium - 1);
 }
 
-void Foresight::look_ahead(const Place& from, std::size_t event) {
+void Lookahead::look_ahead(const Place& from, std::size_t event) {
     if (threads() < 2 || from.state->perturbation) {
         return; // one thread gains nothing; with ties settled at first order the next vertex depends on proofs
     }
@@ -31,7 +31,7 @@ void Foresight::look_ahead(const Place& from, std::size_t event) {
     }
 }
 
-Foresight::Start Foresight::start_at(const Place& from, const ExactLoad& load) {
+Lookahead::Start Lookahead::start_at(const Place& from, const ExactLoad& load) {
     Start start{{*from.state, from.evidence->solver}, load};
     for (const Gap& gap : from.touching) {
         start.at.touching.push_back(gap.pair);
@@ -39,7 +39,7 @@ Foresight::Start Foresight::start_at(const Place& from, const ExactLoad& load) {
     return start;
 }
 
-Arrival Foresight::arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load) {
+Arrival Lookahead::arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load) {
     if (ahead_.empty() || ahead_.front().event != event || !(ahead_.front().opening == opening)) {
         forget();
         ahead_.push_back(arc_of(start_at(from, load), event, opening));
@@ -49,12 +49,12 @@ Arrival Foresight::arrive(const Place& from, std::size_t event, const Opening& o
     return end_of(std::move(arc));
 }
 
-Arrival Foresight::arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load) {
+Arrival Lookahead::arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load) {
     forget();
     return end_of(arc_of(start_at(from, load), event, opening, true));
 }
 
-Arrival Foresight::end_of(Arc arc) {
+Arrival Lookahead::end_of(Arc arc) {
     Arrival arrival{std::move(arc.followed), {}, {}};
     if (arrival.followed.end) {
         Proved proved = arc.proof.get();
@@ -67,7 +67,7 @@ Arrival Foresight::end_of(Arc arc) {
     return arrival;
 }
 
-Foresight::Arc Foresight::arc_of(const Start& from, std::size_t event, const Opening& opening, bool slowly) const {
+Lookahead::Arc Lookahead::arc_of(const Start& from, std::size_t event, const Opening& opening, bool slowly) const {
     const EventRecord& record = records_.events[event];
     Arc arc{event, opening, follow(from.at, record, opening, slowly), from.at.state, {}};
     Load<2>& load = arc.end.load;

@@ -11,7 +11,7 @@
 
 namespace isostat {
 
-template <int Dim> class RegularTriangulation; // private
+template <int Dim> class RegularTriangulation;
 
 /// Of the smallest radius: how far candidates are listed, and the most that statement T6 allows.
 inline constexpr double candidate_fraction = 0.8;

@@ -11,17 +11,6 @@
 
 namespace isostat {
 
-/// Threads of this process for `parallel_pieces`, the calling one included. \pre count >= 1. Not while work is going
-/// on. Before the first call: 1, so that a library does not start threads unasked. Where the system refuses threads,
-/// fewer do the work.
-void set_threads(int count);
-
-/// What `set_threads` asked for.
-int threads();
-
-/// Cores that this process may use (its affinity mask), at least 1.
-int available_cores();
-
 /// work(0), ..., work(pieces - 1), each exactly once, in any order and on any thread; returns when all are done. The
 /// pieces must not touch each other's results. An exception of a piece is thrown again here, after the others have
 /// ended (that of the lowest piece that threw; later ones may not have been begun). Called from within a piece, or

@@ -1,9 +1,16 @@
-// The claims about the structure and the existence of the true vertex, and stability, which follows from the others.
+// One function per claim: its proof again, by other means; and the order in which they are asked. Those about forces
+// and about the load have their own files.
 #include "checker/evidence.hpp"
+#include "checker/gaps.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace isostat::checker {
+
+namespace {
 
 ClaimCheck judge_counting(const Evidence& evidence, const CountingClaim& claim, bool at_vertex) {
     ClaimCheck check{.claim = "counting", .claimed = true};
@@ -78,6 +85,65 @@ ClaimCheck judge_vertex(const Evidence& evidence, const VertexClaim& claim, bool
         fmt::format("{}; claimed within {:.3g}, the only one within {:.3g}", found, claim.radius, claim.unique_radius));
 }
 
+/// Gaps that differ by less are equally near: 2^-46 of the largest coordinate or radius.
+Rational equally_near(const State<2>& state) {
+    double largest = 0;
+    const Packing<2>& packing = state.packing;
+    for (std::size_t k = 0; k < packing.q.size(); ++k) {
+        const std::size_t axis = k % 2;
+        const bool exists =
+            k < 2 * packing.radius.size() || packing.cell.any() || packing.walls.upper[axis] != WallKind::absent;
+        largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
+    }
+    for (const double r : packing.radius) {
+        largest = std::max(largest, r);
+    }
+    return Rational(largest) * power_of_two(-46);
+}
+
+constexpr const char* too_far = "the cell is too sheared, or a disk too far from it, for a search among its images";
+
+ClaimCheck judge_gaps(const Evidence& evidence, const GapsClaim& claim) {
+    ClaimCheck check{.claim = "gaps", .claimed = true};
+    if (const auto pair = fixed_overlap(evidence.problem, evidence.state)) {
+        return pair->i < 0
+                   ? answer(check, Verdict::undecided, too_far)
+                   : answer(check, Verdict::refuted, fmt::format("{} overlap, and cannot move", to_string<2>(*pair)));
+    }
+    const std::vector<Gap> near = smallest_gaps(evidence.problem, evidence.state, evidence.vertex);
+    if (near.empty()) {
+        return answer(check, std::isinf(claim.smallest) ? Verdict::proved : Verdict::refuted,
+                      "there is no pair besides the contacts");
+    }
+    if (near[0].pair.i < 0) {
+        return answer(check, Verdict::undecided, too_far);
+    }
+    const Gap* nearest = near.data();
+    const Gap* named = nullptr;
+    Rational least = near[0].value.lower;
+    for (const Gap& gap : near) {
+        nearest = gap.value.upper < nearest->value.upper ? &gap : nearest;
+        named = gap.pair == claim.where ? &gap : named;
+        least = std::min(least, gap.value.lower);
+    }
+    const Rational& most = nearest->value.upper;
+    check.numbers = {{"smallest_gap", rounded_down(least)}};
+    const std::string found =
+        fmt::format("smallest gap in {}, of {}", shown(Range(least, most)), to_string<2>(nearest->pair));
+    if (std::isinf(claim.smallest) || most < Rational(claim.smallest)) {
+        return answer(check, Verdict::refuted, fmt::format("{}; claimed >= {:.17g}", found, claim.smallest));
+    }
+    const Rational room = equally_near(evidence.state);
+    if (named == nullptr || named->value.lower > most + room) {
+        return answer(check, Verdict::refuted, fmt::format("{}; claimed of {}", found, to_string<2>(claim.where)));
+    }
+    if (least >= Rational(claim.smallest) && named->value.upper <= least + room) {
+        return answer(check, Verdict::proved, found);
+    }
+    return answer(check, Verdict::undecided,
+                  fmt::format("{}; claimed >= {:.17g} of {}", found, claim.smallest, to_string<2>(claim.where)));
+}
+
 /// True stresses: the load is minus the volume times the gradient of sum sigma_a ln L_a (S5) when no disk carries a
 /// finite force of its own.
 bool has_volume_potential(const Evidence& evidence) {
@@ -118,6 +184,58 @@ ClaimCheck judge_stability(const Evidence& evidence, const std::vector<ClaimChec
     return answer(check, Verdict::proved,
                   fmt::format("strict local minimum of {}: regular, all forces positive",
                               nominal ? "the potential" : "sum sigma_a ln L_a"));
+}
+
+/// What stands in the way of judging a claim at all; empty: nothing.
+std::string obstacle(const Evidence& evidence, bool claimed) {
+    return claimed ? evidence.problem.unsupported : "not claimed";
+}
+
+/// The same for a claim about the true vertex, which must be claimed and proved to exist where it is claimed.
+std::string vertex_obstacle(const Evidence& evidence, const CertificateClaims& claims, bool claimed, bool exists) {
+    const std::string first = obstacle(evidence, claimed);
+    if (!first.empty()) {
+        return first;
+    }
+    if (!claims.vertex) {
+        return "speaks of a true vertex, which is not claimed";
+    }
+    if (!evidence.vertex.found) {
+        return "speaks of a true vertex, which is not proved: " + evidence.why_no_vertex();
+    }
+    return exists ? "" : "speaks of a true vertex within the claimed radius, which is not proved";
+}
+
+} // namespace
+
+Verification judge(const CertificateClaims& claims, const Evidence& evidence) {
+    Verification result;
+    bool exists = false;
+    const auto add = [&result](const char* name, bool claimed, const std::string& why_not, const auto& ask) {
+        result.checks.push_back(why_not.empty() ? ask()
+                                                : ClaimCheck{.claim = name, .claimed = claimed, .detail = why_not});
+    };
+    const auto about_vertex = [&](bool claimed) { return vertex_obstacle(evidence, claims, claimed, exists); };
+
+    const bool counting = claims.counting.has_value();
+    add("counting", counting, obstacle(evidence, counting),
+        [&] { return judge_counting(evidence, *claims.counting, claims.vertex.has_value()); });
+    const bool vertex = claims.vertex.has_value();
+    add("vertex", vertex, obstacle(evidence, vertex), [&] { return judge_vertex(evidence, *claims.vertex, exists); });
+    const bool forces = claims.forces.has_value();
+    add("forces", forces, about_vertex(forces), [&] { return judge_forces(evidence, *claims.forces); });
+    const bool gaps = claims.gaps.has_value();
+    add("gaps", gaps, about_vertex(gaps), [&] { return judge_gaps(evidence, *claims.gaps); });
+    const bool load = claims.load_interval.has_value();
+    add("load_interval", load, about_vertex(load),
+        [&] { return judge_load_interval(evidence, *claims.load_interval); });
+    add("stable", claims.stable, about_vertex(claims.stable), [&] { return judge_stability(evidence, result.checks); });
+
+    result.verdict = Verdict::proved;
+    for (const ClaimCheck& check : result.checks) {
+        result.verdict = both(result.verdict, check.verdict);
+    }
+    return result;
 }
 
 } // namespace isostat::checker

@@ -2,7 +2,7 @@
 /// \file
 /// Exact rank of a sparse matrix by elimination over a prime field.
 
-#include <isostat/sparse/pattern.hpp>
+#include "sparse/pattern.hpp"
 
 #include <cstdint>
 #include <span>

@@ -5,8 +5,7 @@
 
 #include "checker/recorded_arc.hpp"
 #include "checker/replay.hpp"
-
-#include <isostat/core/threads.hpp>
+#include "core/parallel.hpp"
 
 #include <deque>
 
@@ -19,15 +18,15 @@ struct Arrival {
     Place place;
 };
 
-class Foresight {
+class Lookahead {
   public:
     /// The records must outlive it.
-    explicit Foresight(const RunRecords& records) : records_(records) {}
+    explicit Lookahead(const RunRecords& records) : records_(records) {}
 
     /// Follows arcs that come after a vertex, `event` the first of them, as if every record were right. What is wrong
     /// or unusual is left to its turn.
     void look_ahead(const Place& from, std::size_t event);
-    /// The arc of a record. What was foreseen is taken if it began in the same way and from the same vertex.
+    /// The arc of a record. What was followed ahead is taken if it began in the same way and from the same vertex.
     Arrival arrive(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);
     /// The same in steps a sixteenth as long, and shorter ones near the end.
     Arrival arrive_slowly(const Place& from, std::size_t event, const Opening& opening, const ExactLoad& load);

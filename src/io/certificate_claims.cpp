@@ -1,0 +1,264 @@
+// The claims of a certificate as text, both ways.
+#include "io/certificate_json.hpp"
+#include "io/contact_json.hpp"
+
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace isostat::json {
+
+namespace {
+
+Json number(double value, const char* field) {
+    if (std::isnan(value)) {
+        throw Error(ErrorKind::bad_input, fmt::format("{} is NaN: expected a number in a certificate", field));
+    }
+    if (std::isinf(value)) {
+        return value > 0 ? "inf" : "-inf";
+    }
+    return value;
+}
+
+Json interval(const Interval& value, const char* field) {
+    Json ends = Json::array({number(value.lower, field), number(value.upper, field)});
+    if (!(value.lower <= value.upper)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{} is [{}, {}]: expected ends in increasing order", field, value.lower, value.upper));
+    }
+    return ends;
+}
+
+Json intervals(const std::vector<Interval>& values, const char* field) {
+    Json list = Json::array();
+    for (const Interval& value : values) {
+        list.push_back(interval(value, field));
+    }
+    return list;
+}
+
+Json claim(const CountingClaim& counting) {
+    return {{"dof_count", counting.dof_count},
+            {"contact_count", counting.contact_count},
+            {"rank", counting.rank},
+            {"hyperstaticity", counting.hyperstaticity},
+            {"hypostaticity", counting.hypostaticity},
+            {"rung", to_string(counting.rung)}};
+}
+
+Json claim(const VertexClaim& vertex) {
+    if (!std::isfinite(vertex.radius)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("vertex.radius is {}: expected a finite number in a certificate", vertex.radius));
+    }
+    return {{"radius", vertex.radius},
+            {"unique_radius", number(vertex.unique_radius, "vertex.unique_radius")},
+            {"rung", to_string(vertex.rung)}};
+}
+
+Json claim(const ForcesClaim& forces) {
+    return {{"finite", intervals(forces.finite, "forces.finite")},
+            {"structural_zeros", forces.structural_zeros},
+            {"infinitesimal", intervals(forces.infinitesimal, "forces.infinitesimal")},
+            {"rung", to_string(forces.rung)}};
+}
+
+Json claim(const GapsClaim& gaps) {
+    return {{"smallest", number(gaps.smallest, "gaps.smallest")},
+            {"where", std::isinf(gaps.smallest) ? Json(nullptr) : contact_to_json<2>(gaps.where)},
+            {"rung", to_string(gaps.rung)}};
+}
+
+Json claim(const LoadEndClaim& end) {
+    if (end.unbounded) {
+        return {{"unbounded", true}};
+    }
+    return {{"unbounded", false},
+            {"stress", interval(end.stress, "load_interval")},
+            {"opens", contact_to_json<2>(end.opens)}};
+}
+
+Json claim(const LoadIntervalClaim& load) {
+    return {{"low", claim(load.low)}, {"high", claim(load.high)}, {"rung", to_string(load.rung)}};
+}
+
+template <class Claim> Json or_absent(const std::optional<Claim>& value) {
+    return value ? claim(*value) : Json(nullptr);
+}
+
+/// The rungs that can settle a claim, by their words.
+constexpr std::array<Rung, 5> settling_rungs{Rung::combinatorial, Rung::double_bound, Rung::double_double,
+                                             Rung::multiprecision, Rung::exact};
+
+double number_or_infinity(const Field& field) {
+    if (field.value() == "inf") {
+        return std::numeric_limits<double>::infinity();
+    }
+    if (field.value() == "-inf") {
+        return -std::numeric_limits<double>::infinity();
+    }
+    return field.number();
+}
+
+Interval interval_of(const Field& field) {
+    field.require_size(2, "[lower, upper]");
+    const Interval interval{number_or_infinity(field.at(std::size_t{0})), number_or_infinity(field.at(std::size_t{1}))};
+    if (!(interval.lower <= interval.upper)) {
+        field.fail("[lower, upper] with lower <= upper");
+    }
+    return interval;
+}
+
+std::vector<Interval> intervals_of(const Field& field, std::size_t count, const std::string& what) {
+    field.require_size(count, what);
+    std::vector<Interval> intervals;
+    for (std::size_t k = 0; k < count; ++k) {
+        intervals.push_back(interval_of(field.at(k)));
+    }
+    return intervals;
+}
+
+Rung rung_of(const Field& field) {
+    for (const Rung rung : settling_rungs) {
+        if (field.string() == to_string(rung)) {
+            return rung;
+        }
+    }
+    field.fail("\"combinatorial\", \"double\", \"double-double\", \"mpfr\" or \"exact\"");
+}
+
+int count_of(const Field& field) {
+    const long count = field.integer();
+    if (count < 0 || count > std::numeric_limits<int>::max()) {
+        field.fail("a number of things, from 0");
+    }
+    return static_cast<int>(count);
+}
+
+CountingClaim counting_of(const Field& field) {
+    field.only({"dof_count", "contact_count", "rank", "hyperstaticity", "hypostaticity", "rung"});
+    return {count_of(field.at("dof_count")),      count_of(field.at("contact_count")), count_of(field.at("rank")),
+            count_of(field.at("hyperstaticity")), count_of(field.at("hypostaticity")), rung_of(field.at("rung"))};
+}
+
+VertexClaim vertex_of(const Field& field) {
+    field.only({"radius", "unique_radius", "rung"});
+    const VertexClaim claim{field.at("radius").number(), number_or_infinity(field.at("unique_radius")),
+                            rung_of(field.at("rung"))};
+    if (!(claim.radius >= 0)) {
+        field.at("radius").fail("a radius >= 0");
+    }
+    if (!(claim.unique_radius >= claim.radius)) {
+        field.at("unique_radius").fail("a radius >= vertex.radius");
+    }
+    return claim;
+}
+
+ForcesClaim forces_of(const Field& field, std::size_t contacts) {
+    field.only({"finite", "structural_zeros", "infinitesimal", "rung"});
+    ForcesClaim claim;
+    claim.finite = intervals_of(field.at("finite"), contacts, "one interval per contact");
+    const Field zeros = field.at("structural_zeros");
+    for (std::size_t k = 0; k < zeros.size(); ++k) {
+        const long position = zeros.at(k).integer();
+        const long least = k == 0 ? 0 : claim.structural_zeros.back() + 1L;
+        if (position < least || position >= static_cast<long>(contacts)) {
+            zeros.at(k).fail(fmt::format("increasing positions in the contact list, from {} to {} here", least,
+                                         static_cast<long>(contacts) - 1));
+        }
+        claim.structural_zeros.push_back(static_cast<int>(position));
+    }
+    claim.infinitesimal = intervals_of(field.at("infinitesimal"), zeros.size(), "one interval per structural zero");
+    claim.rung = rung_of(field.at("rung"));
+    return claim;
+}
+
+GapsClaim gaps_of(const Field& field, const Packing<2>& packing) {
+    field.only({"smallest", "where", "rung"});
+    GapsClaim claim;
+    claim.smallest = number_or_infinity(field.at("smallest"));
+    if (!(claim.smallest > 0)) {
+        field.at("smallest").fail("a positive gap");
+    }
+    const Field where = field.at("where");
+    if (std::isinf(claim.smallest) != where.value().is_null()) {
+        where.fail("a pair of grains, or null exactly when the smallest gap is infinite");
+    }
+    if (!where.value().is_null()) {
+        claim.where = contact_from_json<2>(where, packing);
+        if (claim.where.kind == ContactKind::held) {
+            where.fail("a pair of grains");
+        }
+    }
+    claim.rung = rung_of(field.at("rung"));
+    return claim;
+}
+
+LoadEndClaim load_end_of(const Field& field, const State<2>& state) {
+    LoadEndClaim claim;
+    claim.unbounded = field.at("unbounded").boolean();
+    if (claim.unbounded) {
+        field.only({"unbounded"});
+        return claim;
+    }
+    field.only({"unbounded", "stress", "opens"});
+    claim.stress = interval_of(field.at("stress"));
+    claim.opens = contact_from_json<2>(field.at("opens"), state.packing);
+    if (std::find(state.contacts.begin(), state.contacts.end(), claim.opens) == state.contacts.end()) {
+        field.at("opens").fail("a contact of the state");
+    }
+    return claim;
+}
+
+LoadIntervalClaim load_interval_of(const Field& field, const State<2>& state) {
+    field.only({"low", "high", "rung"});
+    return {load_end_of(field.at("low"), state), load_end_of(field.at("high"), state), rung_of(field.at("rung"))};
+}
+
+} // namespace
+
+std::string claims_text(const CertificateClaims& claims) {
+    std::string text = "\"claims\": {\n";
+    text += "  " + member_line("counting", or_absent(claims.counting)) + ",\n";
+    text += "  " + member_line("vertex", or_absent(claims.vertex)) + ",\n";
+    text += "  " + member_line("forces", or_absent(claims.forces)) + ",\n";
+    text += "  " + member_line("gaps", or_absent(claims.gaps)) + ",\n";
+    text += "  " + member_line("load_interval", or_absent(claims.load_interval)) + ",\n";
+    text += "  " + member_line("stable", claims.stable) + ",\n";
+    text += "  " + member_line("undecided", claims.undecided) + "\n}";
+    return text;
+}
+
+CertificateClaims claims_of(const Field& field, const State<2>& state) {
+    field.only({"counting", "vertex", "forces", "gaps", "load_interval", "stable", "undecided"});
+    const auto given = [&field](const char* name) { return !field.at(name).value().is_null(); };
+    CertificateClaims claims;
+    if (given("counting")) {
+        claims.counting = counting_of(field.at("counting"));
+    }
+    if (given("vertex")) {
+        claims.vertex = vertex_of(field.at("vertex"));
+    }
+    if (given("forces")) {
+        claims.forces = forces_of(field.at("forces"), state.contacts.size());
+    }
+    if (given("gaps")) {
+        claims.gaps = gaps_of(field.at("gaps"), state.packing);
+    }
+    if (given("load_interval")) {
+        claims.load_interval = load_interval_of(field.at("load_interval"), state);
+    }
+    claims.stable = field.at("stable").boolean();
+    const Field undecided = field.at("undecided");
+    for (std::size_t k = 0; k < undecided.size(); ++k) {
+        claims.undecided.push_back(undecided.at(k).string());
+    }
+    return claims;
+}
+
+} // namespace isostat::json

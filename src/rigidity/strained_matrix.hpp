@@ -1,0 +1,24 @@
+#pragma once
+/// \file
+/// The contact matrix of a periodic packing with the strain of its cell, exactly.
+
+#include "sparse/pattern.hpp"
+
+#include <isostat/rigidity/counting.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace isostat {
+
+/// Rows: the degrees of freedom of the disks that are not fixed, without those of the pinned one; then the entries of
+/// E. Column of a contact: |r| times minus the gradient of its gap, exactly, mod 2^61 - 1: r on the disks as in
+/// `exact_contact_matrix`, - r_a (A m)_b on E_ab. \pre every axis is periodic
+template <int Dim>
+sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
+                                                    Strain strain);
+
+extern template sparse::Matrix<std::uint64_t> exact_strained_matrix<2>(const Packing<2>&, const std::vector<Contact>&,
+                                                                       Strain);
+
+} // namespace isostat

@@ -40,12 +40,10 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     return {disks, disks};
 }
 
-/// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
-/// fail. None when `opened` is one of them, or a held coordinate.
+/// a with row of the pair = sum a_l (row of l), in double.
 template <int Dim>
-std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                              const Factorisation& factorisation, ContactId opened, const Contact& pair) {
-    constexpr double carries = 1e-8;
+std::vector<double> shares_of(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                              const Factorisation& factorisation, const Contact& pair) {
     const GapGradient<Dim> g = gap_gradient(packing, pair);
     std::vector<double> a(static_cast<std::size_t>(structure.size()), 0.0);
     for (int k = 0; k < g.count; ++k) {
@@ -56,6 +54,16 @@ std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStruct
         }
     }
     factorisation.solve_forces(a);
+    return a;
+}
+
+/// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
+/// fail. None when `opened` is one of them, or a held coordinate.
+template <int Dim>
+std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                              const Factorisation& factorisation, ContactId opened, const Contact& pair) {
+    constexpr double carries = 1e-8;
+    const std::vector<double> a = shares_of(packing, structure, factorisation, pair);
     std::vector<Contact> list;
     for (std::size_t l = 0; l < a.size(); ++l) {
         if (std::abs(a[l]) > carries) {
@@ -68,15 +76,10 @@ std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStruct
     return list;
 }
 
-/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
-/// tried: the grains whose contacts carry the force of the pair, and all contacts among them.
+/// All contacts that stay closed when `opened` opens, among the grains of some contacts and of a pair.
 template <int Dim>
-bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-           ContactId opened, const Contact& pair) {
-    const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
-    if (carrying.empty()) {
-        return false;
-    }
+std::vector<Contact> closed_among(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                  ContactId opened, const std::vector<Contact>& some, const Contact& pair) {
     const auto& contacts = structure.contacts();
     const std::size_t disks = packing.radius.size();
     std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
@@ -86,7 +89,7 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
         }
     };
     join(pair);
-    std::for_each(carrying.begin(), carrying.end(), join);
+    std::for_each(some.begin(), some.end(), join);
     std::vector<Contact> among;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto grains = grains_of(contacts[l], disks);
@@ -95,7 +98,17 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
             among.push_back(contacts[l]);
         }
     }
-    return moves_as_one(structure.dofs(), packing.disk_count(), among, pair);
+    return among;
+}
+
+/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
+/// tried: the grains whose contacts carry the force of the pair, and all contacts among them.
+template <int Dim>
+bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+           ContactId opened, const Contact& pair) {
+    const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
+    return !carrying.empty() && moves_as_one(structure.dofs(), packing.disk_count(),
+                                             closed_among(packing, structure, opened, carrying, pair), pair);
 }
 
 } // namespace
@@ -202,9 +215,16 @@ template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int directi
     return told ? rate : Enclosure{0, 0};
 }
 
+template <int Dim> std::vector<double> FirstOrder<Dim>::shares(const Contact& contact) const {
+    return shares_of(*packing_, *structure_, *factorisation_, contact);
+}
+
 template <int Dim> bool FirstOrder<Dim>::moves_as_linkage(ContactId opened, const Contact& contact) const {
     const std::vector<Contact> carrying = carriers(*packing_, *structure_, *factorisation_, opened, contact);
-    return !carrying.empty() && isostat::moves_as_linkage(*packing_, carrying, contact);
+    return !carrying.empty() &&
+           (isostat::moves_as_linkage(*packing_, carrying, contact) ||
+            isostat::moves_as_linkage(*packing_, closed_among(*packing_, *structure_, opened, carrying, contact),
+                                      contact));
 }
 
 template <int Dim>

@@ -28,6 +28,10 @@ Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, 
 /// and the names do.
 bool comes_first(const Place& place, std::size_t chosen, std::size_t other, const ChoiceRule& rule);
 
+/// An exchange of the list where a pair that touches would overlap at second order when `opened` opens (C3; K23):
+/// `place` has the list before it.
+Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened);
+
 /// The first-order terms that a record gives are not told apart.
 bool tied_at_first_order(const TieRecord& tie);
 

@@ -46,7 +46,7 @@ struct FirstMotion {
 
 } // namespace
 
-Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
+Velocities::Solution Velocities::solve(const std::vector<Rational>& b, const Rational& off) const {
     const Problem& problem = e_.problem;
     Solution result;
     result.middle.assign(problem.dof_of.size(), Rational(0));
@@ -54,12 +54,13 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
     for (const Rational& rate : b) {
         largest = std::max<Rational>(largest, abs(rate));
     }
-    if (largest == 0) {
+    if (largest == 0 && off == 0) {
         return result;
     }
     // The fastest coordinate is above b / the largest entry of A: 120 bits below that are kept.
     const long scale = e_.solver->scale(problem);
-    const long shift = 120 + scale + problem.fine - bits(largest.get_num()) + bits(largest.get_den());
+    const long shift =
+        120 + scale + problem.fine - (largest == 0 ? 0 : bits(largest.get_num()) - bits(largest.get_den()));
     FirstMotion motion{problem, e_.vertex.middle, {}, std::vector<Integer>(problem.dof_of.size())};
     for (const Rational& rate : b) {
         motion.target.push_back(floor_of(rate, shift - problem.fine)); // by less than one
@@ -89,7 +90,7 @@ Velocities::Solution Velocities::solve(const std::vector<Rational>& b) const {
         result.middle[k] = dyadic(motion.v[k], -shift);
     }
     result.radius = short_above(e_.inverse.row_sum / (1 - e_.vertex.row_residual) *
-                                (open + problem.row_curvature() * e_.vertex.radius * fastest));
+                                (open + off + problem.row_curvature() * e_.vertex.radius * fastest));
     return result;
 }
 
@@ -121,6 +122,39 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     return pair.kind == ContactKind::lower_wall
                ? x
                : component(e_.problem, v, 2 * static_cast<std::size_t>(e_.problem.disks) + j) - x;
+}
+
+/// |D v|^2: what the velocity adds to F'' of a pair of disks.
+Range Velocities::turning(const Contact& pair, const Solution& v) const {
+    Range sum(Rational(0));
+    if (pair.kind == ContactKind::disk_disk) {
+        for (std::size_t a = 0; a < 2; ++a) {
+            const Range w = component(e_.problem, v, 2 * static_cast<std::size_t>(pair.i) + a) -
+                            component(e_.problem, v, 2 * static_cast<std::size_t>(pair.j) + a);
+            sum = sum + w * w;
+        }
+    }
+    return sum;
+}
+
+Range Velocities::bend(const Contact& pair, std::size_t opened, const Solution& v) const {
+    const auto& contacts = e_.state.contacts;
+    std::vector<Rational> b;
+    Rational off = 0;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const bool grows = l == opened && contacts[l].kind == ContactKind::disk_disk; // F'' = h'^2 + D h''
+        const Range second = Range(Rational(grows ? 1 : 0)) - turning(contacts[l], v);
+        b.push_back((second.lower + second.upper) / 2);
+        off = std::max<Rational>(off, (second.upper - second.lower) / 2);
+    }
+    const Range along = gap_rate(pair, solve(b, off));
+    if (pair.kind != ContactKind::disk_disk) {
+        return along;
+    }
+    const Range rate = gap_rate(pair, v);
+    const Rational distance = Rational(e_.state.packing.radius[static_cast<std::size_t>(pair.i)]) +
+                              Rational(e_.state.packing.radius[static_cast<std::size_t>(pair.j)]);
+    return along + (turning(pair, v) - rate * rate) / Range(distance);
 }
 
 FirstOrder::FirstOrder(const Evidence& evidence, const std::vector<double>& rho)

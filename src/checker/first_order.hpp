@@ -15,14 +15,18 @@ class Velocities {
         std::vector<Rational> middle; ///< per coordinate; 0 where it does not move
         Rational radius;              ///< of every component that moves
     };
-    /// `b` per contact: the rate of F_l.
-    [[nodiscard]] Solution solve(const std::vector<Rational>& b) const;
+    /// `b` per contact: the rate of F_l, each known to `off`.
+    [[nodiscard]] Solution solve(const std::vector<Rational>& b, const Rational& off = 0) const;
     /// The motion on which the gap of a contact changes at rate `direction` and all others do not.
     [[nodiscard]] Solution opening(std::size_t contact, int direction) const;
     /// The rate of the gap of a pair that touches at the true vertex.
     [[nodiscard]] Range gap_rate(const Contact& pair, const Solution& v) const;
+    /// The second derivative of that gap with respect to the gap of `opened`, v = opening(opened, 1); all other
+    /// contacts stay closed (K23).
+    [[nodiscard]] Range bend(const Contact& pair, std::size_t opened, const Solution& v) const;
 
   private:
+    [[nodiscard]] Range turning(const Contact& pair, const Solution& v) const;
     const Evidence& e_;
 };
 

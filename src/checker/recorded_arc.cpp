@@ -30,6 +30,28 @@ double multiplier(const State<2>& state, const Solver& solver, std::size_t conta
 
 } // namespace
 
+bool exchanges_list(const TieRecord& tie) {
+    return tie.what == "second order";
+}
+
+std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event) {
+    std::vector<Contact> list = state.contacts;
+    for (const TieRecord& tie : event.ties) {
+        if (!exchanges_list(tie)) {
+            continue;
+        }
+        const std::optional<Contact> enters = contact_named(tie.contact, state.packing);
+        const std::optional<Contact> leaves = contact_named(tie.against, state.packing);
+        const auto at = leaves ? std::find(list.begin(), list.end(), *leaves) : list.end();
+        if (!enters || enters->kind == ContactKind::held || at == list.end() || tie.against == event.opened ||
+            leaves->kind == ContactKind::held || std::find(list.begin(), list.end(), *enters) != list.end()) {
+            return {};
+        }
+        *at = *enters;
+    }
+    return list;
+}
+
 std::optional<Opening> opening_of(const ArcStart& start, const EventRecord& event) {
     const State<2>& from = start.state;
     const std::optional<Contact> opened = contact_named(event.opened, from.packing);

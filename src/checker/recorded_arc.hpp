@@ -22,6 +22,12 @@ struct ArcStart {
     std::vector<Contact> touching{}; ///< pairs that touch there without being contacts
 };
 
+/// Before a contact opens, lists may have been exchanged where they are (C3, proofs/degenerate.md): by entries of this
+/// kind.
+bool exchanges_list(const TieRecord& tie);
+/// The list with which the contact opens; nothing: the record names what cannot be exchanged.
+std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event);
+
 /// How the record says that its arc begins, as far as doubles tell; nothing: something is unusual.
 std::optional<Opening> opening_of(const ArcStart& from, const EventRecord& event);
 

@@ -116,7 +116,8 @@ Objections check_end(const Place& from, const Place& to, const EventRecord& even
 /// The pairs that touch at the start of an arc: those that close again on a way of length O(eps) end it there.
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction);
 /// First-order terms that the record names, against those found. `from`: start of the arc, `to`: its end.
-Objections check_ties(const Place& from, const Place& to, const EventRecord& event, std::size_t opened, int direction);
+Objections check_ties(const Place& base, const Place& from, const Place& to, const EventRecord& event,
+                      std::size_t opened, int direction);
 
 /// At a power turn: the multiplier of the coordinate held is 0 up to the accuracy of its place, and it is the fastest.
 Objections check_turn(const Place& place, const EventRecord& event, bool rattles);

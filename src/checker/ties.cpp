@@ -1,6 +1,7 @@
 // First-order decisions that records name.
 #include "checker/choice.hpp"
 #include "checker/limit.hpp"
+#include "checker/recorded_arc.hpp"
 
 #include <fmt/format.h>
 
@@ -60,9 +61,19 @@ std::optional<Range> first_limit(const Place& from, const std::string& name, std
     return slopes[*l].has_zero() ? std::nullopt : std::optional<Range>(limit_rate(first, slopes[*l]));
 }
 
+/// A recorded enclosure and a proved one have a number in common.
+bool meets(const Range& range, const Rational& value, double bound) {
+    return range.lower <= value + Rational(bound) && range.upper >= value - Rational(bound);
+}
+
+bool is_finite(double value, double bound) {
+    return std::isfinite(value) && std::isfinite(bound) && bound >= 0;
+}
+
 /// An arc whose ties are looked at.
 struct Arc {
-    const Place& from;
+    const Place& base; ///< where it starts, with the list that was reached
+    const Place& from; ///< the same with the list that opens
     const Place& to;
     std::size_t opened;
     int direction;
@@ -76,7 +87,7 @@ struct Arc {
             return first_way(from, name, opened, direction);
         }
         if (what == "limit" || what == "zero all along") {
-            return first_limit(from, name, opened, what != "limit");
+            return first_limit(base, name, opened, what != "limit");
         }
         const auto l = position(to, name);
         return l && to.first ? std::optional<Range>(to.first_force[*l]) : std::nullopt;
@@ -89,7 +100,7 @@ struct Arc {
             return std::abs(tie.other) <= tie.other_bound;
         }
         const bool all_along = tie.what == "zero all along";
-        const Place& place = all_along ? from : to;
+        const Place& place = all_along ? base : to;
         const auto l = position(place, tie.contact);
         return l && (all_along ? place.evidence->slopes() : place.evidence->forces)[*l].has_zero();
     }
@@ -103,11 +114,8 @@ struct Arc {
         }
         // Keys of held coordinates and of the rule least_negative are kept with the other sign.
         const bool either = tie.what == "opening";
-        const auto meets = [&](const Rational& middle) {
-            return range->lower <= middle + Rational(bound) && range->upper >= middle - Rational(bound);
-        };
-        if (!(bound >= 0) || !std::isfinite(value) || !std::isfinite(bound) ||
-            !(meets(Rational(value)) || (either && meets(Rational(-value))))) {
+        if (!is_finite(value, bound) ||
+            !(meets(*range, Rational(value), bound) || (either && meets(*range, Rational(-value), bound)))) {
             return Objection{true, fmt::format("the first-order term of {} ('{}') is {} +- {}, found in {}", name,
                                                tie.what, value, bound, shown(*range))};
         }
@@ -116,6 +124,41 @@ struct Arc {
 };
 
 } // namespace
+
+Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened) {
+    const auto wrong = [&](const std::string& what) {
+        return Objection{true,
+                         fmt::format("{} enters the list at second order for {}: {}", tie.contact, tie.against, what)};
+    };
+    const auto pair = std::find_if(place.touching.begin(), place.touching.end(),
+                                   [&](const Gap& gap) { return to_string<2>(gap.pair) == tie.contact; });
+    const auto leaves = position(place, tie.against);
+    if (!place.chooses || !leaves || *leaves == opened || pair == place.touching.end() || place.is_held(opened)) {
+        return wrong("no such exchange is possible");
+    }
+    const Velocities& velocities = place.first->velocities();
+    const Velocities::Solution motion = velocities.opening(opened, +1);
+    const Range rate = velocities.gap_rate(pair->pair, motion);
+    if (!rate.has_zero()) {
+        return wrong("the rate of its gap is in " + shown(rate));
+    }
+    const Range bend = velocities.bend(pair->pair, opened, motion);
+    const Range share = velocities.gap_rate(pair->pair, velocities.opening(*leaves, +1));
+    if (bend.positive() || share.negative()) {
+        return wrong(fmt::format("second derivative of its gap in {}, share in {}", shown(bend), shown(share)));
+    }
+    if (!bend.negative() || !share.positive()) {
+        return Objection{false, fmt::format("{} enters the list at second order, its second derivative in {}, share in "
+                                            "{}: not told from 0",
+                                            tie.contact, shown(bend), shown(share))};
+    }
+    if (!is_finite(tie.first, tie.first_bound) || !is_finite(tie.other, tie.other_bound) ||
+        !meets(bend, Rational(tie.first), tie.first_bound) || !meets(share, Rational(tie.other), tie.other_bound)) {
+        return wrong(fmt::format("second derivative {} +- {} found in {}, share {} +- {} found in {}", tie.first,
+                                 tie.first_bound, shown(bend), tie.other, tie.other_bound, shown(share)));
+    }
+    return {};
+}
 
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction) {
     const bool said =
@@ -155,9 +198,13 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
     return {};
 }
 
-Objections check_ties(const Place& from, const Place& to, const EventRecord& event, std::size_t opened, int direction) {
-    const Arc arc{from, to, opened, direction};
+Objections check_ties(const Place& base, const Place& from, const Place& to, const EventRecord& event,
+                      std::size_t opened, int direction) {
+    const Arc arc{base, from, to, opened, direction};
     for (const TieRecord& tie : event.ties) {
+        if (exchanges_list(tie)) {
+            continue; // `check_exchange`
+        }
         if (!tie.choice.empty() && !to.chooses) {
             return Objection{true,
                              fmt::format("'{}' of {} is chosen, in a run that chooses nothing", tie.what, tie.contact)};

@@ -239,6 +239,10 @@ class Replay {
             return false;
         }
         find_direction(event, *change);
+        Place base;
+        if (!exchange_lists(base, event, *change)) {
+            return false;
+        }
         if (here_.first && !judged(check_step(here_, event, change->position, change->direction), event.where)) {
             return false;
         }
@@ -251,7 +255,7 @@ class Replay {
                                 : stays    ? stay(next, event, *change)
                                 : certain_ ? arrive_certainly(next, event, *change)
                                            : arrive(next, event, *change, false);
-        if (!check_arrival(next, event, *change, open)) {
+        if (!check_arrival(base.state ? base : here_, next, event, *change, open)) {
             return false;
         }
         result_.ties_checked += static_cast<int>(event.ties.size());
@@ -269,7 +273,11 @@ class Replay {
     std::optional<Change> change_of(const EventRecord& event) {
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
-        const std::vector<Contact>& contacts = here_.state->contacts;
+        const auto list = list_that_opens(*here_.state, event);
+        if (!expect(list.has_value(), event.where, "an exchange of contacts at second order that cannot be")) {
+            return {};
+        }
+        const std::vector<Contact>& contacts = *list;
         const auto at = opened ? std::find(contacts.begin(), contacts.end(), *opened) : contacts.end();
         const bool closed_before =
             closed && closed != opened && std::find(contacts.begin(), contacts.end(), *closed) != contacts.end();
@@ -284,6 +292,34 @@ class Replay {
             return {};
         }
         return Change{static_cast<std::size_t>(at - contacts.begin()), *closed, false, +1, here_.load};
+    }
+
+    /// The list that opens in the place of the one that was reached, which stays in `base` if it is another.
+    bool exchange_lists(Place& base, const EventRecord& event, const Change& change) {
+        for (const TieRecord& tie : event.ties) {
+            if (!exchanges_list(tie)) {
+                continue;
+            }
+            if (!expect(here_.first != nullptr, event.where,
+                        "an exchange at second order without a direction of radii") ||
+                !judged(check_exchange(here_, tie, change.position), event.where)) {
+                return false;
+            }
+            State<2> state = *here_.state;
+            std::replace(state.contacts.begin(), state.contacts.end(), *contact_named(tie.against, state.packing),
+                         *contact_named(tie.contact, state.packing));
+            state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
+            Place next;
+            next.chooses = records_.chooses;
+            if (!judged(make_place(std::move(state), next, change.load), event.where)) {
+                return false;
+            }
+            Place before = std::exchange(here_, std::move(next));
+            if (!base.state) {
+                base = std::move(before);
+            }
+        }
+        return true;
     }
 
     /// Does the limit, or the rule, open what the record says? At a limit `change` gets its exact load.
@@ -368,8 +404,10 @@ class Replay {
         return missing ? missing : Objection{false, "the end was not found"};
     }
 
-    /// Is the end what the record says? `open`: what its place leaves open.
-    bool check_arrival(Place& next, const EventRecord& event, const Change& change, Objections open) {
+    /// Is the end what the record says? `open`: what its place leaves open; `base`: where the arc starts, with the list
+    /// that was reached.
+    bool check_arrival(const Place& base, Place& next, const EventRecord& event, const Change& change,
+                       Objections open) {
         if (open && !open->wrong && next.evidence && next.evidence->vertex.found && !next.first) {
             open = sharpen(next, most_digits);
         }
@@ -377,7 +415,7 @@ class Replay {
                judged(asked([&] { return check_end(here_, next, event, change.rattles); }, &next), event.where) &&
                (!event.power_turn || judged(check_turn(next, event, change.rattles), event.where)) &&
                (!next.first ||
-                judged(check_ties(here_, next, event, change.position, change.direction), event.where)) &&
+                judged(check_ties(base, here_, next, event, change.position, change.direction), event.where)) &&
                expect(next.first != nullptr || event.ties.empty(), event.where,
                       "first-order decisions in a run without a direction of the radii");
     }

@@ -133,6 +133,14 @@ class Walk {
     }
 
     bool step(const EventRecord& event) {
+        const auto list = list_that_opens(*here_, event);
+        if (!list) {
+            return false;
+        }
+        if (here_->contacts != *list) {
+            here_->contacts = *list;
+            solver_.reset();
+        }
         if (!solver_) {
             solver_ = std::make_shared<Solver>(Structure(here_->packing, here_->contacts), here_->packing.q);
         }

@@ -2,7 +2,6 @@
 
 #include "trajectory/prover.hpp"
 #include "trajectory/record.hpp"
-#include "trajectory/ties.hpp"
 
 namespace isostat {
 
@@ -26,35 +25,28 @@ template <int Dim> bool new_factors_are_due(const Vertex<Dim>& vertex, double co
 
 template <int Dim>
 BoundedSteering<Dim>::BoundedSteering(std::shared_ptr<const Vertex<Dim>> from, ArcStart<Dim> start,
-                                      double step_fraction, CandidateList<Dim>& candidates)
+                                      Result<Departure<Dim>> departure, double step_fraction,
+                                      CandidateList<Dim>& candidates)
     : vertex_(std::move(from)), from_(*vertex_), start_(std::move(start)), candidates_(candidates),
-      opened_(from_.structure.contacts()[start_.opening.contact.index()]) {
+      opened_(from_.structure.contacts()[start_.opening.contact.index()]), departure_(std::move(departure)) {
     arc_options_.step_fraction = step_fraction;
+    if (departure_.ok()) {
+        next_to_ = departure_.value().closes;
+        arc_options_.leaving = departure_.value().leaving;
+        arc_options_.resting = departure_.value().resting;
+    }
 }
 
-/// What becomes of pairs that touch, and of rattlers.
-template <int Dim> std::optional<Failure> BoundedSteering<Dim>::depart() {
+/// Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their own
+/// block costs next to nothing.
+template <int Dim> void BoundedSteering<Dim>::refresh() {
     const Opening& opening = start_.opening;
-    if (from_.perturbed && !from_.perturbed->touching.empty()) {
-        auto departure = isostat::depart(from_, opening.contact, opening.direction);
-        if (!departure.ok()) {
-            return departure.failure();
-        }
-        next_to_ = departure.value().closes;
-        departure_ = departure.value().settled;
-        arc_options_.leaving = departure.value().leaving;
-        resting_ = departure.value().resting;
-        arc_options_.resting = resting_;
-    }
-    // Rattlers turn far from arc to arc: factors taken over predict their curvature badly. They are few, so that their
-    // own block costs next to nothing.
     if (opening.infinitesimal && !from_.factorisation.is_fresh()) {
         fresh_ = Factorisation::of_moving_block(from_.structure, static_cast<int>(opening.contact.index()));
         if (!fresh_) {
             fresh_.emplace(from_.structure);
         }
     }
-    return std::nullopt;
 }
 
 template <int Dim> Result<Arc<Dim>> BoundedSteering<Dim>::attempt() {
@@ -75,10 +67,11 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
     if (proposals_ == most_proposals) {
         return Failure{FailureKind::undecided, "the order of the first contacts that close was not settled"};
     }
+    if (!departure_.ok()) {
+        return departure_.failure();
+    }
     if (proposals_++ == 0) {
-        if (auto failure = depart()) {
-            return *failure;
-        }
+        refresh();
     }
     auto arc = attempt();
     // An arc that fails, or ends where it began, may only have been predicted badly by old factors.
@@ -105,8 +98,8 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
     arc.end = std::move(path.end);
     arc.tangent = std::move(path.tangent);
     arc.stays = next_to_.has_value();
-    arc.resting = resting_;
-    arc.settled = departure_;
+    arc.resting = departure_.value().resting;
+    arc.settled = departure_.value().settled;
     arc.contacts = IsostaticStructure<Dim>::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
     if (arc.contacts) {
         const ApproximateInverse& old = from_.factorisation.approximate();

@@ -160,8 +160,34 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
     if (proof.closed_before) {
         return std::nullopt;
     }
-    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, arc.resting, overlaps_at_first_order(from)},
-                  found.value());
+    const bool overlapped = arc.relists || overlaps_at_first_order(from);
+    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, arc.resting, overlapped}, found.value());
+}
+
+template <int Dim>
+Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::exchange(const Vertex<Dim>& from, const ListExchange& exchange,
+                                                           const LimitLoad<Dim>& at) {
+    ArcProposal<Dim> arc;
+    arc.record.opened = from.structure.contacts()[exchange.leaves.index()];
+    arc.record.closed = exchange.enters;
+    arc.opening.contact = exchange.leaves;
+    arc.end = from.packing;
+    arc.stays = arc.relists = true;
+    arc.contacts = IsostaticStructure<Dim>::exchange(from.structure, arc.end, exchange.leaves, exchange.enters);
+    if (arc.contacts) {
+        arc.approximate = from.factorisation.approximate().exchanged(arc.contacts->slot(), arc.contacts->matrix());
+        arc.cost_before = from.cost_before;
+    }
+    ArcProof<Dim> proof;
+    proof.record = arc.record;
+    if (auto failure = reach(proof, from, arc, at)) {
+        return *failure;
+    }
+    if (proof.closed_before) {
+        return failed(FailureKind::undecided, "where {} gives way to {}: {} overlap", named<Dim>(arc.record.opened),
+                      named<Dim>(arc.record.closed), named<Dim>(*proof.closed_before));
+    }
+    return proof.vertex;
 }
 
 /// Pairs that touch at the end, at first order.

@@ -80,6 +80,10 @@ template <int Dim> class Prover {
     ArcProof<Dim> prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, const Opening& opening,
                         const LimitLoad<Dim>& at);
 
+    /// The same configuration with another list (C3). Failures: those of `Vertex::exchanged` and `arrive`.
+    Result<std::shared_ptr<Vertex<Dim>>> exchange(const Vertex<Dim>& from, const ListExchange& exchange,
+                                                  const LimitLoad<Dim>& at);
+
     /// Whether a vertex, proved from nothing, is an equilibrium. `limit`: that the rearrangement started from; `zeros`:
     /// forces that vanish in the base; `hold`: held just now. The list of candidates is that at the vertex.
     EndProof<Dim> prove_end(typename Vertex<Dim>::Beginning beginning, const LimitLoad<Dim>& limit, ContactId hold,

@@ -132,12 +132,43 @@ template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steer
         if (arcs_ == 0) {
             take_log(*here_, start.settled);
         }
-        return std::make_unique<BoundedSteering<Dim>>(here_, std::move(start), options().step_fraction,
-                                                      prover_.candidates());
+        auto departure = depart();
+        start.settled.insert(start.settled.end(), relisted_.begin(), relisted_.end());
+        return std::make_unique<BoundedSteering<Dim>>(here_, std::move(start), std::move(departure),
+                                                      options().step_fraction, prover_.candidates());
     }
     return std::make_unique<FloatingSteering<Dim>>(
         typename FloatingSteering<Dim>::Origin{here_->packing, here_->structure, here_->factorisation}, start,
         options(), prover_.candidates(), ahead_);
+}
+
+/// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
+template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
+    constexpr std::size_t most_exchanges = 1000;
+    if (!here_->perturbed || here_->perturbed->touching.empty()) {
+        return Departure<Dim>{};
+    }
+    while (true) {
+        auto departure = isostat::depart(*here_, opening_.contact, opening_.direction);
+        if (!departure.ok() || !departure.value().overlaps) {
+            return departure;
+        }
+        const BentPair& bent = *departure.value().overlaps;
+        if (relisted_.size() >= most_exchanges) {
+            return failed(FailureKind::undecided, "{} lists were exchanged where pairs touch, and {} would overlap",
+                          relisted_.size(), named<Dim>(bent.pair));
+        }
+        const auto exchange = give_way(*here_, opening_, bent, at_.stress());
+        if (!exchange.ok()) {
+            return exchange.failure();
+        }
+        auto next = prover_.exchange(*here_, exchange.value(), at_);
+        if (!next.ok()) {
+            return next.failure();
+        }
+        here_ = std::move(next.value());
+        relisted_.push_back(exchange.value().decision);
+    }
 }
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::propose(Proofs& proofs) {
@@ -193,6 +224,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
         return std::nullopt;
     }
     const OpeningDecision& decision = proof.next->value();
+    relisted_.clear();
     last_hold_ = record.power_turn ? opening_.contact : ContactId();
     resting_.clear();
     by_steps_ = false;

@@ -54,6 +54,7 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> follow_arcs();
     [[nodiscard]] std::optional<Failure> cap() const;
     std::unique_ptr<Steering<Dim>> make_steering();
+    Result<Departure<Dim>> depart();
     using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
     std::optional<Failure> propose(Proofs& proofs);
     static std::optional<ArcProof<Dim>> unproved(ArcProposal<Dim>& arc);
@@ -77,6 +78,7 @@ template <int Dim> class Rearrangement {
     std::shared_ptr<Vertex<Dim>> here_; ///< the last vertex that was proved
     Opening opening_;                   ///< what opens there
     std::string kind_;
+    std::vector<TieDecision> relisted_; ///< lists exchanged at `here_` since it was reached
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;
     ContactId last_hold_;            ///< of the power turn at `here_`

@@ -51,6 +51,7 @@ template <int Dim> struct ArcProposal {
     bool ahead = false;                             ///< nothing is proved of its start either
     /// With first-order terms:
     bool stays = false;                  ///< the way is of length O(eps)
+    bool relists = false;                ///< only the list changes, and pairs that touch may overlap at first order
     std::vector<Contact> resting;        ///< pairs that touch all along
     std::vector<TieDecision> settled;    ///< ties at the start of the way
     std::optional<SteeredEnd<Dim>> last; ///< no force is negative at the end

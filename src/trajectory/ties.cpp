@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isostat {
 
@@ -63,10 +64,11 @@ template <int Dim> class Terms {
         const Enclosure rate = first_.rate(opened, direction, pair);
         return rate.decided() || rate.radius == 0 ? rate : precise_.rate(opened, direction, pair);
     }
-    /// Proved to separate though its rate vanishes, as far as `tie_bits` tell: by the second derivative.
-    bool bends_away(const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
-        return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits) &&
-               precise_.bend(opened, direction, pair).positive();
+    /// Second derivative of a gap whose rate vanishes as far as `tie_bits` tell; otherwise nothing is known.
+    Enclosure bend(const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
+        return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits)
+                   ? precise_.bend(opened, direction, pair)
+                   : Enclosure{0, std::numeric_limits<double>::infinity()};
     }
     Enclosure gap(const Contact& pair) {
         const Enclosure c = first_.gap(pair);
@@ -126,23 +128,32 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
     Departure<Dim> departure;
     std::vector<Closing> closing;
     const bool chooses = from.perturbed->statics.chooses();
+    const bool held = from.structure.contacts()[opened.index()].kind == ContactKind::held;
     Terms<Dim> terms(from);
     for (const auto& [contact, c] : from.perturbed->touching) {
         const Enclosure rate = terms.rate(opened, direction, contact);
         if (rate.value == 0 && rate.radius == 0) {
             departure.resting.push_back(contact);
-        } else if (rate.positive() ||
-                   (!rate.negative() && chooses && terms.bends_away(rate, opened, direction, contact))) {
+            continue;
+        }
+        const bool asks = chooses && !rate.decided();
+        const Enclosure bend = asks ? terms.bend(rate, opened, direction, contact) : Enclosure{0, 0};
+        if (rate.positive() || bend.positive()) {
             departure.leaving.push_back(contact);
         } else if (rate.negative()) {
             closing.push_back({contact, length_of_way(c, rate)});
+        } else if (bend.negative() && !held) {
+            if (!departure.overlaps || contact < departure.overlaps->pair) {
+                departure.overlaps = BentPair{contact, rate, bend};
+            }
         } else if (chooses && from.perturbed->first.moves_as_linkage(opened, contact)) {
             departure.resting.push_back(contact);
         } else {
             return failed(FailureKind::undecided,
                           "{} touch without being a contact, and the rate of their gap when {} opens is "
-                          "not told from 0: {}; pairs that move alike are not followed at first order",
-                          named<Dim>(contact), named<Dim>(from.structure.contacts()[opened.index()]), shown(rate));
+                          "not told from 0: {}; pairs that move alike are not followed at first order{}",
+                          named<Dim>(contact), named<Dim>(from.structure.contacts()[opened.index()]), shown(rate),
+                          asks ? words(" (second derivative {})", shown(bend)) : Words());
         }
     }
     if (closing.empty()) {
@@ -153,6 +164,7 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
         return first.failure();
     }
     departure.closes = first.value();
+    departure.overlaps.reset();
     return departure;
 }
 
@@ -185,7 +197,7 @@ template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& 
             // Simple roots (P3): going back opens both.
             const Enclosure back =
                 closed.kind == ContactKind::held ? Enclosure{0, 0} : terms.rate(way.slot, +1, contact);
-            touched = chooses && !back.positive() && terms.bends_away(back, way.slot, +1, contact); // it grazes
+            touched = chooses && !back.positive() && terms.bend(back, way.slot, +1, contact).positive(); // it grazes
             if (!back.positive() && !touched) {
                 return failed(FailureKind::undecided,
                               "{} touch where {} closes, but are not proved to close there: the rate of "

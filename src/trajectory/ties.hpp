@@ -2,7 +2,7 @@
 /// \file
 /// Ties under `ties = "perturb"` and `"choose"`: the decisions of a vertex at first order in eps. Private to the room.
 
-#include "trajectory/vertex.hpp"
+#include "trajectory/second_order.hpp"
 
 namespace isostat {
 
@@ -13,6 +13,9 @@ template <int Dim> struct Departure {
         resting; ///< they keep touching: grains of one body (R1), or where ties are chosen a linkage (R2)
     /// The first pair to close, when some approach: the way is of length O(eps), the configuration stays.
     std::optional<Contact> closes;
+    /// Where ties are chosen and none closes: the first by name of the pairs that would overlap at second order. Before
+    /// anything moves the list is to be another (C3).
+    std::optional<BentPair> overlaps;
     std::vector<TieDecision> settled;
 };
 /// Failure: `undecided` when a rate is not told from 0, or two pairs close at once to first order; where ties are

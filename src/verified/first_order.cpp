@@ -40,12 +40,10 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     return {disks, disks};
 }
 
-/// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
-/// fail. None when `opened` is one of them, or a held coordinate.
+/// a with row of the pair = sum a_l (row of l), in double.
 template <int Dim>
-std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
-                              const Factorisation& factorisation, ContactId opened, const Contact& pair) {
-    constexpr double carries = 1e-8;
+std::vector<double> shares_of(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                              const Factorisation& factorisation, const Contact& pair) {
     const GapGradient<Dim> g = gap_gradient(packing, pair);
     std::vector<double> a(static_cast<std::size_t>(structure.size()), 0.0);
     for (int k = 0; k < g.count; ++k) {
@@ -56,6 +54,16 @@ std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStruct
         }
     }
     factorisation.solve_forces(a);
+    return a;
+}
+
+/// The contacts whose force balances that of a pair, as far as doubles tell: what is left out or taken in makes a count
+/// fail. None when `opened` is one of them, or a held coordinate.
+template <int Dim>
+std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                              const Factorisation& factorisation, ContactId opened, const Contact& pair) {
+    constexpr double carries = 1e-8;
+    const std::vector<double> a = shares_of(packing, structure, factorisation, pair);
     std::vector<Contact> list;
     for (std::size_t l = 0; l < a.size(); ++l) {
         if (std::abs(a[l]) > carries) {
@@ -68,15 +76,10 @@ std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStruct
     return list;
 }
 
-/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
-/// tried: the grains whose contacts carry the force of the pair, and all contacts among them.
+/// All contacts that stay closed when `opened` opens, among the grains of some contacts and of a pair.
 template <int Dim>
-bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
-           ContactId opened, const Contact& pair) {
-    const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
-    if (carrying.empty()) {
-        return false;
-    }
+std::vector<Contact> closed_among(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                  ContactId opened, const std::vector<Contact>& some, const Contact& pair) {
     const auto& contacts = structure.contacts();
     const std::size_t disks = packing.radius.size();
     std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
@@ -86,7 +89,7 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
         }
     };
     join(pair);
-    std::for_each(carrying.begin(), carrying.end(), join);
+    std::for_each(some.begin(), some.end(), join);
     std::vector<Contact> among;
     for (std::size_t l = 0; l < contacts.size(); ++l) {
         const auto grains = grains_of(contacts[l], disks);
@@ -95,7 +98,74 @@ bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure
             among.push_back(contacts[l]);
         }
     }
-    return moves_as_one(structure.dofs(), packing.disk_count(), among, pair);
+    return among;
+}
+
+/// Contacts that stay closed when `opened` opens and join, to the grains of a pair, grains that move with them as a
+/// body, as far as doubles tell; `v`: the motion. Walls are grains of a body that does not turn.
+template <int Dim>
+std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
+                                  ContactId opened, const std::vector<double>& v, const Contact& pair) {
+    constexpr double alike = 1e-8;
+    const std::size_t disks = packing.radius.size();
+    const auto at = [](std::size_t disk, std::size_t axis) { return Dim * disk + axis; };
+    const auto first = static_cast<std::size_t>(pair.i);
+    const auto second = static_cast<std::size_t>(pair.j);
+    const double fastest =
+        std::abs(*std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    double turn = 0;
+    if (pair.kind == ContactKind::disk_disk) {
+        const double x = packing.q[at(second, 0)] - packing.q[at(first, 0)];
+        const double y = packing.q[at(second, 1)] - packing.q[at(first, 1)];
+        turn = (x * (v[at(second, 1)] - v[at(first, 1)]) - y * (v[at(second, 0)] - v[at(first, 0)])) / (x * x + y * y);
+    }
+    const bool turns = std::abs(turn) * packing.min_radius() > alike * fastest;
+    const auto moves_with = [&](std::size_t disk) {
+        const double x = packing.q[at(disk, 0)] - packing.q[at(first, 0)];
+        const double y = packing.q[at(disk, 1)] - packing.q[at(first, 1)];
+        const double off = std::abs(v[at(disk, 0)] - v[at(first, 0)] + turn * y) +
+                           std::abs(v[at(disk, 1)] - v[at(first, 1)] - turn * x);
+        return off <= alike * fastest;
+    };
+    std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
+    for (const std::size_t grain : grains_of(pair, disks)) {
+        in_body[grain] = 1;
+    }
+    std::vector<Contact> list;
+    std::vector<unsigned char> taken(structure.contacts().size(), 0);
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t l = 0; l < taken.size(); ++l) {
+            const Contact& c = structure.contacts()[l];
+            if (taken[l] != 0 || l == opened.index() || c.kind == ContactKind::held) {
+                continue;
+            }
+            const auto grains = grains_of(c, disks);
+            const bool wall = c.kind != ContactKind::disk_disk;
+            const bool joined = in_body[grains[0]] != 0 || (!wall && in_body[grains[1]] != 0);
+            if (joined && (wall ? !turns : moves_with(grains[0]) && moves_with(grains[1]))) {
+                in_body[grains[0]] = in_body[grains[1]] = 1;
+                list.push_back(c);
+                taken[l] = 1;
+                grows = true;
+            }
+        }
+    }
+    return list;
+}
+
+/// Whether contacts that stay closed when `opened` opens make one body of the two grains of a pair. Any body may be
+/// tried: the grains whose contacts carry the force of the pair, and all contacts among them; the grains that move
+/// alike.
+template <int Dim>
+bool rests(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure, const Factorisation& factorisation,
+           ContactId opened, const std::vector<double>& v, const Contact& pair) {
+    const std::vector<Contact> carrying = carriers(packing, structure, factorisation, opened, pair);
+    const auto as_one = [&](const std::vector<Contact>& among) {
+        return moves_as_one(structure.dofs(), packing.disk_count(), among, pair);
+    };
+    return !carrying.empty() && (as_one(closed_among(packing, structure, opened, carrying, pair)) ||
+                                 as_one(moving_alike(packing, structure, opened, v, pair)));
 }
 
 } // namespace
@@ -197,14 +267,22 @@ template <int Dim> Enclosure FirstOrder<Dim>::rate(ContactId opened, int directi
     }
     std::vector<double> approach(static_cast<std::size_t>(structure_->size()), 0.0);
     approach[opened.index()] = -direction;
-    const Enclosure rate = gap_rate(contact, velocity(approach, 0));
-    const bool told = rate.decided() || !rests(*packing_, *structure_, *factorisation_, opened, contact);
+    const Velocity motion = velocity(approach, 0);
+    const Enclosure rate = gap_rate(contact, motion);
+    const bool told = rate.decided() || !rests(*packing_, *structure_, *factorisation_, opened, motion.v, contact);
     return told ? rate : Enclosure{0, 0};
+}
+
+template <int Dim> std::vector<double> FirstOrder<Dim>::shares(const Contact& contact) const {
+    return shares_of(*packing_, *structure_, *factorisation_, contact);
 }
 
 template <int Dim> bool FirstOrder<Dim>::moves_as_linkage(ContactId opened, const Contact& contact) const {
     const std::vector<Contact> carrying = carriers(*packing_, *structure_, *factorisation_, opened, contact);
-    return !carrying.empty() && isostat::moves_as_linkage(*packing_, carrying, contact);
+    return !carrying.empty() &&
+           (isostat::moves_as_linkage(*packing_, carrying, contact) ||
+            isostat::moves_as_linkage(*packing_, closed_among(*packing_, *structure_, opened, carrying, contact),
+                                      contact));
 }
 
 template <int Dim>

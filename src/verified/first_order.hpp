@@ -29,6 +29,8 @@ template <int Dim> class FirstOrder {
     /// Rate of the gap of `contact` when the gap of `opened` grows at unit rate (`direction` -1: falls, for held
     /// coordinates) and all others stay closed. Exactly 0, radius 0, when it vanishes for structural reasons.
     [[nodiscard]] Enclosure rate(ContactId opened, int direction, const Contact& contact) const;
+    /// a with row of `contact` = sum a_l (row of l), in double: nothing is proved of it.
+    [[nodiscard]] std::vector<double> shares(const Contact& contact) const;
     /// Whether the gap of a pair that touches stays 0 on the whole motion that opens `opened`, though grains between
     /// the two move against each other (R2, degenerate.md). False says nothing. At first order it need not stay as it
     /// is.

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -647,7 +648,9 @@ int answered(const std::function<int()>& work) {
     } catch (const isostat::Error& error) {
         return complain(error.kind(), error.what());
     } catch (const std::bad_alloc&) {
-        return complain(ErrorKind::internal, "not enough memory");
+        const int status = complain(ErrorKind::internal, "not enough memory");
+        std::fflush(nullptr);
+        std::_Exit(status); // at exit, threads of a library that wait for memory would be waited for
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(ErrorKind::cannot_write, error.what());
     } catch (const std::exception& error) {

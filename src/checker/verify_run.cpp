@@ -1,3 +1,4 @@
+#include "checker/choice.hpp"
 #include "checker/lookahead.hpp"
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"

@@ -40,6 +40,9 @@ std::array<std::size_t, 2> grains_of(const Contact& c, std::size_t disks) {
     return {disks, disks};
 }
 
+/// Shares of a force and differences of motions below this are taken as zero: a guess, whose list is counted exactly.
+constexpr double carries_or_moves = 1e-8;
+
 /// a with row of the pair = sum a_l (row of l), in double.
 template <int Dim>
 std::vector<double> shares_of(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
@@ -62,11 +65,10 @@ std::vector<double> shares_of(const Packing<Dim>& packing, const IsostaticStruct
 template <int Dim>
 std::vector<Contact> carriers(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                               const Factorisation& factorisation, ContactId opened, const Contact& pair) {
-    constexpr double carries = 1e-8;
     const std::vector<double> a = shares_of(packing, structure, factorisation, pair);
     std::vector<Contact> list;
     for (std::size_t l = 0; l < a.size(); ++l) {
-        if (std::abs(a[l]) > carries) {
+        if (std::abs(a[l]) > carries_or_moves) {
             if (l == opened.index() || structure.contacts()[l].kind == ContactKind::held) {
                 return {};
             }
@@ -106,7 +108,6 @@ std::vector<Contact> closed_among(const Packing<Dim>& packing, const IsostaticSt
 template <int Dim>
 std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                   ContactId opened, const std::vector<double>& v, const Contact& pair) {
-    constexpr double alike = 1e-8;
     const std::size_t disks = packing.radius.size();
     const auto at = [](std::size_t disk, std::size_t axis) { return Dim * disk + axis; };
     const auto first = static_cast<std::size_t>(pair.i);
@@ -119,13 +120,13 @@ std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticSt
         const double y = packing.q[at(second, 1)] - packing.q[at(first, 1)];
         turn = (x * (v[at(second, 1)] - v[at(first, 1)]) - y * (v[at(second, 0)] - v[at(first, 0)])) / (x * x + y * y);
     }
-    const bool turns = std::abs(turn) * packing.min_radius() > alike * fastest;
+    const bool turns = std::abs(turn) * packing.min_radius() > carries_or_moves * fastest;
     const auto moves_with = [&](std::size_t disk) {
         const double x = packing.q[at(disk, 0)] - packing.q[at(first, 0)];
         const double y = packing.q[at(disk, 1)] - packing.q[at(first, 1)];
         const double off = std::abs(v[at(disk, 0)] - v[at(first, 0)] + turn * y) +
                            std::abs(v[at(disk, 1)] - v[at(first, 1)] - turn * x);
-        return off <= alike * fastest;
+        return off <= carries_or_moves * fastest;
     };
     std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
     for (const std::size_t grain : grains_of(pair, disks)) {

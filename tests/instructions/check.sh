@@ -37,7 +37,8 @@ status=0
 : >"$work/new-functions"
 while read -r vertex equilibria level recorded; do
   case $vertex in '' | '#'*) echo "$vertex $equilibria $level $recorded" >>"$work/new"; continue ;; esac
-  arcs=$(valgrind --tool=callgrind --callgrind-out-file="$work/out" \
+  # What is loaded before main, and from which libraries, is not counted.
+  arcs=$(LD_BIND_NOW=1 valgrind --tool=callgrind --toggle-collect=main --callgrind-out-file="$work/out" \
     "$program" "$here/../data/$vertex" "$equilibria" "$level" 2>"$work/log") || { cat "$work/log" >&2; exit 1; }
   count=$(sed -n 's/^totals: //p' "$work/out")
   echo "$vertex $equilibria $level $count" >>"$work/new"

@@ -66,7 +66,8 @@ template <int Dim> void Statics<Dim>::find_backbone() {
         loaded.push_back(loaded_wall_row_); // also when its stress is 0 now
     }
     backbone_ = pattern_.carrying(loaded);
-    sloped_.clear();
+    sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
+                                   : pattern_.carrying({&loaded_wall_row_, 1});
 }
 
 template <int Dim> void Statics<Dim>::perturb_radii() {
@@ -123,10 +124,6 @@ template <int Dim> Enclosure Statics<Dim>::force(ContactId contact, double sigma
 }
 
 template <int Dim> bool Statics<Dim>::slope_is_zero(ContactId contact) const {
-    if (sloped_.empty()) {
-        sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
-                                       : pattern_.carrying({&loaded_wall_row_, 1});
-    }
     return sloped_[contact.index()] == 0;
 }
 

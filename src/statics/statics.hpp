@@ -111,7 +111,7 @@ template <int Dim> class Statics {
     ContactPattern pattern_;
     std::shared_ptr<const LoadShift> shift_;
     double shift_bound_ = 0;
-    mutable std::vector<unsigned char> sloped_; ///< empty until asked for
+    std::vector<unsigned char> sloped_; ///< what a stress on the loaded wall can reach
 };
 
 extern template class Statics<2>;

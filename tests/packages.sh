@@ -24,11 +24,13 @@ isostat_types_packages=(mypy)
 isostat_count_packages=(valgrind)
 # For the page of `report --html` in a browser (tests/report/page.py): optional, installed by continuous integration.
 isostat_page_packages=(chromium)
+# For LAMMPS against the exact trajectory (examples/peers/lammps): optional, installed by continuous integration.
+isostat_peer_packages=(lammps)
 # For the style of the sources and the pages of the headers: optional, installed by continuous integration.
 isostat_lint_packages=(clang-format-16 clang-tidy-16 doxygen)
 if [ "${CI:-}" = true ]; then
   isostat_packages+=("${isostat_proof_packages[@]}" "${isostat_mpi_packages[@]}" "${isostat_wheel_packages[@]}"
-    "${isostat_types_packages[@]}" "${isostat_count_packages[@]}" "${isostat_page_packages[@]}" "${isostat_lint_packages[@]}")
+    "${isostat_types_packages[@]}" "${isostat_count_packages[@]}" "${isostat_page_packages[@]}" "${isostat_peer_packages[@]}" "${isostat_lint_packages[@]}")
 fi
 if [ "${ISOSTAT_WITH_PYTHON:-}" = ON ]; then
   isostat_packages+=("${isostat_python_packages[@]}")

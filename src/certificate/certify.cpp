@@ -162,7 +162,7 @@ template <int Dim> class Prover {
     static std::string shown(const Interval& interval) {
         return fmt::format("[{:.17g}, {:.17g}]", interval.lower, interval.upper);
     }
-    std::string in_contact(std::size_t l, const Interval& f) const {
+    [[nodiscard]] std::string in_contact(std::size_t l, const Interval& f) const {
         return fmt::format("in contact {} is in {}", to_string<Dim>(state_.contacts[l]), shown(f));
     }
 

@@ -193,7 +193,7 @@ std::string obstacle(const Evidence& evidence, bool claimed) {
 
 /// The same for a claim about the true vertex, which must be claimed and proved to exist where it is claimed.
 std::string vertex_obstacle(const Evidence& evidence, const CertificateClaims& claims, bool claimed, bool exists) {
-    const std::string first = obstacle(evidence, claimed);
+    std::string first = obstacle(evidence, claimed);
     if (!first.empty()) {
         return first;
     }

@@ -94,7 +94,7 @@ int verify(const VerifyArguments& arguments);
 
 /// What the user states of a packing made elsewhere, as typed.
 struct ForeignArguments {
-    std::string format, radius, diameter, walls, box, columns;
+    std::string format, radius, diameter, walls, box, columns, select;
     std::string frame = "last";
     bool periodic = false, not_periodic = false;
     bool walls_unless_periodic = false; ///< `walls` were not stated

@@ -93,22 +93,17 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
 } // namespace
 
 int compare_series(const CompareArguments& a) {
-    const compare::Series series = compare::read_series(a.series);
+    compare::SeriesReader reader(a.series);
+    const compare::Series& series = reader.series();
     compare::CompareOptions options;
     options.bundle = a.bundle;
     options.local = a.local;
     if (!a.reference.empty()) {
         options.start = start_of(a.reference);
-        if (options.start->packing.radius != series.frames.front().packing.radius) {
-            throw Error(
-                ErrorKind::bad_input,
-                fmt::format("{}: other radii than those of {}: expected the same disks, in the order of their ids",
-                            a.reference, a.series));
-        }
     }
     catch_interrupts();
     options.stop = &stop_flag();
-    const compare::Comparison comparison = compare::compare(series, options);
+    const compare::Comparison comparison = compare::compare(reader, options);
     if (stop_flag()) {
         return interrupted;
     }

@@ -68,10 +68,19 @@ void print_forces(const Inspection<2>& inspection) {
     }
 }
 
+/// Without held coordinates, which stand in the place of a contact.
+int carrying_count(const Inspection<2>& inspection) {
+    int held = 0;
+    for (std::size_t l = 0; l < inspection.structural_zero.size(); ++l) {
+        held += inspection.contacts[l].kind == ContactKind::held && inspection.structural_zero[l] == 0 ? 1 : 0;
+    }
+    return inspection.record.backbone - held;
+}
+
 void print_inspection(const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     fmt::print("rattlers                 {}\n", inspection.rattlers.size());
-    fmt::print("force-carrying contacts  {}\n", r.backbone);
+    fmt::print("force-carrying contacts  {}\n", carrying_count(inspection));
     if (inspection.equilibrium) {
         print_forces(inspection);
     }
@@ -127,7 +136,7 @@ Json end_json(const std::optional<LoadIntervalClaim>& claim, bool low, const cha
 void add_inspection(Json& object, const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     object["rattlers"] = inspection.rattlers;
-    object["backbone"] = r.backbone;
+    object["backbone"] = carrying_count(inspection);
     object["held"] = r.held;
     if (inspection.equilibrium) {
         const auto& interval = inspection.truth.claims.load_interval;

@@ -3,6 +3,7 @@
 #include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/io/foreign.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,6 +30,9 @@ const Kind packing{"a crafted packing", {"inspect", "import", "genericity", "pla
 const Kind series{"the manifest of a series", {"compare"}};
 const Kind state{"a state",
                  {"inspect", "certify", "report", "export", "convert", "snap", "plateau", "genericity", "import"}};
+const Kind dump{"a LAMMPS dump", {"plateau", "import", "snap"}};
+const Kind data{"a LAMMPS data file", {"plateau", "import", "snap"}};
+const Kind xyz{"extended XYZ", {"plateau", "import", "snap"}};
 const Kind certificate{"a certificate", {"verify"}};
 const Kind record{"a file of a run; its folder is meant", {"report", "verify", "export"}};
 const Kind run_folder{"the folder of a run", {"report", "verify", "export"}};
@@ -52,7 +56,14 @@ const Kind* kind_of_text(const std::string& text) {
         return &scene;
     }
     static const std::regex arc(R"(^\{"step":)");
-    return std::regex_search(begin, arc) || begin.starts_with("# number,previous,") ? &record : nullptr;
+    if (std::regex_search(begin, arc) || begin.starts_with("# number,previous,")) {
+        return &record;
+    }
+    const std::string foreign = recognise_format(text);
+    return foreign == "lammps-dump"                                             ? &dump
+           : foreign == "lammps-data"                                           ? &data
+           : foreign == "xyz" && begin.find("Properties=") != std::string::npos ? &xyz
+                                                                                : nullptr;
 }
 
 const Kind* kind_of(const fs::path& file) {
@@ -79,8 +90,9 @@ std::string other_use(const std::string& command, const fs::path& file) {
     if (kind == nullptr || std::find(kind->commands.begin(), kind->commands.end(), command) != kind->commands.end()) {
         return "";
     }
-    return fmt::format("\n{} is {}: for isostat {}, not for {}", file.string(), kind->words,
-                       fmt::join(kind->commands, ", "), command);
+    return fmt::format("\n{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,
+                       fmt::join(kind->commands, ", "), command,
+                       kind == &state && command == "run" ? "; a scene with [packing] file = ... runs it" : "");
 }
 
 } // namespace isostat::cli

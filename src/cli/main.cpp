@@ -342,6 +342,8 @@ struct Program {
         command
             .add_option("--columns", a.columns, "names of the columns of a table without a header; - leaves one out")
             ->type_name("x,y,r");
+        command.add_option("--select", a.select, "rows with this value in this column are the disks, e.g. type=1")
+            ->type_name("COLUMN=VALUE");
         command.add_option("--format", a.format, "lammps-data, lammps-dump, xyz, table (default: from the content)");
         command.add_flag("--not-periodic", a.not_periodic,
                          "take periodic boundaries for open ones: contacts across them are not looked for");

@@ -2,6 +2,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "cli/soft_list.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -198,6 +200,38 @@ std::string to_csv(const crafted::Plateau& plateau) {
 
 } // namespace
 
+namespace {
+
+/// Half a unit of the last digit of the roundest position in --box; 0 where it has none to lose.
+double rounding_of(const std::string& box) {
+    double worst = 0;
+    for (const std::string& axis : parse_list(box)) {
+        for (const std::string& word : {axis.substr(0, axis.find(':')), axis.substr(axis.find(':') + 1)}) {
+            const std::size_t point = word.find('.');
+            if (point != std::string::npos && word.find_first_of("eE") == std::string::npos) {
+                worst = std::max(worst, 0.5 * std::pow(10.0, -static_cast<double>(word.size() - point - 1)));
+            }
+        }
+    }
+    return worst;
+}
+
+/// What about the walls may hide the range that was looked for.
+void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, ReadPacking& file) {
+    const double rounding = rounding_of(a.foreign.box);
+    const bool wide = std::any_of(plateau.ranges.begin(), plateau.ranges.end(),
+                                  [&](const PlateauRange& range) { return range.last - range.first > rounding; });
+    if (const std::string far = far_wall(file.packing); !far.empty()) {
+        file.notes.push_back(far);
+    } else if (rounding > 0 && !wide) {
+        file.notes.push_back(fmt::format("--box has digits down to {:.2g}: were the walls rounded there, contacts with "
+                                         "walls come at wrong thresholds; expected every digit",
+                                         2 * rounding));
+    }
+}
+
+} // namespace
+
 int plateau(const PlateauArguments& a) {
     std::array<double, 2> thresholds{};
     if (!a.thresholds.empty()) {
@@ -205,7 +239,7 @@ int plateau(const PlateauArguments& a) {
     }
     ForeignArguments foreign = a.foreign;
     foreign.cells = true;
-    const ReadPacking file = read_any_packing(a.file, foreign);
+    ReadPacking file = read_any_packing(a.file, foreign);
     const Strain strain = strain_of(a.strain);
     if (a.thresholds.empty()) {
         constexpr double share = 0.1; // of the smallest radius
@@ -214,6 +248,7 @@ int plateau(const PlateauArguments& a) {
             std::min(crafted::plateau(file.packing, {thresholds[1]}, strain).deepest_overlap, thresholds[1]);
     }
     const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain);
+    note_walls(a, result, file);
     if (!a.csv.empty()) {
         write_atomically(a.csv, to_csv(result));
     }

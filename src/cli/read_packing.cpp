@@ -85,6 +85,13 @@ ForeignOptions options_of(const ForeignArguments& a) {
     if (!a.columns.empty()) {
         out.columns = split(a.columns, ',');
     }
+    if (!a.select.empty()) {
+        const auto words = split(a.select, '=');
+        if (words.size() != 2 || words[0].empty() || words[1].empty()) {
+            usage("--select", a.select, "COLUMN=VALUE, for instance type=1");
+        }
+        out.select = {words[0], words[1]};
+    }
     out.not_periodic = a.not_periodic;
     out.periodic = a.periodic;
     out.cells = a.cells;
@@ -117,11 +124,11 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
         return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes),
                 std::move(foreign.ids)};
     }
-    if (options.size || options.box || !arguments.walls.empty() || !options.columns.empty() || options.frame ||
-        options.not_periodic || options.periodic) {
+    if (options.size || options.box || options.select || !arguments.walls.empty() || !options.columns.empty() ||
+        options.frame || options.not_periodic || options.periodic) {
         throw Error(ErrorKind::usage, fmt::format("{} is a {} file of isostat, which says all of its sizes and walls: "
                                                   "expected none of --radius, --diameter, --walls, --box, --frame, "
-                                                  "--columns, --periodic, --not-periodic",
+                                                  "--columns, --select, --periodic, --not-periodic",
                                                   file, format));
     }
     if (format == "packing") {

@@ -36,7 +36,7 @@ std::vector<Contact> walls_of(const Packing<2>& packing) {
         for (int i = 0; i < packing.disk_count(); ++i) {
             for (int axis = 0; axis < 2; ++axis) {
                 if (gap<2>(packing, {kind, i, axis}) <= 0) {
-                    out.push_back({kind, i, axis});
+                    out.emplace_back(kind, i, axis);
                 }
             }
         }
@@ -69,23 +69,34 @@ std::array<double, 2> parse_stress(const std::string& text) {
     return stress;
 }
 
-void check_nearness(const std::string& file, const Packing<2>& packing) {
-    const double near = nearly_touching * packing.min_radius();
+std::string far_wall(const Packing<2>& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (int axis = 0; axis < 2 && !packing.cell.any(); ++axis) {
-            double nearest = HUGE_VAL;
-            for (int i = 0; i < packing.disk_count(); ++i) {
-                nearest = std::min(nearest, gap<2>(packing, {kind, i, axis}));
+        for (const int axis : {0, 1}) {
+            const auto a = static_cast<std::size_t>(axis);
+            const WallKind wall = kind == ContactKind::lower_wall ? packing.walls.lower[a] : packing.walls.upper[a];
+            int nearest = -1;
+            double distance = HUGE_VAL;
+            for (int i = 0; i < packing.disk_count() && wall != WallKind::absent; ++i) {
+                if (const double g = gap<2>(packing, {kind, i, axis}); g < distance) {
+                    nearest = i;
+                    distance = g;
+                }
             }
-            if (nearest > near) {
-                const std::string name = to_string<2>({kind, 0, axis}).substr(2);
-                refuse(file,
-                       fmt::format("no disk is near the {} wall, the nearest gap is {:.3g}: expected the "
+            if (nearest >= 0 && distance > nearly_touching * packing.min_radius()) {
+                return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
                                    "those)",
-                                   name, nearest));
+                                   to_string<2>({kind, 0, axis}).substr(2), distance, nearest);
             }
         }
+    }
+    return "";
+}
+
+void check_nearness(const std::string& file, const Packing<2>& packing) {
+    const double near = nearly_touching * packing.min_radius();
+    if (const std::string words = far_wall(packing); !words.empty()) {
+        refuse(file, words);
     }
     const double deepest = crafted::plateau(packing, {near}).deepest_overlap;
     if (deepest < -near) {

@@ -21,6 +21,9 @@ std::array<double, 2> parse_stress(const std::string& text);
 /// Throws `Error(bad_input)` about a file.
 [[noreturn]] void refuse(const std::string& file, const std::string& what);
 
+/// Words on a wall that no disk is near; empty: every wall has one.
+std::string far_wall(const Packing<2>& packing);
+
 /// Every wall near a disk, no overlap deep: else the file is no packing of nearly rigid disks in these walls. Throws
 /// `Error(bad_input)`.
 void check_nearness(const std::string& file, const Packing<2>& packing);

@@ -3,6 +3,8 @@
 #include "compare/local.hpp"
 #include "compare/path.hpp"
 
+#include <isostat/core/error.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -77,15 +79,21 @@ const char* to_string(FrameStatus status) {
     return "undecided";
 }
 
-Comparison compare(const Series& series, const CompareOptions& options) {
+Comparison compare(SeriesReader& reader, const CompareOptions& options) {
+    const Series& series = reader.series();
     Comparison out;
     RunOptions run;
     run.rule = options.rule;
     run.stop = options.stop;
     std::vector<JudgedFrame> judged;
     std::optional<State<2>> start = options.start;
-    for (const Frame& frame : series.frames) {
-        judged.push_back(judge(series, frame, !start || options.local));
+    while (const auto frame = reader.next()) {
+        if (options.start && options.start->packing.radius != frame->packing.radius) {
+            throw Error(ErrorKind::bad_input,
+                        frame->row + ": other radii than the start of the exact run (--reference): expected the same "
+                                     "disks, in the order of their ids");
+        }
+        judged.push_back(judge(series, *frame, !start || options.local));
         if (!start && judged.back().state) {
             start = judged.back().state;
         }

@@ -1,5 +1,7 @@
 #include "compare/path.hpp"
 
+#include "core/parallel.hpp"
+
 #include <isostat/compare/snap.hpp>
 
 #include <algorithm>
@@ -105,10 +107,10 @@ Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& 
         on.equilibria = further;
         (void)advance(on); // as far as it goes
     }
-    for (std::size_t k = 0; k < path.equilibria.size(); ++k) {
+    parallel_pieces(path.equilibria.size(), [&](std::size_t k) {
         path.equilibria[k].opens = collector.opens(k, directions[k]);
         predict(path.equilibria[k], directions[k], stiffness);
-    }
+    });
     return path;
 }
 

@@ -1,7 +1,7 @@
 // Frames of a series, matched by time step.
-#include "compare/dump.hpp"
 #include "compare/manifest.hpp"
 #include "io/files.hpp"
+#include "io/lammps_dump.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -17,6 +17,8 @@ namespace isostat::compare {
 
 namespace {
 
+using foreign::DumpFile;
+using foreign::DumpFrame;
 using foreign::Line;
 using foreign::Lines;
 
@@ -26,7 +28,7 @@ constexpr long last_wall = -4;
 /// The table of frames.
 class FrameTable {
   public:
-    FrameTable(const Manifest& manifest) // NOLINT(google-explicit-constructor)
+    explicit FrameTable(const Manifest& manifest)
         : manifest_(manifest), text_(read_text(manifest.frames)), lines_(text_, manifest.frames) {
         const Line names = lines_.next("names of columns", ',');
         for (std::size_t k = 0; k < names.size(); ++k) {
@@ -139,7 +141,7 @@ class Disks {
         }
         if (by_id.empty()) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.line)));
+                        fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.header.line)));
         }
         frame.packing.walls = Walls<2>::box();
         const double f = manifest_.length_factor;
@@ -161,13 +163,13 @@ class Disks {
         if (frame.number > 0 && frame.ids != ids_) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: other ids than in the first frame: expected the same "
                                                           "disks in every frame",
-                                                          dump_.where(rows.line)));
+                                                          dump_.where(rows.header.line)));
         }
         if (frame.number == 0) {
             ids_ = frame.ids;
             first_ = frame.packing;
         }
-        validate(frame.packing, dump_.where(rows.line));
+        validate(frame.packing, dump_.where(rows.header.line));
     }
 
   private:
@@ -186,13 +188,13 @@ class Disks {
     }
 
     const Manifest& manifest_;
-    Dump dump_;
+    DumpFile dump_;
     std::vector<long> ids_;
     Packing<2> first_;
 };
 
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
-void read_contacts(const Manifest& manifest, Dump& dump, Frame& frame) {
+void read_contacts(const Manifest& manifest, DumpFile& dump, Frame& frame) {
     const DumpFrame rows = dump.at(frame.timestep);
     const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j),
                       force = dump.column(rows, manifest.contact_force);
@@ -226,27 +228,42 @@ void read_contacts(const Manifest& manifest, Dump& dump, Frame& frame) {
 
 } // namespace
 
-Series read_series(const std::filesystem::path& path) {
-    const Manifest manifest = read_manifest(path);
-    Series series = manifest.series;
-    FrameTable table(manifest);
-    Disks disks(manifest);
-    std::optional<Dump> contacts;
-    if (series.listed) {
-        contacts.emplace(manifest.contacts, "ENTRIES");
-    }
-    std::array<double, 4> walls{};
-    while (auto frame = table.next(walls)) {
-        disks.read(*frame, walls);
-        if (contacts) {
-            read_contacts(manifest, *contacts, *frame);
+struct SeriesReader::Files {
+    explicit Files(const std::filesystem::path& path)
+        : manifest(read_manifest(path)), table(manifest), disks(manifest) {
+        if (manifest.series.listed) {
+            contacts = std::make_unique<DumpFile>(manifest.contacts, "ENTRIES");
         }
-        series.frames.push_back(std::move(*frame));
     }
-    if (series.frames.empty()) {
-        throw Error(ErrorKind::bad_input, manifest.frames + ": no frames: expected at least one row");
+    Manifest manifest;
+    FrameTable table;
+    Disks disks;
+    std::unique_ptr<DumpFile> contacts;
+    bool any = false;
+};
+
+SeriesReader::SeriesReader(const std::filesystem::path& manifest) : files_(std::make_unique<Files>(manifest)) {}
+SeriesReader::~SeriesReader() = default;
+
+const Series& SeriesReader::series() const {
+    return files_->manifest.series;
+}
+
+std::optional<Frame> SeriesReader::next() {
+    std::array<double, 4> walls{};
+    auto frame = files_->table.next(walls);
+    if (!frame) {
+        if (!files_->any) {
+            throw Error(ErrorKind::bad_input, files_->manifest.frames + ": no frames: expected at least one row");
+        }
+        return std::nullopt;
     }
-    return series;
+    files_->any = true;
+    files_->disks.read(*frame, walls);
+    if (files_->contacts) {
+        read_contacts(files_->manifest, *files_->contacts, *frame);
+    }
+    return frame;
 }
 
 } // namespace isostat::compare

@@ -29,7 +29,7 @@ template <int Dim> class Separation {
           walls_(static_cast<std::size_t>(Dim * disks)) {}
 
     /// \pre two disks
-    template <class At, class Minus> auto of_disks(At at, Minus minus) const {
+    template <class At, class Minus> [[nodiscard]] auto of_disks(At at, Minus minus) const {
         auto r = of_centres(at, minus);
         using Number = std::remove_cvref_t<decltype(r[0])>;
         static_assert(std::is_same_v<Number, std::remove_cvref_t<decltype(at(std::size_t{0}))>>);
@@ -39,7 +39,7 @@ template <int Dim> class Separation {
         return r;
     }
     /// x_j - x_i alone: r where there is no image.
-    template <class At, class Minus> auto of_centres(At at, Minus minus) const {
+    template <class At, class Minus> [[nodiscard]] auto of_centres(At at, Minus minus) const {
         const auto i = static_cast<std::size_t>(Dim * i_);
         const auto j = static_cast<std::size_t>(Dim * j_);
         using Number = std::remove_cvref_t<decltype(minus(at(j), at(i)))>;
@@ -62,7 +62,7 @@ template <int Dim> class Separation {
         });
     }
     /// \pre a disk and a wall
-    template <class At, class Minus> auto of_wall(At at, Minus minus) const {
+    template <class At, class Minus> [[nodiscard]] auto of_wall(At at, Minus minus) const {
         const auto x = static_cast<std::size_t>(Dim * i_ + j_);
         using Number = std::remove_cvref_t<decltype(minus(at(x), at(x)))>;
         return kind_ == ContactKind::lower_wall ? Number(at(x))

@@ -438,12 +438,14 @@ std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, co
     }
     std::set<int> out{inside.front(), inside.back()};
     const int half = std::max(rows / 2, 1);
-    const auto last = inside.size() - 1;
-    for (int k = 1; k < half; ++k) {
-        out.insert(inside[last * static_cast<std::size_t>(k) / static_cast<std::size_t>(half)]);
-    }
     const auto positive =
         std::find_if(inside.begin(), inside.end(), [&](int m) { return sequence.threshold_of(m) > 0; });
+    // Overlaps: all of them at once, which is what a soft packing means by its contacts.
+    const auto start = positive == inside.begin() || positive == inside.end() ? inside.begin() : positive - 1;
+    const auto last = inside.end() - 1 - start;
+    for (int k = 0; k < half; ++k) {
+        out.insert(*(start + last * k / half));
+    }
     if (positive != inside.end()) {
         const double low = std::log(sequence.threshold_of(*positive)),
                      high = std::log(sequence.threshold_of(inside.back()));

@@ -1,5 +1,5 @@
 // LAMMPS: data files (atom_style sphere) and text dumps.
-#include "io/foreign_source.hpp"
+#include "io/lammps_dump.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace isostat::foreign {
 
@@ -46,7 +47,7 @@ struct HeaderLine {
     Line line;
     std::size_t numbers = 0;
     std::string keyword;
-    explicit HeaderLine(const Line& l) : line(l) {
+    explicit HeaderLine(Line l) : line(std::move(l)) {
         while (numbers < line.size() && to_number(line.field(numbers))) {
             ++numbers;
         }
@@ -156,10 +157,13 @@ void read_atoms(Lines& lines, const std::string& style, const DataHeader& header
         raw.notes.emplace_back("diameters, as atom style " + style + " defines");
     }
     const auto width = static_cast<std::size_t>(7 + shift);
+    std::vector<std::string> names(width);
+    names[static_cast<std::size_t>(1 + shift)] = "type";
+    find_selection(columns, names, options, fmt::format("{}:{}", lines.source(), lines.number()));
     Rows rows(columns, lines.source());
-    while (static_cast<long>(raw.x.size()) < header.atoms) {
+    while (rows.seen() < header.atoms) {
         const std::string what =
-            fmt::format("atom {} of {}: {} values, and 3 image flags or none", raw.x.size() + 1, header.atoms, width);
+            fmt::format("atom {} of {}: {} values, and 3 image flags or none", rows.seen() + 1, header.atoms, width);
         const std::string_view text = without_comment(lines.take(what));
         if (text.empty()) {
             continue;
@@ -175,104 +179,7 @@ void read_atoms(Lines& lines, const std::string& style, const DataHeader& header
         }
         rows.add(line, raw);
     }
-    rows.finish();
-}
-
-/// A frame of a dump, up to its atoms.
-struct Frame {
-    long timestep = 0;
-    long atoms = -1;
-    std::array<double, 4> box{};
-    double tilt = 0; ///< xy
-    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
-    std::array<bool, 2> loose{};
-    bool boxed = false;
-    std::vector<std::string> names;
-};
-
-void read_bounds(Lines& lines, std::string_view flags_text, Frame& frame) {
-    const Line flags(flags_text, lines.number(), &lines.source());
-    std::vector<std::string_view> codes;
-    bool tilted = false;
-    for (std::size_t k = 0; k < flags.size(); ++k) {
-        const std::string_view code = flags.field(k);
-        if (code == "xy" || code == "xz" || code == "yz") {
-            tilted = true;
-        } else if (code.size() == 2 && code.find_first_not_of("pfsm") == std::string_view::npos) {
-            codes.push_back(code);
-        } else {
-            flags.fail(code, "boundary", "two of the letters p f s m, for instance ff");
-        }
-    }
-    if (!codes.empty() && codes.size() != 3) {
-        flags.fail(flags_text, "boundaries", "three of them");
-    }
-    for (std::size_t a = 0; a < codes.size() && a < 2; ++a) {
-        frame.boundary[a] = codes[a].find('p') != std::string_view::npos ? Boundary::periodic : Boundary::open;
-        frame.loose[a] = codes[a].find_first_of("sm") != std::string_view::npos;
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-        const Line line = lines.next("the bounds of the box: low high");
-        line.require_size(tilted ? 3 : 2, "bounds of the box");
-        const double low = line.number(0, "lower bound"), high = line.number(1, "upper bound");
-        if (!(low <= high)) {
-            line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
-        }
-        if (tilted && a == 0) {
-            frame.tilt = line.number(2, "tilt");
-        } else if (tilted && line.number(2, "tilt") != 0) {
-            line.fail(line.field(2), "tilt of the box", "0: only packings in a plane are read");
-        }
-        if (a < 2) {
-            frame.box[2 * a] = low;
-            frame.box[2 * a + 1] = high;
-        }
-    }
-    // A dump bounds the whole parallelepiped: xlo + min(0, xy), xhi + max(0, xy).
-    frame.box[0] -= std::min(0.0, frame.tilt);
-    frame.box[1] -= std::max(0.0, frame.tilt);
-    frame.boxed = true;
-}
-
-/// Reads the items up to ITEM: ATOMS.
-Frame read_frame_header(Lines& lines) {
-    Frame frame;
-    bool first = true;
-    while (true) {
-        const std::string_view item = lines.take("ITEM: ATOMS");
-        const Line line(item, lines.number(), &lines.source());
-        const auto starts = [&](std::string_view name) {
-            return item.starts_with(name) &&
-                   (item.size() == name.size() || std::isspace(static_cast<unsigned char>(item[name.size()])) != 0);
-        };
-        if (first && !starts("ITEM: TIMESTEP") && !starts("ITEM: UNITS") && !starts("ITEM: TIME")) {
-            line.fail(item, "start of a frame", "ITEM: TIMESTEP");
-        }
-        first = false;
-        if (starts("ITEM: TIMESTEP")) {
-            const Line value = lines.next("the time step");
-            value.require_size(1, "the time step");
-            frame.timestep = value.integer(0, "time step", 0, 1L << 62);
-        } else if (starts("ITEM: UNITS") || starts("ITEM: TIME")) {
-            (void)lines.take("units or time");
-        } else if (starts("ITEM: NUMBER OF ATOMS")) {
-            const Line value = lines.next("the number of atoms");
-            value.require_size(1, "the number of atoms");
-            frame.atoms = value.integer(0, "number of atoms", 0, most_disks);
-        } else if (starts("ITEM: BOX BOUNDS")) {
-            read_bounds(lines, item.substr(std::string_view("ITEM: BOX BOUNDS").size()), frame);
-        } else if (starts("ITEM: ATOMS")) {
-            if (frame.atoms < 0 || !frame.boxed) {
-                line.fail(item, "item", "ITEM: NUMBER OF ATOMS and ITEM: BOX BOUNDS before it");
-            }
-            for (std::size_t k = 2; k < line.size(); ++k) {
-                frame.names.emplace_back(line.field(k));
-            }
-            return frame;
-        } else {
-            line.fail(item, "item", "TIMESTEP, UNITS, TIME, NUMBER OF ATOMS, BOX BOUNDS or ATOMS");
-        }
-    }
+    rows.finish(raw);
 }
 
 /// Coordinates as wrapped, unwrapped or scaled to the box.
@@ -357,21 +264,21 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
             lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
                                    options.frame.value_or(number)));
         }
-        const Frame frame = read_frame_header(lines);
+        const DumpHeader frame = read_dump_header(lines, "ATOMS");
         Lines atoms = lines;
-        for (long k = 0; k < frame.atoms; ++k) {
+        for (long k = 0; k < frame.rows; ++k) {
             const std::string_view row =
-                lines.take(fmt::format("atom {} of {} in frame {}", k + 1, frame.atoms, number));
+                lines.take(fmt::format("atom {} of {} in frame {}", k + 1, frame.rows, number));
             if (row.starts_with("ITEM:")) {
-                lines.fail(fmt::format("'{}': expected atom {} of {} in frame {}", row.substr(0, 40), k + 1,
-                                       frame.atoms, number));
+                lines.fail(fmt::format("'{}': expected atom {} of {} in frame {}", row.substr(0, 40), k + 1, frame.rows,
+                                       number));
             }
         }
         if (options.frame ? number < *options.frame : !lines.only_blanks()) {
             continue;
         }
         const std::string where = fmt::format("{}:{}", source, atoms.number());
-        if (frame.atoms == 0) {
+        if (frame.rows == 0) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: frame {} has 0 atoms: expected at least 1", where, number));
         }
@@ -379,14 +286,15 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         Coordinates coordinates;
         coordinates.find(columns, frame.names, where, raw);
         find_size(columns, frame.names, options, where, raw);
+        find_selection(columns, frame.names, options, where);
         columns.id = find_column(frame.names, "id", where);
         Rows rows(columns, source);
-        for (long k = 0; k < frame.atoms; ++k) {
+        for (long k = 0; k < frame.rows; ++k) {
             const Line line = atoms.next("an atom");
-            line.require_size(frame.names.size(), fmt::format("atom {} of {}", k + 1, frame.atoms));
+            line.require_size(frame.names.size(), fmt::format("atom {} of {}", k + 1, frame.rows));
             rows.add(line, raw);
         }
-        rows.finish();
+        rows.finish(raw);
         raw.box = frame.box;
         raw.tilt = frame.tilt;
         raw.boundary = frame.boundary;

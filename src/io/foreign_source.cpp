@@ -94,8 +94,8 @@ long Line::integer(std::size_t k, const std::string& name, long lowest, long hig
     return value;
 }
 
-Lines::Lines(std::string_view text, const std::string& source)
-    : rest_(without_byte_order_mark(text)), source_(&source) {}
+Lines::Lines(std::string_view text, const std::string& source, int before)
+    : rest_(without_byte_order_mark(text)), source_(&source), number_(before) {}
 
 std::string_view Lines::peek() const {
     return rest_.substr(0, rest_.find('\n'));
@@ -175,7 +175,30 @@ void find_size(Columns& columns, const std::vector<std::string>& names, const Fo
     raw.notes.push_back(fmt::format("{} from column '{}'", word(raw.meaning), columns.size_name));
 }
 
+void find_selection(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
+                    const std::string& where) {
+    columns.type = find_column(names, "type", where);
+    if (!options.select) {
+        return;
+    }
+    columns.select = find_column(names, options.select->first, where);
+    columns.selected = options.select->second;
+    if (columns.select < 0) {
+        std::vector<std::string> named = names;
+        std::erase(named, "");
+        throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}' to select disks by: expected one of: {}",
+                                                      where, options.select->first, fmt::join(named, " ")));
+    }
+}
+
 void Rows::add(const Line& line, Raw& raw) {
+    ++seen_;
+    if (columns_.type >= 0) {
+        ++types_[std::string(line.field(static_cast<std::size_t>(columns_.type)))];
+    }
+    if (columns_.select >= 0 && line.field(static_cast<std::size_t>(columns_.select)) != columns_.selected) {
+        return;
+    }
     const std::size_t disk = raw.x.size();
     const auto number = [&](int column, const char* name) {
         return line.number(static_cast<std::size_t>(column), fmt::format("{} of disk {}", name, disk));
@@ -207,7 +230,22 @@ void Rows::add(const Line& line, Raw& raw) {
     raw.size.push_back(size);
 }
 
-void Rows::finish() {
+void Rows::finish(Raw& raw) {
+    if (columns_.select >= 0 && seen_ > 0 && raw.x.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: no row has '{}' in the column that selects disks: expected one at least", source_,
+                                columns_.selected));
+    }
+    if (columns_.select >= 0) {
+        raw.notes.push_back(fmt::format("{} of {} rows are disks, as selected", raw.x.size(), seen_));
+    } else if (types_.size() > 1) {
+        std::vector<std::string> words;
+        for (const auto& [type, rows] : types_) {
+            words.push_back(fmt::format("{} ({} rows)", type, rows));
+        }
+        raw.notes.push_back(fmt::format("types {}: every row is taken for a disk; --select type={} takes one type",
+                                        fmt::join(words, ", "), types_.begin()->first));
+    }
     std::sort(ids_.begin(), ids_.end());
     const auto twice =
         std::adjacent_find(ids_.begin(), ids_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });

@@ -4,6 +4,8 @@
 #include <isostat/io/foreign.hpp>
 
 #include <array>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,7 +46,8 @@ std::optional<double> to_number(std::string_view text);
 /// lines.
 class Lines {
   public:
-    Lines(std::string_view text, const std::string& source);
+    /// \p before: lines of the file before the text.
+    Lines(std::string_view text, const std::string& source, int before = 0);
     [[nodiscard]] bool at_end() const { return rest_.empty(); }
     /// True when only blank lines are left.
     [[nodiscard]] bool only_blanks() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
@@ -63,7 +66,7 @@ class Lines {
   private:
     std::string_view rest_;
     const std::string* source_;
-    int number_ = 0;
+    int number_;
 };
 
 constexpr long most_disks = 100'000'000;
@@ -88,7 +91,14 @@ struct Columns {
     SizeMeaning meaning = SizeMeaning::radius;
     std::string size_name; ///< empty: a constant
     double constant = 0;
+    int select = -1; ///< rows with `selected` there are disks; -1: every row is one
+    std::string selected;
+    int type = -1; ///< counted, for a note
 };
+
+/// The column that selects rows, and that of types. Throws when the stated one is not there.
+void find_selection(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
+                    const std::string& where);
 
 /// Takes the size from the statement of the user, or from one of the names that state it. Throws when nothing or more
 /// than one does; `where` starts the message.
@@ -98,19 +108,22 @@ void find_size(Columns& columns, const std::vector<std::string>& names, const Fo
 /// Column `name`, or -1. Throws when there are two.
 int find_column(const std::vector<std::string>& names, std::string_view name, const std::string& where);
 
-/// Adds rows to a raw packing; finds ids given twice and different z.
+/// Adds the rows that are selected to a raw packing; finds ids given twice and different z.
 class Rows {
   public:
-    Rows(const Columns& columns, std::string source) : columns_(columns), source_(std::move(source)) {}
+    Rows(Columns columns, std::string source) : columns_(std::move(columns)), source_(std::move(source)) {}
     void add(const Line& line, Raw& raw);
-    /// Throws when an id was given twice.
-    void finish();
+    /// Throws when an id was given twice, or no row is selected. Several types are noted.
+    void finish(Raw& raw);
+    [[nodiscard]] long seen() const { return seen_; }
 
   private:
     Columns columns_;
     std::string source_;
     std::optional<double> z_;
     std::vector<std::pair<long, int>> ids_; ///< with their lines
+    std::map<std::string, int, std::less<>> types_;
+    long seen_ = 0; ///< rows
 };
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);

@@ -144,6 +144,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
         throw Error(ErrorKind::bad_input, fmt::format("{}: no columns x and y: expected them in the header", where));
     }
     find_size(columns, header.names, options, where, raw);
+    find_selection(columns, header.names, options, where);
     Rows rows(columns, source);
     while (!lines.at_end()) {
         if (is_blank(lines.peek()) || is_comment(lines.peek())) {
@@ -154,7 +155,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
         line.require_size(header.names.size(), "one value per column");
         rows.add(line, raw);
     }
-    rows.finish();
+    rows.finish(raw);
     if (raw.x.empty()) {
         lines.fail("the file ends here: expected rows of numbers after the names");
     }

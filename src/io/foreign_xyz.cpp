@@ -184,6 +184,7 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
                         fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
         }
         find_size(columns, names, options, where, raw);
+        find_selection(columns, names, options, where);
         read_box(comment, keys, raw);
         Rows reader(columns, source);
         for (long k = 0; k < rows; ++k) {
@@ -191,7 +192,7 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
             line.require_size(names.size(), fmt::format("row {} of {}", k + 1, rows));
             reader.add(line, raw);
         }
-        reader.finish();
+        reader.finish(raw);
         if (number > 0) {
             raw.notes.push_back(fmt::format("frame {}", number));
         }

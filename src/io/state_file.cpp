@@ -331,6 +331,11 @@ template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& pa
         if (format == "state" || format == "vertex") {
             throw;
         }
+        if (format.starts_with("lammps") || (format == "xyz" && text.find("Properties=") != std::string::npos)) {
+            throw Error(error.kind(), fmt::format("{}: a packing of another program ({}): expected a state or a "
+                                                  "vertex text; isostat import makes a state of it",
+                                                  path.string(), format));
+        }
         throw Error(error.kind(), fmt::format("{} (neither a state nor a vertex text; isostat import makes a state of "
                                               "a packing of another program: {}?)",
                                               error.what(), format));

@@ -61,7 +61,7 @@ State<2> in_cell(State<2> state) {
     return state;
 }
 
-/// m_x and m_y periods of a cell.
+/// m_x and m_y periods of a cell. \pre there are periodic axes
 Point periods(const Packing<2>& packing, double mx, double my) {
     return {mx * packing.lattice(0, 0) + my * packing.lattice(0, 1), my * packing.lattice(1, 1)};
 }
@@ -178,8 +178,11 @@ void draw_walls(Canvas& canvas, const State<2>& state) {
 
 /// Dashed: the sides that repeat.
 void draw_cell(Canvas& canvas, const Packing<2>& packing) {
+    if (!packing.cell.any()) {
+        return;
+    }
     const std::array<Point, 4> corner = corners(packing);
-    for (std::size_t k = 0; k < 4 && packing.cell.any(); ++k) {
+    for (std::size_t k = 0; k < 4; ++k) {
         if (packing.cell.periodic[(k + 1) % 2]) { // sides 0 and 2 are along x: they repeat along y
             canvas.line(corner[k], corner[(k + 1) % 4], 2.5, "cell");
         }

@@ -408,16 +408,18 @@ int main(int argc, char** argv) {
                        "set output 'arc-accuracy.svg'\nset grid\nset logscale xy\nset format y '10^{%T}'\n"
                        "set xrange [0.2:20]\nset xtics (0.2, 0.5, 1, 2, 5, 10, 20)\nset yrange [1e-14:1e-3]\n"
                        "set xlabel 'CPU time per arc / one KLU analysis + factorisation'\n"
-                       "set ylabel 'largest error over the arcs'\nset key below maxcols 2 font ',11'\nplot \\\n";
+                       "set ylabel 'largest error over the arcs'\nset key top right font ',11'\nplot \\\n";
     int colour = 1;
     for (const char* serve : {"fresh at every arc", "serve 5 arcs", "serve 20 arcs", "serve 80 arcs"}) {
-        plot += fmt::format("  '<grep \"{0}\" arc_factors.csv' using 3:6 with points pt 7 ps 0.8 lc {1} title 'factors "
-                            "{0}: arc ends', \\\n  '' using 3:8 with linespoints pt 5 ps 0.8 lc {1} title 'forces, by "
-                            "accuracy asked', \\\n",
-                            serve, colour++);
+        plot +=
+            fmt::format("  '<grep \"{0}\" arc_factors.csv' using 3:6 with points pt {2} ps 0.9 lc {1} title 'factors "
+                        "{0}: arc ends', \\\n  '' using 3:8 with linespoints pt {3} ps 0.9 lc {1} title 'forces, by "
+                        "accuracy asked', \\\n",
+                        serve, colour, 2 * colour + 3, 2 * colour + 2);
+        ++colour;
     }
-    plot += "  'arc_levels.csv' using 2:9 skip 1 with points pt 13 ps 1.4 lc 7 title 'whole runs with proofs: "
-            "equilibria', \\\n  '' using 2:7 skip 1 with points pt 12 ps 1.4 lc 7 title 'force that opens', \\\n"
+    plot += "  'arc_levels.csv' using 2:9 skip 1 with points pt 13 ps 1.4 lc 8 title 'whole runs with proofs: "
+            "equilibria', \\\n  '' using 2:7 skip 1 with points pt 12 ps 1.4 lc 8 title 'force that opens', \\\n"
             "  '' using 2:9:1 skip 1 with labels offset 0,-0.9 font ',11' notitle\n";
     bench::draw(folder, "arc-accuracy", plot);
     return program.finish(good);

@@ -149,24 +149,25 @@ int main(int argc, char** argv) {
             if (exact && !with_exact) {
                 continue;
             }
-            text += fmt::format("{}  'degeneracy.dat' index {} using {} with linespoints pt {} ps 0.4 lc {}{} {}",
-                                text.empty() ? "plot \\\n" : ", \\\n", k, columns, exact ? 6 : 7, k + 1,
-                                exact ? " dt 2" : "",
-                                titles ? fmt::format("title '{}'", list[k].name) : std::string("notitle"));
+            const std::size_t point = 2 * (k % 5) + (exact ? 4 : 5); // open or filled
+            text +=
+                fmt::format("{}  'degeneracy.dat' index {} using {} with linespoints pt {} ps 0.5 lc {}{} {}",
+                            text.empty() ? "plot \\\n" : ", \\\n", k, columns, point, k % 8 + 1, exact ? " dt 2" : "",
+                            titles ? fmt::format("title '{}'", list[k].name) : std::string("notitle"));
         }
         return text + "\n";
     };
     bench::draw(
         folder, "degeneracy",
-        std::string(
-            "set terminal svg size 900,640 font 'sans,12' background 'white'\nset output 'degeneracy.svg'\n"
-            "set multiplot\nset logscale xy\nset xrange [1:300]\nset grid\nset lmargin at screen 0.09\n"
-            "set rmargin at screen 0.62\nset format y '10^{%T}'\nset key at screen 0.99, screen 0.95 font ',10'\n"
-            "set tmargin at screen 0.97\nset bmargin at screen 0.56\nset ylabel 'time, vertex or arc included "
-            "(ms)'\n") +
+        std::string("set terminal svg size 900,640 font 'sans,12' background 'white'\nset output 'degeneracy.svg'\n"
+                    "set multiplot\nset logscale xy\nset xrange [1:300]\nset grid\nset lmargin at screen 0.09\n"
+                    "set rmargin at screen 0.62\nset format y '10^{%T}'\nset key at screen 0.64, screen 0.95 left Left "
+                    "reverse font ',10'\n"
+                    "set tmargin at screen 0.97\nset bmargin at screen 0.56\nset ylabel 'time, vertex or arc included "
+                    "(ms)'\n") +
             curves("1:2", true, true) +
             "set tmargin at screen 0.47\nset bmargin at screen 0.09\nset xlabel '-log_{10} delta'\n"
-            "set ylabel 'proved error / quantity'\nset label 'exact: 0' at graph 0.72, graph 0.9\n" +
+            "set ylabel 'proved error / quantity'\nset label 'exact coordinates: error 0' at graph 0.03, graph 0.15\n" +
             curves("1:($3 > 0 ? $3 : NaN)", false, false) + "unset multiplot\n");
     return program.finish(right);
 }

@@ -46,6 +46,22 @@ RunVerification altered(const fs::path& folder, const std::string& file, const s
     return run;
 }
 
+/// The entry of a record that names an exchange at second order, with the braces; empty: none does.
+std::string exchange_in(const std::string& events) {
+    const std::size_t at = events.find("\"second order\"");
+    if (at == std::string::npos) {
+        return {};
+    }
+    const std::size_t begin = events.rfind('{', at);
+    return events.substr(begin, events.find('}', at) + 1 - begin);
+}
+
+/// The record of the exchange at second order: `by` in the place of `from` in it.
+RunVerification exchanged_otherwise(const fs::path& folder, const std::string& from, const std::string& by) {
+    const std::string entry = exchange_in(scratch::read(folder / "events.jsonl"));
+    return altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(checker)
@@ -134,6 +150,64 @@ BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
     BOOST_TEST(run.choices_checked > 0);
     const std::string header = scratch::read(folder / "run.json");
     BOOST_TEST((altered(folder, "run.json", "choose", "perturb").verdict != Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::two_crests(true), -1, 1, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST(run.equilibria_proved == 2);
+    const std::string entry = exchange_in(scratch::read(folder / "events.jsonl"));
+    BOOST_TEST_MESSAGE(entry);
+    const auto refuted = [&](const std::string& from, const std::string& by, const std::string& said) {
+        BOOST_TEST_CONTEXT(from << " -> " << by) {
+            const RunVerification forged = exchanged_otherwise(folder, from, by);
+            BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
+            BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
+        }
+    };
+    refuted("\"0-right\"", "\"1-3\"", "share in");            // its share is -1
+    refuted("\"0-right\"", "\"0-bottom\"", "that cannot be"); // it is what opens
+    refuted("\"1-right\"", "\"0-4\"", "no such exchange");    // does not touch
+    refuted("\"1-right\"", "\"1-top\"", "that cannot be");    // a contact already
+    refuted("\"first_order\":[-", "\"first_order\":[", "second derivative");
+    refuted("\"against_first_order\":[", "\"against_first_order\":[-", "share");
+    const auto not_proved = [&](const std::string& from, const std::string& by) {
+        const RunVerification forged = exchanged_otherwise(folder, from, by);
+        BOOST_TEST((forged.verdict != Verdict::proved));
+        BOOST_TEST_MESSAGE(by << ": " << forged.wrong << (forged.undecided.empty() ? "" : forged.undecided[0]));
+    };
+    not_proved("\"0-right\"", "\"1-top\""); // its share is 0, which an interval does not tell
+    not_proved("\"0-right\"", "\"0-2\"");   // may give way as well, but leads to another list
+    not_proved(entry, "");                  // 1-right overlaps
+}
+
+BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refused) {
+    const scratch::Folder scratch_folder;
+    const fs::path needed = scratch_folder / "needed";
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::two_crests(true), -1, 1, needed);
+    play(crafted::two_crests(false), -1, 1, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    const std::string events = scratch::read(folder / "events.jsonl");
+    BOOST_TEST(exchange_in(events).empty());
+    std::string entry = exchange_in(scratch::read(needed / "events.jsonl"));
+    for (const auto& [from, to] :
+         {std::pair{"1-right", "0-RIGHT"}, std::pair{"0-right", "1-right"}, std::pair{"0-RIGHT", "0-right"}}) {
+        entry = scratch::replaced(entry, from, to);
+    }
+    const std::string key = "\"perturbed\":[";
+    const bool others = events.find(key) < events.find('\n');
+    const RunVerification forged =
+        others ? altered(folder, "events.jsonl", key,
+                         key + entry + (events[events.find(key) + key.size()] == ']' ? "" : ","))
+               : altered(folder, "events.jsonl", "}\n", ",\"perturbed\":[" + entry + "]}\n");
+    BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
+    BOOST_TEST(forged.wrong.find("second derivative") != std::string::npos, forged.wrong);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -32,6 +32,54 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_state_and_of_a_crafted_packing) {
     BOOST_TEST(contains(lattice.out, "at no threshold"));
 }
 
+BOOST_AUTO_TEST_CASE(plateau_says_what_is_wrong_with_walls_and_pseudo_atoms) {
+    const std::string dump = scratch::data("series/disks.dump");
+    const auto with = [&dump](std::vector<std::string> more) {
+        more.insert(more.begin(), {"plateau", dump, "--frame", "0", "--walls", "box"});
+        return run(more);
+    };
+    const auto bounds = with({});
+    expect(bounds, 1);
+    BOOST_TEST(contains(bounds.out, "no disk is near the left wall, the nearest gap is"), bounds.out);
+    const auto exact = with({"--box", "0:15.4590235640695,0:14.8856200965158"});
+    expect(exact, 0);
+    BOOST_TEST(!contains(exact.out, "no disk is near"), exact.out);
+    BOOST_TEST(!contains(exact.out, "digits down to"), exact.out);
+    // Rounded to one decimal, walls close contacts far too early.
+    const auto rounded = with({"--box", "0:15.4,0:14.8"});
+    BOOST_TEST(contains(rounded.out, "--box has digits down to 0.1"), rounded.out);
+    // Overlaps stand in three rows at most, not in every second one.
+    const auto table = exact.out.substr(exact.out.find("threshold candidates"));
+    const auto rows = table.substr(0, table.find("\n\n"));
+    const auto negative = std::count(rows.begin(), rows.end(), '|') == 0 ? 99 : [&rows] {
+        int count = 0;
+        for (std::size_t at = 0; (at = rows.find('\n', at)) != std::string::npos; ++at) {
+            const std::size_t first = rows.find_first_not_of(" \n", at);
+            count += first != std::string::npos && rows[first] == '-' ? 1 : 0;
+        }
+        return count;
+    }();
+    BOOST_TEST(negative >= 2);
+    BOOST_TEST(negative <= 5);
+}
+
+BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "start.data").string();
+    scratch::write(file, "disks and a wall\n\n3 atoms\n2 atom types\n\n-4 9 xlo xhi\n-4 9 ylo yhi\n-0.5 0.5 zlo zhi\n\n"
+                         "Atoms # sphere\n\n1 1 2 1 1 1 0\n2 1 2 1 3 1 0\n3 2 1 1 8 -2 0\n");
+    const auto all = run({"plateau", file});
+    BOOST_TEST(contains(all.out, "types 1 (2 rows), 2 (1 rows): every row is taken for a disk"), all.out);
+    BOOST_TEST(contains(all.out, "disks                       3,"), all.out);
+    const auto some = run({"plateau", file, "--select", "type=1"});
+    BOOST_TEST(contains(some.out, "disks                       2,"), some.out);
+    BOOST_TEST(!contains(some.out, "every row is taken"), some.out);
+    expect(run({"plateau", file, "--select", "kind=1"}), 65, {"start.data", "no column 'kind'", "type"});
+    expect(run({"plateau", file, "--select", "type=3"}), 65, {"no row has '3'"});
+    expect(run({"plateau", file, "--select", "type"}), 64, {"COLUMN=VALUE"});
+    expect(run({"plateau", scratch::data("vertex100.txt"), "--select", "type=1"}), 64, {"--select"});
+}
+
 BOOST_AUTO_TEST_CASE(plateau_of_a_table_with_walls_in_text_json_and_csv) {
     const scratch::Folder folder;
     const std::string file = (folder / "disks.csv").string();

@@ -25,11 +25,32 @@ BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
     for (const char* name : {"run.json", "events.jsonl", "equilibria.csv"}) {
         expect(run({"inspect", path("run") + "/" + name}), 65, {"a file of a run; its folder is meant"});
     }
+    for (const char* command : {"inspect", "run", "verify"}) {
+        std::vector<std::string> words{command, scratch::data("series/disks.dump")};
+        if (words[0] == "run") {
+            words.insert(words.end(), {"-o", path("o")});
+        }
+        expect(run(words), 65, {"a LAMMPS dump: for isostat plateau, import, snap, not for " + words[0]});
+    }
+    expect(run({"convert", scratch::data("series/disks.dump"), "-o", path("c")}), 65, {"isostat import makes a state"});
     // The right kind with something wrong in it gets no such advice.
     scratch::write(folder / "bad.toml", "[packing]\ndisks = 4\nsede = 1\n");
     const Outcome bad = run({"plan", path("bad.toml")});
     expect(bad, 65, {"sede"});
     BOOST_TEST(!contains(bad.err, "not for"));
+}
+
+BOOST_AUTO_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_force) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "few.json").string();
+    expect(run({"convert", scratch::data("vertex100.txt"), "-o", file}), 0);
+    std::string state = scratch::read(file);
+    const std::size_t list = state.find("\"contacts\": [") + std::string("\"contacts\": [").size();
+    state.erase(list, state.find(']', list) + 2 - list); // the first contact: 201 of 202 are left
+    scratch::write(file, state);
+    const Outcome few = run({"inspect", file, "--json"});
+    BOOST_TEST(contains(few.out, "\"N\":201"), few.out + few.err);
+    BOOST_TEST(contains(few.out, "\"backbone\":185"), few.out.substr(0, 600));
 }
 
 BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {

@@ -62,7 +62,8 @@ class Copy {
         return (folder_ / "series.toml").string();
     }
     [[nodiscard]] isostat::compare::Comparison compare(const isostat::compare::CompareOptions& options = {}) const {
-        return isostat::compare::compare(isostat::compare::read_series(write()), options);
+        isostat::compare::SeriesReader reader(write());
+        return isostat::compare::compare(reader, options);
     }
     /// Number (from 0) of the line of a frame (from 0) and row (from 0) in a dump.
     static std::size_t line(const Lines& dump, std::size_t frame, std::size_t row) {

@@ -234,10 +234,10 @@ BOOST_AUTO_TEST_CASE(bad_input_is_named_with_file_and_row) {
 
 BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
     const Copy copy(3);
-    const compare::Series series = compare::read_series(copy.write());
-    const Comparison result = compare::compare(series);
+    compare::SeriesReader reader(copy.write());
+    const Comparison result = compare::compare(reader);
     const scratch::Folder folder;
-    (void)compare::write_comparison(folder / "out", series, result);
+    (void)compare::write_comparison(folder / "out", reader.series(), result);
     for (const char* name : {"comparison.csv", "path.csv", "comparison.json", "comparison.dat", "comparison.gp"}) {
         BOOST_TEST(!scratch::read((folder / "out") / name).empty(), name);
         BOOST_TEST(!std::filesystem::exists(folder / "out" / (std::string(name) + ".part")));

@@ -309,7 +309,7 @@ BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
     refused(replaced(first, "7 9 1", "7 7 1"), 0, {"p.dump:10:", "another disk"});
     refused(replaced(first, "7 9 1", "7 9 nan"), 0, {"p.dump:10:", "f", "nan"});
     refused(replaced(first, "i j f", "i j g"), 0, {"p.dump:9:", "no column 'f'", "i, j, g"});
-    refused(replaced(first, "ENTRIES\n1", "ENTRIES\n2"), 0, {"p.dump", "entry 2 of 2"});
+    refused(replaced(first, "ENTRIES\n1", "ENTRIES\n2"), 0, {"p.dump", "row 2 of 2"});
     refused(replaced(first, "ENTRIES i", "ATOMS i"), 0, {"p.dump:9:", "style local"});
 }
 

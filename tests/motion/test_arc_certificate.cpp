@@ -237,7 +237,9 @@ BOOST_AUTO_TEST_CASE(a_list_of_candidates_serves_half_of_its_reach) {
     CertifiedRolling rolling;
     const Known start = rolling.start();
     const Known stop = rolling.stop();
-    const MovingPart<2> part(start.vertex(), stop.vertex(), 1, 1e-15, 1e-15);
+    const ArcVertex<2> from = start.vertex();
+    const ArcVertex<2> to = stop.vertex();
+    const MovingPart<2> part(from, to, 1, 1e-15, 1e-15);
     InverseBoundCache cache;
     const auto centre = part.at_start(cache);
     BOOST_TEST_REQUIRE((centre != nullptr));

@@ -116,4 +116,24 @@ inline State<2> pile(int columns, double load) {
     return in_box(disks, 3 * columns - 1, 4.5, 1, load, contacts);
 }
 
+/// Disks 0 and 1 of radius 2, one above the other, at the crests of fixed disks of radii 1 and 2 to their left, both
+/// under the right wall: disk 0 on the bottom and pushed up by 1.5, disk 1 under the top wall, each pushed left by 1.
+/// h = 1; F1 = 1. Unloaded from F2 = 2 to 1.5, disk 0 leaves the bottom, and both roll up by s: they fall by s^2 / 6
+/// and s^2 / 8. So the right wall stays with disk 1; a list without 1-right lets it overlap at second order, with -1/3
+/// + 1/4, and the row of 1-right is 0-right + 0-2 - 1-3. Disk 1 ends at the fixed disk 4.
+inline State<2> two_crests(bool disk_0_is_larger) {
+    State<2> state = in_box({{2, 7, 2}, {2, 7, 6}, {1, 4, 2}, {2, 3, 6}, {0.3, 4.9, 7.5}}, 9, 8, 1.0 / 8, 2.0 / 9,
+                            {bottom(0), pair(0, 1), pair(0, 2), pair(1, 3), right(0), right(1), top(1)});
+    state.packing.fixed = {0, 0, 1, 1, 1};
+    state.load.reference_length = {9, 8};
+    state.load.disk_force = {-1, 1.5, -1, 0, 0, 0, 0, 0, 0, 0};
+    for (std::size_t k = 4; k < state.load.infinitesimal.size(); ++k) {
+        state.load.infinitesimal[k] = 0;
+    }
+    // What is larger at first order touches the right wall, and the other one does not.
+    state.perturbation.emplace();
+    state.perturbation->rho = {disk_0_is_larger ? 0.5 : 0.0, disk_0_is_larger ? 0.0 : 0.5, 0, 0, 0};
+    return state;
+}
+
 } // namespace crafted

@@ -12,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,7 +41,7 @@ struct Frame {
     std::vector<FileContact> contacts; ///< as they stand in the files, in their order; walls too
 };
 
-/// What the manifest says, with the frames.
+/// What the manifest says of every frame.
 struct Series {
     std::string title, program;
     ForceLaw law = ForceLaw::none;
@@ -50,15 +51,28 @@ struct Series {
         false;               ///< of each disk, from columns; else walls that a disk overlaps, with the force of the law
     double rest = 1e-3;      ///< largest unbalanced force of a frame at rest, in mean forces
     double agreement = 1e-3; ///< largest |force - stiffness overlap| of a frame that is understood, in mean forces
-    std::vector<Frame> frames;
 };
 
-/// Reads the manifest and every frame. Disks are matched by id, in the order of the first frame; frames by time step.
-/// Throws `Error(bad_input)` with file, line (of rows: and column) and what was expected: unknown keys, missing columns
-/// and wall positions (the bounds of a dump are never taken), numbers that are none, ids that are not there, radii that
-/// change, time steps that a file does not have, sigma2 that is not the force on the wall over the reference length.
-/// Contradictions between forces, overlaps and lists are not looked at: `compare` names them frame by frame.
-Series read_series(const std::filesystem::path& manifest);
+/// The frames of a series, one after another: one is in memory at a time. Disks are matched by id, in the order of the
+/// first frame; frames by time step. The constructor (manifest, table of frames) and `next` throw `Error(bad_input)`
+/// with file, line (of rows: and column) and what was expected: unknown keys, missing columns and wall positions (the
+/// bounds of a dump are never taken), numbers that are none, ids that are not there, radii that change, time steps that
+/// a file does not have, sigma2 that is not the force on the wall over the reference length. Contradictions between
+/// forces, overlaps and lists are not looked at: `compare` names them frame by frame.
+class SeriesReader {
+  public:
+    explicit SeriesReader(const std::filesystem::path& manifest);
+    ~SeriesReader();
+    SeriesReader(const SeriesReader&) = delete;
+    SeriesReader& operator=(const SeriesReader&) = delete;
+    [[nodiscard]] const Series& series() const;
+    /// Nothing after the last one. Throws when there is none at all.
+    std::optional<Frame> next();
+
+  private:
+    struct Files;
+    std::unique_ptr<Files> files_;
+};
 
 /// What a frame is.
 /// - same: its list is that of the exact run at its load, and its vertex is proved;
@@ -140,10 +154,12 @@ struct Comparison {
     int status = 0;
 };
 
-/// Frames are judged one by one (`snap`, else `exchange`); the exact run starts from the first one, follows the loads
-/// of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance of each snapped
-/// frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded), the reason of
-/// the departure, soft limits. Cost: about two certificates per frame.
-Comparison compare(const Series& series, const CompareOptions& options = {});
+/// Frames are read and judged one by one (`snap`, else `exchange`); the exact run starts from the first one, follows
+/// the loads of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance of each
+/// snapped frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded), the
+/// reason of the departure, soft limits. Cost: about two certificates per frame; kept of a frame are its list and its
+/// numbers, with `local` a state too. Throws what `SeriesReader::next` throws, and `Error(bad_input)` when `start` has
+/// other radii than the frames.
+Comparison compare(SeriesReader& reader, const CompareOptions& options = {});
 
 } // namespace isostat::compare

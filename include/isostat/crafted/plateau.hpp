@@ -79,8 +79,8 @@ struct Plateau {
 Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain = Strain::isotropic);
 
 /// The same for every gap in [first, last] at which the contact list changes, thinned to about `rows` thresholds (0:
-/// none left out): half of them evenly over the changes and half evenly over the decades, and those next to the ends of
-/// the ranges. `first` and `last` are always among them.
+/// none left out): half of them evenly over the changes at gaps > 0, from the last overlap on, and half evenly over the
+/// decades, and those next to the ends of the ranges. `first` and `last` are always among them.
 Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain = Strain::isotropic);
 
 /// The contacts that `PlateauStep::backbone` counts at a threshold, sorted.

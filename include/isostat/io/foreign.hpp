@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace isostat {
@@ -37,8 +38,9 @@ struct ForeignOptions {
     std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi instead of the bounds in the file
     std::optional<long> frame;                ///< of a file with several, from 0; the last one otherwise
     std::vector<std::string> columns;         ///< of a table without a header; "-" is a column to leave out
-    bool cells = false;                       ///< periodic boundaries make a cell; else they are refused
-    bool periodic = false;                    ///< boundaries that the file leaves open are periodic
+    std::optional<std::pair<std::string, std::string>> select; ///< column and value: rows that have it are the disks
+    bool cells = false;        ///< periodic boundaries make a cell; else they are refused
+    bool periodic = false;     ///< boundaries that the file leaves open are periodic
     bool not_periodic = false; ///< boundaries that the file calls periodic (or does not deny to be) are open
 };
 
@@ -47,7 +49,8 @@ struct ForeignPacking {
     std::string format;    ///< a name of `foreign_formats()`
     std::vector<long> ids; ///< those of the file, one per disk; none: it has no column of them
     /// What was done to the numbers and what the file left open, one sentence each: which column gave the size, whether
-    /// scaled or shifted coordinates were rounded and by how much, boundaries that are not known.
+    /// scaled or shifted coordinates were rounded and by how much, boundaries that are not known, several types of
+    /// which every one was taken for disks.
     std::vector<std::string> notes;
 };
 

@@ -51,6 +51,8 @@ struct TieDecision {
     /// - "zero all along": a force and its slope vanish; `first`: its first-order term at the limit (no `against`);
     /// - "gap": `against` touches where `chosen` closes (or touches on from before); `other` is its first-order gap;
     /// - "step": both close on the way of length O(eps); first-order lengths of the two ways.
+    /// - "second order": `chosen` touches, would overlap, and took the place of `against` in the list (C3,
+    ///   degenerate.md); `first`: second derivative of its gap, `other`: the share of `against` in its row.
     std::string what;
     Contact chosen;
     Enclosure first;

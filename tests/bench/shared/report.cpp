@@ -203,7 +203,14 @@ int Program::finish(bool holds) const {
 }
 
 void draw(const std::filesystem::path& folder, const std::string& name, const std::string& script) {
-    std::ofstream(folder / (name + ".gp")) << script;
+    // Dark and light in turn: told apart in grey print too, where points and dashes do not do it.
+    constexpr const char* colours[] = {"#12365a", "#e07b1a", "#3f9a5c", "#a61c3c",
+                                       "#8a4fb0", "#c2a000", "#2f8f9d", "#555555"};
+    std::string palette;
+    for (std::size_t k = 0; k < std::size(colours); ++k) {
+        palette += fmt::format("set linetype {} lc rgb '{}' pt {}\n", k + 1, colours[k], 5 + 2 * (k % 4));
+    }
+    std::ofstream(folder / (name + ".gp")) << palette << script;
     const auto here = std::filesystem::current_path();
     std::filesystem::current_path(folder);
     if (std::system(("gnuplot " + name + ".gp").c_str()) != 0) {

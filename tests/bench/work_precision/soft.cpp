@@ -208,15 +208,16 @@ bool soft_grains(const Settings& settings) {
     draw(
         settings.folder, "soft",
         "set logscale xy\nset format '10^{%T}'\nset xlabel 'CPU s per state'\nset ylabel 'median error of the "
-        "forces'\nset key top "
+        "forces'\nset yrange [1e-4:4]\nset key top "
         "right\nplot " +
             [&] {
                 std::string text;
                 for (const int n : settings.sizes) {
-                    text += fmt::format("{0}'<grep \"^{1},\" soft_grains.csv' using 17:8 with linespoints pt 7 title "
-                                        "'n = {1}', '' using "
-                                        "17:8:2 with labels offset 2,0.6 font ',9' notitle",
-                                        text.empty() ? "" : ", ", n);
+                    text += fmt::format(
+                        "{0}'<grep \"^{1},\" soft_grains.csv' using 17:8 with linespoints pt {2} ps 0.8 title "
+                        "'n = {1}', '' using "
+                        "17:8:2 with labels left offset 0.8,0.5 font ',9' notitle",
+                        text.empty() ? "" : ", ", n, text.empty() ? 7 : 5);
                 }
                 return text + "\n";
             }());

@@ -1,5 +1,6 @@
 #include "checker/gap_course.hpp"
 
+#include "checker/images.hpp"
 #include "checker/index.hpp"
 
 #include <fmt/format.h>
@@ -50,6 +51,7 @@ struct GapCourses::Motion {
         const double m = period_weight(pair); // |D x|^2 <= (2 + |m|^2) |x|^2
         const double weight = pair.image.is_here() ? root_of_two : root_above(sum_above(2, product_above(m, m)));
         apart = product_above(weight, sum_above(tube.radius(), product_above(2, moving.rest)));
+        apart = pair.image.is_here() ? apart : sum_above(apart, moving.off_rest(pair));
         rate_apart = product_above(weight, tube.slope_error());
     }
 
@@ -155,11 +157,34 @@ bool GapCourses::look(const Tube& tube, const Contact& pair, double from, double
     return true;
 }
 
-/// Pairs that may come to touch while s stays within h of the centre: all others keep away from each other by K19.
-std::vector<Contact> GapCourses::near(const Tube& tube, double h) const {
-    const Packing<2>& packing = moving_.state.packing;
-    const std::size_t disks = packing.radius.size();
-    const std::vector<double>& q = tube.centre();
+namespace {
+
+double largest_of(const std::vector<double>& x) {
+    double most = 0;
+    for (const double c : x) {
+        most = std::max(most, std::abs(c));
+    }
+    return most;
+}
+
+constexpr double more = 1 + 1e-12; // the roundings of a difference and of four sums
+
+/// Of the centres.
+double extent(const std::vector<double>& q, std::size_t disks) {
+    std::array<double, 2> low{q[0], q[1]};
+    std::array<double, 2> high = low;
+    for (std::size_t k = 0; k < 2 * disks; ++k) {
+        low[k % 2] = std::min(low[k % 2], q[k]);
+        high[k % 2] = std::max(high[k % 2], q[k]);
+    }
+    return std::hypot(high[0] - low[0], high[1] - low[1]) * more;
+}
+
+} // namespace
+
+/// How far each disk goes, and behind them walls or cell, while s stays within h of the centre.
+std::vector<double> GapCourses::ways(const Tube& tube, double h) const {
+    const std::size_t disks = moving_.state.packing.radius.size();
     const auto way_of = [&](std::size_t k) { // of the curve, along one coordinate
         double sum = 0;
         for (std::size_t order = tube.coefficients().size(); order > 0; --order) {
@@ -171,18 +196,23 @@ std::vector<Contact> GapCourses::near(const Tube& tube, double h) const {
     for (std::size_t g = 0; g <= disks; ++g) {
         way[g] = sum_above(way_of(2 * g), way_of(2 * g + 1));
     }
+    if (moving_.state.packing.cell.any()) {
+        way[disks] = sum_above(way[disks], way_of(2 * disks + 2));
+    }
+    return way;
+}
+
+/// Pairs of disks that may come to touch on these ways: all others keep away from each other by K19.
+std::optional<std::vector<Contact>> GapCourses::near_disks(const Tube& tube, const std::vector<double>& way) const {
+    const Packing<2>& packing = moving_.state.packing;
+    const std::size_t disks = packing.radius.size();
+    const std::vector<double>& q = tube.centre();
     const double most = *std::max_element(way.begin(), way.end());
-    constexpr double more = 1 + 1e-12; // the roundings of a difference and of four sums
+    const double widest = 2 * (packing.max_radius() + most) * more;
     std::vector<std::size_t> order(disks);
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return q[2 * a] < q[2 * b]; });
-    const double widest = 2 * (packing.max_radius() + most) * more;
     std::vector<Contact> pairs;
-    const auto add = [&](const Contact& pair) {
-        if (!kept_.contains(pair)) {
-            pairs.push_back(pair);
-        }
-    };
     for (std::size_t p = 0; p < disks; ++p) {
         const std::size_t i = order[p];
         for (std::size_t k = p + 1; k < disks && q[2 * order[k]] - q[2 * i] <= widest; ++k) {
@@ -190,18 +220,70 @@ std::vector<Contact> GapCourses::near(const Tube& tube, double h) const {
             const double near = (packing.radius[i] + packing.radius[j] + way[i] + way[j]) * more;
             if ((moving_.moves[2 * i] || moving_.moves[2 * j]) && std::abs(q[2 * i] - q[2 * j]) <= near &&
                 std::abs(q[2 * i + 1] - q[2 * j + 1]) <= near) {
-                add({ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
+                pairs.push_back(
+                    {ContactKind::disk_disk, static_cast<int>(std::min(i, j)), static_cast<int>(std::max(i, j))});
             }
         }
+    }
+    return pairs;
+}
+
+/// The same in a cell, of all images; nothing: they are too many.
+std::optional<std::vector<Contact>> GapCourses::near_images(const Tube& tube, const std::vector<double>& way) const {
+    const Packing<2>& packing = moving_.state.packing;
+    const std::vector<double>& q = tube.centre();
+    const std::size_t disks = packing.radius.size();
+    const std::array<double, 3> cell{q[2 * disks], q[2 * disks + 1], q[2 * disks + 2]};
+    const double stretch = packing.cell.all()         ? cell[0] * cell[1] / std::hypot(cell[0], cell[1], cell[2])
+                           : packing.cell.periodic[0] ? cell[0]
+                                                      : cell[1];
+    const double strain = way[disks] / stretch * more; // |dA| over the smallest singular value of A
+    const CellImages images(packing, q);
+    const double shift = strain * extent(q, disks);
+    const auto reach = [&](std::size_t i, std::size_t j) {
+        return (packing.radius[i] + packing.radius[j] + way[i] + way[j] + shift) / (1 - strain) * more;
+    };
+    const double most = *std::max_element(way.begin(), way.end() - 1);
+    const double farthest = (2 * (packing.max_radius() + most) + shift) / (1 - strain) * more;
+    const auto range = images.range(2 * farthest);
+    if (!(strain < 0.5) || !images.usable() || !range) {
+        return std::nullopt;
+    }
+    const double slack = 0x1p-48 * (1 + images.periods(*range)) * largest_of(q);
+    std::vector<Placed> places = images.near_cell(*range, farthest + slack);
+    std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.x < b.x; });
+    std::set<Contact> pairs; // one of each
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        const Placed& one = places[p];
+        for (std::size_t k = p + 1; k < places.size() && places[k].x - one.x <= farthest + slack; ++k) {
+            const Placed& two = places[k];
+            const double near = reach(at(one.disk), at(two.disk)) + slack;
+            if ((one.central || two.central) && two.x - one.x <= near && std::abs(two.y - one.y) <= near) {
+                if (const Contact pair = pair_between(one, two); moving_.takes_part(pair)) {
+                    pairs.insert(pair);
+                }
+            }
+        }
+    }
+    return std::vector<Contact>(pairs.begin(), pairs.end());
+}
+
+/// Disks that may come to touch a wall.
+std::vector<Contact> GapCourses::near_walls(const Tube& tube, const std::vector<double>& way) const {
+    const Packing<2>& packing = moving_.state.packing;
+    const std::size_t disks = packing.radius.size();
+    const std::vector<double>& q = tube.centre();
+    std::vector<Contact> pairs;
+    for (std::size_t i = 0; i < disks; ++i) {
         for (std::size_t a = 0; a < 2; ++a) {
             const double near = (packing.radius[i] + way[i] + way[disks]) * more;
             const bool moves = moving_.moves[2 * i + a];
             if (packing.walls.lower[a] != WallKind::absent && moves && q[2 * i + a] <= near) {
-                add({ContactKind::lower_wall, static_cast<int>(i), static_cast<int>(a)});
+                pairs.push_back({ContactKind::lower_wall, static_cast<int>(i), static_cast<int>(a)});
             }
             if (packing.walls.upper[a] != WallKind::absent && (moves || moving_.moves[2 * disks + a]) &&
                 q[2 * disks + a] - q[2 * i + a] <= near) {
-                add({ContactKind::upper_wall, static_cast<int>(i), static_cast<int>(a)});
+                pairs.push_back({ContactKind::upper_wall, static_cast<int>(i), static_cast<int>(a)});
             }
         }
     }
@@ -209,15 +291,26 @@ std::vector<Contact> GapCourses::near(const Tube& tube, double h) const {
 }
 
 bool GapCourses::look(const Tube& tube, double from, double to) {
-    const std::vector<Contact> pairs = watched_ ? *watched_ : near(tube, std::max(std::abs(from), std::abs(to)));
+    std::optional<std::vector<Contact>> pairs = watched_;
+    if (!pairs) {
+        const std::vector<double> way = ways(tube, std::max(std::abs(from), std::abs(to)));
+        pairs = moving_.state.packing.cell.any() ? near_images(tube, way) : near_disks(tube, way);
+        if (!pairs) {
+            trouble_ = "there are too many images to look at";
+            return false;
+        }
+        const std::vector<Contact> walls = near_walls(tube, way);
+        pairs->insert(pairs->end(), walls.begin(), walls.end());
+        std::erase_if(*pairs, [this](const Contact& pair) { return kept_.contains(pair); });
+    }
     // What was seen falling and is not near any more stays where a look at it would put it.
-    for (const Contact& pair : pairs) {
+    for (const Contact& pair : *pairs) {
         if (!look(tube, pair, from, to)) {
             return false;
         }
     }
-    std::erase_if(last_,
-                  [&](const auto& entry) { return std::find(pairs.begin(), pairs.end(), entry.first) == pairs.end(); });
+    std::erase_if(
+        last_, [&](const auto& entry) { return std::find(pairs->begin(), pairs->end(), entry.first) == pairs->end(); });
     return true;
 }
 

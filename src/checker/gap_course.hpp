@@ -30,7 +30,12 @@ class GapCourses {
     struct Motion;
     bool look(const Tube& tube, const Contact& pair, double from, double to);
     bool walk(const Motion& motion, double from, double to, int depth, std::optional<Course>& last);
-    [[nodiscard]] std::vector<Contact> near(const Tube& tube, double h) const;
+    [[nodiscard]] std::vector<double> ways(const Tube& tube, double h) const;
+    [[nodiscard]] std::optional<std::vector<Contact>> near_disks(const Tube& tube,
+                                                                 const std::vector<double>& way) const;
+    [[nodiscard]] std::optional<std::vector<Contact>> near_images(const Tube& tube,
+                                                                  const std::vector<double>& way) const;
+    [[nodiscard]] std::vector<Contact> near_walls(const Tube& tube, const std::vector<double>& way) const;
 
     const Moving& moving_;
     std::set<Contact> kept_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isostat::checker {
 
@@ -59,10 +60,28 @@ std::vector<Placed> CellImages::places(const std::array<int, 2>& range) const {
                     {static_cast<int>(i),
                      {{static_cast<std::int8_t>(along), static_cast<std::int8_t>(across), 0}},
                      m == 0 && p == 0,
-                     q_[2 * i] + along * (packing_.cell.periodic[0] ? lattice(0, 0) : 0) + across * lattice(0, 1)});
+                     q_[2 * i] + along * (packing_.cell.periodic[0] ? lattice(0, 0) : 0) + across * lattice(0, 1),
+                     q_[2 * i + 1] + across * (packing_.cell.periodic[1] ? lattice(1, 1) : 0)});
             }
         }
     }
+    return all;
+}
+
+std::vector<Placed> CellImages::near_cell(const std::array<int, 2>& range, double distance) const {
+    std::vector<Placed> all = places(range);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    std::array<double, 4> box{infinity, -infinity, infinity, -infinity}; // of the disks in the cell
+    for (const Placed& place : all) {
+        if (place.central) {
+            box = {std::min(box[0], place.x), std::max(box[1], place.x), std::min(box[2], place.y),
+                   std::max(box[3], place.y)};
+        }
+    }
+    std::erase_if(all, [&](const Placed& place) {
+        return place.x < box[0] - distance || place.x > box[1] + distance || place.y < box[2] - distance ||
+               place.y > box[3] + distance;
+    });
     return all;
 }
 

@@ -17,6 +17,7 @@ struct Placed {
     Image image{};       ///< from where the disk is stored
     bool central = true; ///< the one in the cell itself: of every pair one is, but for a common period
     double x = 0;
+    double y = 0;
 };
 
 /// The pair that two of them are.
@@ -33,6 +34,8 @@ class CellImages {
     [[nodiscard]] int periods(const std::array<int, 2>& range) const;
     /// Every disk, moved into the cell by periods, and its images up to `range` periods away; 0 along axes with walls.
     [[nodiscard]] std::vector<Placed> places(const std::array<int, 2>& range) const;
+    /// Those of them that are within `distance` of a disk in the cell along x and along y, and some more.
+    [[nodiscard]] std::vector<Placed> near_cell(const std::array<int, 2>& range, double distance) const;
     /// So many periods suffice: a disk in the cell has no image within `distance` of a central one beyond them.
     /// Nothing: too many for a sweep.
     [[nodiscard]] std::optional<std::array<int, 2>> range(double distance) const;

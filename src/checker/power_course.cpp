@@ -110,9 +110,9 @@ class Bending {
         add_square(ways_, way);
         add_square(rates_, rate);
         largest_ = std::max(largest_, size);
-        if (moving_.loose[2 * at(c.i)] || moving_.loose[2 * at(c.j)]) {
-            const double fast = sum_above(rate, product_above(2, tube_.slope_error()));
-            at_rest_ = sum_above(at_rest_, product_above(product_above(size, 2 * moving_.rest), fast));
+        if (const double off = moving_.off_rest(c); off > 0) {
+            const double fast = sum_above(rate, product_above(root_above(tube_.spread()), tube_.slope_error()));
+            at_rest_ = sum_above(at_rest_, product_above(product_above(size, off), fast));
         }
     }
     [[nodiscard]] double open() const {

@@ -87,6 +87,37 @@ Pair<Bounds> difference(const std::vector<double>& x, const Contact& c, std::siz
     return d;
 }
 
+bool Moving::of_cell(const std::vector<bool>& flags) const {
+    const Packing<2>& packing = state.packing;
+    bool any = false;
+    for (std::size_t a = 0; a < 3 && packing.cell.any(); ++a) {
+        any = any || ((a == 2 || packing.cell.periodic[a]) && flags[packing.length_at(a)]);
+    }
+    return any;
+}
+
+bool Moving::takes_part(const Contact& c) const {
+    const auto x = 2 * at(c.i) + at(c.j);
+    switch (c.kind) {
+    case ContactKind::disk_disk:
+        return (c.i != c.j && (disk_moves(c.i) || disk_moves(c.j))) || (!c.image.is_here() && cell_moves());
+    case ContactKind::lower_wall: return moves[x];
+    case ContactKind::upper_wall: return moves[x] || moves[state.packing.length_at(at(c.j))];
+    case ContactKind::held: return moves[at(c.i)];
+    }
+    return true;
+}
+
+double Moving::off_rest(const Contact& pair) const {
+    const bool here = pair.image.is_here() || !of_cell(loose);
+    const double disks = (loose[2 * at(pair.i)] || loose[2 * at(pair.j)]) && pair.i != pair.j ? 1 : 0;
+    const double along = here ? 0 : std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]);
+    const double across = here ? 0 : std::abs(pair.image.m[1]);
+    const double x = disks + along;
+    const double y = disks + across;
+    return product_above(root_above(x * x + y * y), rest);
+}
+
 double period_weight(const Contact& pair) {
     const double m = pair.image.m[0];
     const double p = pair.image.m[1];
@@ -108,7 +139,7 @@ struct Blocks {
                 add(at(disk), 1);
             }
         }
-        if (!c.image.is_here()) {
+        if (!c.image.is_here() && moving.cell_moves()) {
             add(moving.state.packing.radius.size(), period_weight(c));
         }
     }
@@ -282,8 +313,7 @@ void Tube::bound_residuals() {
             }
             residual[k] = value.size();
         }
-        if (moving_.loose[2 * i] || moving_.loose[2 * j]) {
-            const double off = product_above(root_of_two, moving_.rest);
+        if (const double off = moving_.off_rest(c); off > 0) {
             stretch[0] = off;
             residual[0] = sum_above(residual[0], product_above(off, sum_above(length_above(d[0]), off)));
             for (std::size_t k = 1; k <= order; ++k) {

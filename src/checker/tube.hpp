@@ -25,6 +25,14 @@ struct Moving {
         const auto x = 2 * static_cast<std::size_t>(i);
         return moves[x] || moves[x + 1]; // a pinned disk of a channel: across it only
     }
+    /// The images of a disk move with the cell.
+    [[nodiscard]] bool cell_moves() const { return of_cell(moves); }
+    [[nodiscard]] bool takes_part(const Contact& c) const;
+    /// |D_l x| of a pair is known up to this, because of what rests.
+    [[nodiscard]] double off_rest(const Contact& pair) const;
+
+  private:
+    [[nodiscard]] bool of_cell(const std::vector<bool>& flags) const;
 };
 
 /// Two components for a pair of disks, one for a wall.

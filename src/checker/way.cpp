@@ -79,9 +79,14 @@ void Follower::let_rest() {
         packing.fixed[i] = moving_.moves[2 * i] ? 0 : 1;
     }
     for (std::size_t a = 0; a < 2; ++a) {
-        if (packing.walls.upper[a] == WallKind::movable && !moving_.moves[packing.length_at(a)]) {
+        const bool moves = moving_.moves[packing.length_at(a)];
+        if (packing.walls.upper[a] == WallKind::movable && !moves) {
             packing.walls.upper[a] = WallKind::fixed;
         }
+        packing.cell.period_moves[a] = packing.cell.period_moves[a] && moves;
+    }
+    if (packing.cell.any()) {
+        packing.cell.tilt_moves[0] = moving_.moves[packing.tilt_at(0, 1)];
     }
 }
 
@@ -91,12 +96,10 @@ Objections Follower::set_up() {
     const std::vector<bool> moves = moving_coordinates(start, problem, way_.witness);
     moving_.state = start;
     moving_.moves = moves;
-    const bool cell = start.packing.cell.any();
-    if (cell && (!way_.end_only || way_.witness.grains)) {
-        return open("in a periodic cell it is looked at only");
+    if (way_.witness.grains && moving_.disk_moves(start.packing.cell.pin) && start.packing.cell.any()) {
+        return open("the pinned disk is among the few that are said to move");
     }
-    const std::size_t walls = 2 * start.packing.radius.size();
-    if (!cell) { // in a cell all moves that can
+    if (!start.packing.cell.any() || way_.witness.grains) { // in a cell all moves that can
         let_rest();
     }
     for (std::size_t k = 0; k < moves.size(); ++k) {
@@ -105,13 +108,7 @@ Objections Follower::set_up() {
             moving_.coordinates.push_back(static_cast<int>(k));
         }
     }
-    const auto takes_part = [&](const Contact& c) {
-        return cell                                ? true
-               : c.kind == ContactKind::held       ? moves[at(c.i)]
-               : c.kind == ContactKind::disk_disk  ? moves[2 * at(c.i)] || moves[2 * at(c.j)]
-               : c.kind == ContactKind::lower_wall ? moves[2 * at(c.i)]
-                                                   : moves[2 * at(c.i)] || moves[walls + at(c.j)];
-    };
+    const auto takes_part = [this](const Contact& c) { return moving_.takes_part(c); };
     for (std::size_t l = 0; l < start.contacts.size(); ++l) {
         if (l != way_.opened && takes_part(start.contacts[l])) {
             moving_.kept.push_back(start.contacts[l]);

@@ -237,7 +237,7 @@ template <int Dim> ArcCertificate Certifier<Dim>::attempt(bool fresh_ends) {
 /// The moving part, its equations, and the gaps at the start. False: fresh ends would not help either.
 template <int Dim> bool Certifier<Dim>::begin() {
     start_uncertainty_ = uncertainty(start_.enclosure);
-    end_uncertainty_ = uncertainty(end_.enclosure);
+    end_uncertainty_ = uncertainty(end_.enclosure) + MovingPart<Dim>::shift_of_end(start_, end_);
     part_ = std::make_unique<MovingPart<Dim>>(start_, end_, slot_, start_uncertainty_, end_uncertainty_);
     certificate_.moving = static_cast<int>(part_->curve().contacts.size());
     if (!part_->trouble().empty()) {

@@ -194,8 +194,7 @@ template <int Dim> bool CurvePiece<Dim>::prove(double h) {
     }
     radius_ = radius;
     unique_ = lipschitz > 0 ? (1 - 1e-9) / (inverse * lipschitz) : infinity;
-    slope_error_ =
-        at_curve * (residual.rate + residual.turn * std::sqrt(2 * std::max(curve().degree, 1.0)) * radius) * up;
+    slope_error_ = at_curve * (residual.rate + residual.turn * std::sqrt(curve().spread) * radius) * up;
     margin_ = product > 0 ? 0.25 / product : infinity;
     row_rate_ = along.row_rate;
     speed_ = along.speed * up;
@@ -250,7 +249,8 @@ std::optional<typename CurvePiece<Dim>::Place> CurvePiece<Dim>::locate(const std
     const double distance = (std::sqrt(square) + rounding) * up + uncertainty;
     Place place;
     place.s = *s;
-    place.slack = (std::abs(this->along_row(off).value) + 4 * u * (16 * coordinate + terms) + root2 * uncertainty) /
+    place.slack = (std::abs(this->along_row(off).value) + 4 * this->row_terms() * u * (16 * coordinate + terms) +
+                   this->row_norm() * uncertainty) /
                   row_rate_ * up;
     if (!(std::abs(*s) + place.slack <= proved_ * (1 - 1e-9)) || !(distance + speed_ * place.slack * up < unique_)) {
         return std::nullopt;
@@ -265,7 +265,8 @@ template <int Dim> int CurvePiece<Dim>::direction_along(const CurvePiece& other,
     for (std::size_t k = 0; k < coefficients().size(); ++k, power *= std::abs(s)) {
         size += static_cast<double>(k + 1) * power * largest(coefficients()[k]);
     }
-    const double error = (root2 * slope_error_ + 64 * u * (sum.absolute + 4 * size)) * up;
+    const double error =
+        (other.row_norm() * slope_error_ + 64 * u * (sum.absolute + 4 * other.row_terms() * size)) * up;
     return sum.value > error ? 1 : -sum.value > error ? -1 : 0;
 }
 

@@ -2,7 +2,9 @@
 
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
+#include "motion/common_grid.hpp"
 #include "motion/geometry.hpp"
+#include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,6 +26,17 @@ std::vector<std::array<double, Dim>> separations(const std::vector<double>& x, c
     std::transform(contacts.begin(), contacts.end(), list.begin(),
                    [&](const Contact& contact) { return separation_over<Dim>(x, contact); });
     return list;
+}
+
+/// Rounds to the multiples of a power of two for which C2 holds (proofs/cells.md): any coefficients will do, and the
+/// separations of these are exact.
+void put_on_grid(std::vector<double>& a) {
+    int exponent = 0;
+    std::frexp(largest(a), &exponent); // largest < 2^exponent
+    const double step = std::ldexp(1, exponent - 50);
+    for (double& x : a) {
+        x = step > 0 ? std::nearbyint(x / step) * step : 0.0;
+    }
 }
 
 } // namespace
@@ -68,6 +81,9 @@ template <int Dim> bool CurvePolynomial<Dim>::first_coefficient() {
     for (double& x : a) {
         x *= scale;
     }
+    if (centre().cell.any()) {
+        put_on_grid(a);
+    }
     a_.push_back(std::move(a));
     return true;
 }
@@ -111,6 +127,9 @@ template <int Dim> void CurvePolynomial<Dim>::expand() {
             rhs[l] = 0.5 * sum / std::sqrt(dot(line[l], line[l]));
         }
         a_.push_back(solved(rhs));
+        if (centre().cell.any() && largest(a_.back()) < infinity) {
+            put_on_grid(a_.back());
+        }
         const double size = largest(a_.back()) * std::pow(reach_, static_cast<int>(k));
         if (!std::isfinite(size)) {
             a_.pop_back();
@@ -184,8 +203,19 @@ template <int Dim> std::optional<Packing<Dim>> CurvePolynomial<Dim>::corrected(d
             at.q[static_cast<std::size_t>(c.i)] = curve_->start->q[static_cast<std::size_t>(c.i)];
         }
     }
+    if (at.cell.any()) {
+        return put_on_grid_of(*curve_->start, structure().dofs(), at) ? std::optional(std::move(at)) : std::nullopt;
+    }
     snap_to_grid(at);
     return at;
+}
+
+template <int Dim> double CurvePolynomial<Dim>::row_norm() const {
+    return separation_weight(structure().contacts()[curve_->slot]);
+}
+
+template <int Dim> double CurvePolynomial<Dim>::row_terms() const {
+    return 1 + cell_weight(structure().contacts()[curve_->slot]);
 }
 
 template <int Dim> RoundedSum CurvePolynomial<Dim>::along_row(const std::vector<double>& v) const {

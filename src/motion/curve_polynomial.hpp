@@ -34,12 +34,15 @@ template <int Dim> class CurvePolynomial {
     [[nodiscard]] std::optional<Packing<Dim>> corrected(double s) const;
     /// row . v, and the sum of the absolute values of its terms.
     [[nodiscard]] RoundedSum along_row(const std::vector<double>& v) const;
+    /// No less than the 2-norm of the row, and than a fourth of the sum of its absolute values.
+    [[nodiscard]] double row_norm() const;
+    [[nodiscard]] double row_terms() const;
 
     [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
     [[nodiscard]] const Packing<Dim>& centre() const { return at_->packing(); }
     [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return at_->structure(); }
     [[nodiscard]] const Factorisation& factorisation() const { return at_->factorisation(); }
-    /// a_1 ... a_K on all coordinates (0 at rest).
+    /// a_1 ... a_K on all coordinates (0 at rest). In a cell on a grid of their own: separations of them are exact.
     [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
 
   private:

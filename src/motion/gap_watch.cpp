@@ -1,6 +1,7 @@
 #include "motion/gap_watch.hpp"
 
 #include "motion/geometry.hpp"
+#include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,8 +28,9 @@ template <int Dim> struct GapWatch<Dim>::Motion {
         for (const auto& d : a) {
             size.push_back(std::sqrt(dot(d, d)) * up);
         }
-        apart = root2 * (piece.radius() + piece.curve().rest_radius) * up;
-        slope_error = root2 * piece.slope_error() * up;
+        const double weight = separation_weight(contact);
+        apart = weight * (piece.radius() + piece.curve().rest_radius) * up;
+        slope_error = weight * piece.slope_error() * up;
     }
 
     /// What is known for s in [from, to].

@@ -2,6 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "motion/rounding.hpp"
+#include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +37,13 @@ KeptCurve<Dim>::KeptCurve(const Packing<Dim>& start_packing, std::vector<Contact
             at_rest[disks + j] += start->walls.upper[j] == WallKind::movable ? 0 : 1;
         }
     }
-    degree = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
+    find_blocks();
+    if (start->cell.any()) {
+        bound_in_cell();
+        return;
+    }
+    const double degree = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
+    spread = 2 * std::max(degree, 1.0);
     most_at_rest = *std::max_element(at_rest.begin(), at_rest.end());
     if (std::isfinite(smallest)) {
         lipschitz = 2 * std::sqrt(std::max(degree, 1.0)) / smallest * up;
@@ -46,9 +53,59 @@ KeptCurve<Dim>::KeptCurve(const Packing<Dim>& start_packing, std::vector<Contact
     rest_derivative = std::isfinite(smallest) ? weight / smallest * up : 0;
 }
 
+template <int Dim> void KeptCurve<Dim>::find_blocks() {
+    const Cell<Dim>& cell = start->cell;
+    const auto moves = [](const auto& flags) { return std::find(flags.begin(), flags.end(), true) != flags.end(); };
+    const bool cell_moves = moves(cell.period_moves) || moves(cell.tilt_moves);
+    blocks.resize(contacts.size());
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& c = contacts[l];
+        for (const int disk : {c.i, c.j}) {
+            if (bends(l) && c.i != c.j && !start->is_fixed(DiskId(disk))) {
+                blocks[l].add(static_cast<std::size_t>(disk), 1);
+            }
+        }
+        if (bends(l) && cell_moves && !c.image.is_here()) {
+            blocks[l].add(start->radius.size(), cell_weight(c) * up);
+        }
+    }
+}
+
+/// As C5 and A7 say (proofs/cells.md, C11): sums over the blocks that move, and over those at rest.
+template <int Dim> void KeptCurve<Dim>::bound_in_cell() {
+    const std::size_t disks = start->radius.size();
+    std::vector<double> squares(disks + 1, 0.0);
+    std::vector<double> fourths(disks + 1, 0.0);
+    std::vector<double> at_rest(disks + 1, 0.0);
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const Contact& c = contacts[l];
+        const double w = separation_weight_square(c);
+        const double a = cell_weight(c);
+        for (std::size_t b = 0; b < blocks[l].count; ++b) {
+            squares[blocks[l].at[b]] += w;
+            fourths[blocks[l].at[b]] += w * w / (target[l] * target[l]);
+        }
+        if (c.kind == ContactKind::upper_wall && start->walls.upper[static_cast<std::size_t>(c.j)] == WallKind::fixed) {
+            at_rest[disks] += 1;
+        }
+        if (!bends(l)) {
+            continue;
+        }
+        for (const int disk : {c.i, c.j}) {
+            at_rest[static_cast<std::size_t>(disk)] += start->is_fixed(DiskId(disk)) ? 1 + a * a : 0;
+        }
+        at_rest[disks] += c.image.is_here() ? 0 : 1 + a * a;
+    }
+    spread = std::max(2.0, *std::max_element(squares.begin(), squares.end())) * up;
+    lipschitz = std::sqrt(*std::max_element(fourths.begin(), fourths.end())) * up;
+    const double weight = std::sqrt(*std::max_element(at_rest.begin(), at_rest.end())) * rest_radius;
+    rest_residual = 1.01 * weight * up;
+    rest_derivative = std::isfinite(smallest) ? root2 * weight / smallest * up : 0;
+}
+
 template <int Dim> double KeptCurve<Dim>::norm_of(const std::vector<double>& e) const {
     // |B|^2 = largest eigenvalue of B^T B <= max_i (B^T B x)_i / x_i for every positive x (Collatz, Wielandt).
-    std::vector<double> x(start->radius.size(), 1.0);
+    std::vector<double> x(start->radius.size() + (start->cell.any() ? 1 : 0), 1.0);
     std::vector<double> z(x.size());
     double best = std::numeric_limits<double>::infinity();
     for (int round = 0; round < 6; ++round) {
@@ -57,13 +114,15 @@ template <int Dim> double KeptCurve<Dim>::norm_of(const std::vector<double>& e) 
             if (e[l] == 0) {
                 continue;
             }
-            const auto i = static_cast<std::size_t>(contacts[l].i);
-            const auto j = static_cast<std::size_t>(contacts[l].j);
-            const bool i_moves = !start->is_fixed(DiskId(i));
-            const bool j_moves = !start->is_fixed(DiskId(j));
-            const double y = e[l] * e[l] * ((i_moves ? x[i] : 0) + (j_moves ? x[j] : 0));
-            z[i] += i_moves ? y : 0;
-            z[j] += j_moves ? y : 0;
+            const Blocks& row = blocks[l];
+            double sum = 0;
+            for (std::size_t b = 0; b < row.count; ++b) {
+                sum += row.weight[b] * x[row.at[b]];
+            }
+            const double y = e[l] * e[l] * sum;
+            for (std::size_t b = 0; b < row.count; ++b) {
+                z[row.at[b]] += row.weight[b] * y;
+            }
         }
         double ratio = 0;
         double most = 0;

@@ -3,10 +3,24 @@
 
 #include <isostat/contact/contact.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace isostat {
+
+/// The parts of the moving coordinates that the separation over a kept contact depends on: its disks, and the cell, a
+/// block behind them. A change of norm x in a block changes r by at most weight x: 1 of a disk, |m| of the cell.
+struct Blocks {
+    std::array<std::size_t, 3> at{};
+    std::array<double, 3> weight{};
+    std::size_t count = 0;
+
+    void add(std::size_t block, double w) {
+        at[count] = block;
+        weight[count++] = w;
+    }
+};
 
 /// The equations of one arc: contacts[l] keeps gap 0 for every l but `slot`, whose row is free. Only grains that move
 /// take part; the others stay at their true place, which is within `rest_radius` (2-norm) of the one in `start`.
@@ -14,7 +28,7 @@ template <int Dim> struct KeptCurve {
     KeptCurve(const Packing<Dim>& start, std::vector<Contact> contacts, std::size_t slot, double rest_radius);
     /// Two disks that keep contact: the equations of all others are linear.
     [[nodiscard]] bool bends(std::size_t l) const { return l != slot && contacts[l].kind == ContactKind::disk_disk; }
-    /// Upper bound of the 2-norm of the matrix whose row l is e_l on one disk and -e_l on the other (moving ones).
+    /// Upper bound of the 2-norm of the matrix whose row l has blocks of norm e_l times their weight.
     [[nodiscard]] double norm_of(const std::vector<double>& e) const;
 
     const Packing<Dim>* start; ///< `fixed` and `walls` tell which grains move; held coordinates keep their value here
@@ -22,12 +36,17 @@ template <int Dim> struct KeptCurve {
     std::size_t slot;
     DofMap<Dim> dofs;
     std::vector<double> target; ///< sum of the radii, radius (walls), 0 (held), rounded
-    double degree = 0;          ///< largest number of kept disk contacts of one moving disk
+    std::vector<Blocks> blocks; ///< per contact; none but of two disks that keep contact
+    double spread = 2;          ///< sum_l |D_l x|^2 <= spread |x|^2 over the kept contacts of two disks
     double smallest = 0;        ///< smallest sum of radii of a kept disk contact (infinity: there is none)
     double lipschitz = 0;       ///< of the derivative of F over the moving coordinates (V4)
     double rest_radius = 0;
     double rest_residual = 0;   ///< bound of the change of F by the true places of the grains at rest
     double rest_derivative = 0; ///< the same for the derivative of F
+
+  private:
+    void find_blocks();
+    void bound_in_cell();
 };
 
 extern template struct KeptCurve<2>;

@@ -1,6 +1,8 @@
 #include "motion/moving_part.hpp"
 
+#include "contact/cell_drift.hpp"
 #include "contact/contact_set.hpp"
+#include "motion/common_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,13 +20,42 @@ MovingPart<Dim>::MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& e
     whole_ = !restrict_to(mechanism);
     if (whole_) {
         disk_moves_.assign(start_packing_.radius.size(), 1);
-        wall_moves_.assign(Dim, 1);
+        wall_moves_.assign(start_packing_.coordinate_count() - start_packing_.length_at(0), 1);
         curve_ = std::make_unique<KeptCurve<Dim>>(start_packing_, start.structure.contacts(), slot, 0.0);
+        bring_end_back();
         return;
     }
     std::vector<Contact> contacts = with_row(start.structure.contacts()[slot]);
     curve_ = std::make_unique<KeptCurve<Dim>>(start_packing_, std::move(contacts), 0, start_uncertainty);
     check_rest(start_uncertainty + end_uncertainty);
+    bring_end_back();
+}
+
+template <int Dim> double MovingPart<Dim>::shift_of_end(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end) {
+    double square = 0;
+    for (std::size_t k = 0; k < start.packing.q.size(); ++k) {
+        if (start.structure.dofs().dof_of(k) < 0) { // of a disk that is pinned: all go with it
+            const double d = end.packing.q[k] - start.packing.q[k];
+            square += d * d * static_cast<double>(start.packing.radius.size());
+        }
+    }
+    return square > 0 ? std::sqrt(square) * up : 0;
+}
+
+/// A grid that became coarser has moved the pinned disk by a rounding: with it all others, by a translation.
+template <int Dim> void MovingPart<Dim>::bring_end_back() {
+    const DofMap<Dim>& dofs = start_.structure.dofs();
+    for (std::size_t k = 0; k < end_packing_.q.size(); ++k) {
+        end_moved_ = end_moved_ || (dofs.dof_of(k) < 0 && end_.packing.q[k] != start_.packing.q[k]);
+        end_packing_.q[k] = dofs.dof_of(k) < 0 ? start_.packing.q[k] : end_packing_.q[k];
+    }
+    const std::vector<Contact>& contacts = start_.structure.contacts();
+    const auto held = [](const Contact& c) { return c.kind == ContactKind::held; };
+    if (end_moved_ && std::any_of(contacts.begin(), contacts.end(), held)) {
+        trouble_ = "the pinned disk was moved by a rounding, and coordinates are held";
+    } else if (end_moved_ && !fits_grid(end_packing_, grid_step(start_.packing))) {
+        trouble_ = "the end is too far away for the grid of the start";
+    }
 }
 
 template <int Dim> bool MovingPart<Dim>::moves(const Contact& contact) const {
@@ -61,7 +92,7 @@ template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& 
     const DofMap<Dim>& dofs = start_.structure.dofs();
     const std::size_t disks = start_packing_.radius.size();
     disk_moves_.assign(disks, 0);
-    wall_moves_.assign(Dim, 0);
+    wall_moves_.assign(start_packing_.coordinate_count() - start_packing_.length_at(0), 0);
     for (std::size_t mu = 0; mu < mechanism.size(); ++mu) {
         if (mechanism[mu] != 0) {
             const auto k = static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)));
@@ -75,11 +106,24 @@ template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& 
     }
     whole_ = false;
     const Contact& row = start_.structure.contacts()[slot_];
-    if (2 * degrees >= mechanism.size() || !moves(row) || !moves(end_.structure.contacts()[slot_]) ||
-        with_row(row).size() != degrees) {
+    if (2 * degrees >= mechanism.size() || moves_pin_or_cell() || !moves(row) ||
+        !moves(end_.structure.contacts()[slot_]) || with_row(row).size() != degrees) {
         whole_ = true;
         return false;
     }
+    let_rest();
+    end_packing_ = start_packing_;
+    const DofMap<Dim> moving(start_packing_);
+    for (int mu = 0; mu < moving.dof_count(); ++mu) {
+        const auto k = static_cast<std::size_t>(moving.coordinate_of(mu));
+        end_packing_.q[k] = end_.packing.q[k];
+    }
+    return true;
+}
+
+/// What does not move is marked so; a cell that rests needs no pin.
+template <int Dim> void MovingPart<Dim>::let_rest() {
+    const std::size_t disks = start_packing_.radius.size();
     std::vector<unsigned char> fixed(disks, 0);
     for (std::size_t i = 0; i < disks; ++i) {
         fixed[i] = disk_moves_[i] == 0 ? 1 : 0;
@@ -91,13 +135,24 @@ template <int Dim> bool MovingPart<Dim>::restrict_to(const std::vector<double>& 
             start_packing_.walls.upper[a] = WallKind::fixed;
         }
     }
-    end_packing_ = start_packing_;
-    const DofMap<Dim> moving(start_packing_);
-    for (int mu = 0; mu < moving.dof_count(); ++mu) {
-        const auto k = static_cast<std::size_t>(moving.coordinate_of(mu));
-        end_packing_.q[k] = end_.packing.q[k];
+    if (start_packing_.cell.any()) {
+        start_packing_.cell.period_moves = {};
+        start_packing_.cell.tilt_moves = {};
+        start_packing_.cell.pin = -1;
     }
-    return true;
+}
+
+/// Then everything takes part: A7 is for disks alone there.
+template <int Dim> bool MovingPart<Dim>::moves_pin_or_cell() const {
+    const Cell<Dim>& cell = start_packing_.cell;
+    if (!cell.any()) {
+        return false;
+    }
+    bool moves = disk_moves_[static_cast<std::size_t>(cell.pin)] != 0;
+    for (std::size_t a = 0; a < wall_moves_.size(); ++a) {
+        moves = moves || (wall_moves_[a] != 0 && (a >= Dim || cell.periodic[a]));
+    }
+    return moves;
 }
 
 /// The grains at rest have the same true place at both ends: their equations have one root near the stored start.
@@ -109,9 +164,10 @@ template <int Dim> void MovingPart<Dim>::check_rest(double uncertainty) {
             square += d * d;
         }
     }
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < wall_moves_.size(); ++a) {
         if (wall_moves_[a] == 0) {
-            const double d = end_.packing.length(static_cast<int>(a)) - start_.packing.length(static_cast<int>(a));
+            const std::size_t k = start_.packing.length_at(a);
+            const double d = end_.packing.q[k] - start_.packing.q[k];
             square += d * d;
         }
     }
@@ -128,8 +184,9 @@ template <int Dim> std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::at_start(Inv
 }
 
 template <int Dim> std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::at_end(InverseBoundCache& cache) const {
-    return whole_ ? ArcCentre<Dim>::of(end_)
-                  : ArcCentre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
+    return whole_ && !end_moved_
+               ? ArcCentre<Dim>::of(end_)
+               : ArcCentre<Dim>::make(end_packing_, with_row(end_.structure.contacts()[slot_]), cache);
 }
 
 template <int Dim>
@@ -153,7 +210,7 @@ std::unique_ptr<ArcCentre<Dim>> MovingPart<Dim>::with_fastest(const ArcCentre<Di
 
 template <int Dim> std::vector<int> MovingPart<Dim>::grains() const {
     std::vector<int> list;
-    for (std::size_t g = 0; g < disk_moves_.size() + Dim && !whole_; ++g) {
+    for (std::size_t g = 0; g < disk_moves_.size() + wall_moves_.size() && !whole_; ++g) {
         if (g < disk_moves_.size() ? disk_moves_[g] != 0 : wall_moves_[g - disk_moves_.size()] != 0) {
             list.push_back(static_cast<int>(g));
         }
@@ -191,6 +248,16 @@ bool MovingPart<Dim>::complete(const CurvePiece<Dim>& piece, double h, const Can
         return false;
     }
     const double off = piece.radius() + piece.curve().rest_radius;
+    if (piece.centre().cell.any()) { // the left-hand side of C8 is a norm of the displacement
+        const CellDrift drift = cell_drift(list, piece.centre());
+        double used = drift.used + drift.rate * off;
+        double power = h;
+        for (const auto& coefficient : piece.coefficients()) {
+            used += power * drift_along(list, piece.centre(), coefficient);
+            power *= h;
+        }
+        return used * up < 0.5 * list.reach;
+    }
     for (std::size_t k = 0; k < q.size(); k += Dim) {
         double moved = 0;
         for (std::size_t a = 0; a < Dim; ++a) {

@@ -18,6 +18,9 @@ template <int Dim> class MovingPart {
   public:
     MovingPart(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end, std::size_t slot, double start_uncertainty,
                double end_uncertainty);
+    /// How much farther the true end vertex may be from the stored one when what does not move stands where it does at
+    /// the start (C11): 0 in a box.
+    [[nodiscard]] static double shift_of_end(const ArcVertex<Dim>& start, const ArcVertex<Dim>& end);
     /// Empty, or why the part cannot be certified.
     [[nodiscard]] const std::string& trouble() const { return trouble_; }
     [[nodiscard]] const KeptCurve<Dim>& curve() const { return *curve_; }
@@ -46,15 +49,19 @@ template <int Dim> class MovingPart {
     [[nodiscard]] bool moves(const Contact& contact) const;
     [[nodiscard]] std::vector<Contact> with_row(const Contact& row) const;
     bool restrict_to(const std::vector<double>& mechanism);
+    void let_rest();
+    [[nodiscard]] bool moves_pin_or_cell() const;
     void check_rest(double uncertainty);
+    void bring_end_back();
 
     const ArcVertex<Dim>& start_;
     const ArcVertex<Dim>& end_;
     std::size_t slot_;
     bool whole_ = true;
+    bool end_moved_ = false; ///< the end is not stored as it is taken
     std::vector<unsigned char> disk_moves_;
-    std::vector<unsigned char> wall_moves_;
-    Packing<Dim> start_packing_; ///< grains at rest are marked fixed
+    std::vector<unsigned char> wall_moves_; ///< and the coordinates of a cell
+    Packing<Dim> start_packing_;            ///< grains at rest are marked fixed
     Packing<Dim> end_packing_;
     std::unique_ptr<KeptCurve<Dim>> curve_;
     std::string trouble_;

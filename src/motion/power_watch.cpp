@@ -181,7 +181,7 @@ template <int Dim> typename PowerWatch<Dim>::Power PowerWatch<Dim>::power_along(
     for (double& x : power.g) {
         x = std::sqrt(x) * up;
     }
-    const double spread = std::sqrt(2 * std::max(curve.degree, 1.0));
+    const double spread = std::sqrt(curve.spread);
     power.apart = (spread * piece.radius() + curve.rest_residual) * up;
     power.slope_apart = spread * piece.slope_error() * up;
     power.residual = forces.residual * (speed + piece.slope_error()) * up;

@@ -424,9 +424,6 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
     if (options.ties != TiePolicy::stop) {
         refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
     }
-    if (options.certify > CertifyLevel::decisions) {
-        refuse("certify = \"states\" and \"arcs\" are for boxes only so far: expected \"decisions\" or \"plain\"");
-    }
     if (state.load.kind != LoadKind::nominal) {
         refuse("true stresses are for boxes only so far: expected dead loads, kind = \"nominal\"");
     }

@@ -3,6 +3,8 @@
 #include "checker/forces.hpp"
 #include "checker/gaps.hpp"
 #include "checker/maker.hpp"
+#include "checker/replay.hpp"
+#include "checker/strut.hpp"
 #include "support/cells.hpp"
 #include "support/scale.hpp"
 
@@ -377,6 +379,30 @@ BOOST_AUTO_TEST_CASE(the_derivative_changes_by_at_most_its_curvature) {
         BOOST_TEST((farthest_row <= problem.row_curvature() * step));
         BOOST_TEST((farthest_column <= problem.column_curvature() * step));
         BOOST_TEST((2 * farthest_column > problem.column_curvature() * step || problem.dofs() > 10));
+    }
+}
+
+// A row of three disks along x, the last one stored elsewhere: the second carries force only where the row is straight.
+BOOST_AUTO_TEST_CASE(a_disk_between_images_carries_force_where_they_are_on_one_line) {
+    for (const double y : {0.0, 0.3}) {
+        const double first = std::sqrt(1.5 * 1.5 - y * y);
+        const double second = std::sqrt(1.2 * 1.2 - y * y);
+        const double period = first + second + 1.7;
+        State<2> state =
+            cells::in_cell({{1, 0, 0}, {0.5, first, y}, {0.7, first + second - period, 2}}, {period, 2, 0}, false, 1, 1,
+                           {cells::across(0, 1, 0, 0),
+                            cells::across(1, 2, 1, -1),
+                            cells::across(0, 2, 0, -1),
+                            cells::across(0, 0, 0, 1),
+                            {ContactKind::held, 3, 0},
+                            {ContactKind::held, 5, 0}});
+        snap_to_grid(state.packing);
+        checker::Place place;
+        (void)checker::make_place(state, place, {}, 4);
+        BOOST_TEST_REQUIRE(place.evidence->vertex.found);
+        for (const std::size_t l : {0U, 1U}) {
+            BOOST_TEST(checker::without_force(place)[l] == (y > 0));
+        }
     }
 }
 

@@ -23,11 +23,12 @@ namespace {
 
 /// Plays segments from a state into a folder, every state stored.
 void play_and_store(const State<2>& start, const std::vector<Segment>& segments, const std::filesystem::path& folder,
-                    OpeningRule rule = OpeningRule::most_negative) {
+                    OpeningRule rule = OpeningRule::most_negative, bool arcs = false) {
     RunHeader header;
+    header.witnesses = arcs;
     header.program = "test";
     const std::string word = opening_rule_words[static_cast<std::size_t>(rule)];
-    header.settings = R"({"run":{"rule":")" + word + R"("}})";
+    header.settings = R"({"run":{"rule":")" + word + (arcs ? R"(","certify":"arcs"}})" : R"("}})");
     header.states_every = 1;
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
@@ -35,6 +36,7 @@ void play_and_store(const State<2>& start, const std::vector<Segment>& segments,
     RunOptions options;
     options.rule = rule;
     options.max_strain = 1e9;
+    options.certify = arcs ? CertifyLevel::arcs : CertifyLevel::decisions;
     for (std::size_t k = 0; k < segments.size(); ++k) {
         directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
         const SegmentOutcome outcome =

@@ -115,11 +115,30 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
     BOOST_TEST(contains(scratch::read(folder / "out" / "events.jsonl"), "\"opened\":\"3-8(1,0)\""));
     const auto state = isostat::read_any_state<2>(folder / "out" / "states" / "last.json").state;
     BOOST_TEST(std::abs(state.packing.lattice(0, 1) - -0.9095404261907584) < 1e-9);
+}
 
-    scratch::write(scene, packing + "[run]\ncertify = \"arcs\"\n" + programme(2));
-    const auto refused = run({"run", scene, "-o", (folder / "arcs").string()});
-    BOOST_TEST(refused.status == 65);
-    BOOST_TEST(contains(refused.err, "expected \"decisions\" or \"plain\""), refused.err);
+BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "cell.toml").string();
+    const auto verified = [&](const std::string& level) {
+        scratch::write(scene, fmt::format("[packing]\nfile = \"{}\"\n[run]\ncertify = \"{}\"\n[[programme]]\ndo = "
+                                          "\"up\"\nequilibria = 4\n",
+                                          scratch::data("cells/rect_16.json"), level));
+        expect(run({"run", scene, "-o", (folder / level).string()}), 0);
+        return run({"verify", (folder / level).string()});
+    };
+    const auto states = verified("states");
+    expect(states, 0);
+    BOOST_TEST(contains(states.out, "ends proved, way looked at"), states.out);
+    const auto certificate = folder / "states" / "certificates" / "eq_000003.json";
+    expect(run({"verify", certificate.string()}), 0);
+    std::filesystem::remove(certificate);
+    BOOST_TEST(run({"verify", (folder / "states").string()}).status != 0);
+    const auto arcs = verified("arcs");
+    expect(arcs, 0);
+    BOOST_TEST(contains(arcs.out, "verdict        proved"), arcs.out);
+    scratch::write(folder / "arcs" / "certificates" / "arcs.jsonl", "");
+    BOOST_TEST(run({"verify", (folder / "arcs").string()}).status != 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {

@@ -1,6 +1,7 @@
 // Certificates of arcs with known answers: a free disk rolls over a fixed one past obstacles.
 #include "motion/certify_arc.hpp"
 #include "motion/moving_part.hpp"
+#include "support/channel_roll.hpp"
 #include "support/crafted.hpp"
 
 #include <boost/test/unit_test.hpp>
@@ -263,6 +264,32 @@ BOOST_AUTO_TEST_CASE(the_opened_contact_may_close_again_after_a_whole_turn) {
     const ArcCertificate certificate = rolling.certify(start, rolling.at(back, pair(1, 2)));
     BOOST_TEST(proved(certificate), certificate.reason);
     BOOST_TEST(certificate.pieces > 20);
+}
+
+BOOST_AUTO_TEST_CASE(an_arc_in_a_channel_is_certified_unless_a_pair_of_images_meets_on_the_way) {
+    const auto certify = [](const cells::ChannelRoll& roll) {
+        const State<2> from = roll.start();
+        const State<2> to = roll.end();
+        const Known start = Known::of(from.packing, from.contacts);
+        const Known end = Known::of(to.packing, to.contacts);
+        return certify_arc(start.vertex(), ContactId(roll.slot), +1, end.vertex(),
+                           PowerLoad<2>{&from.load, false, false}, find_candidates(start.packing, candidate_fraction));
+    };
+    for (const int shift : {0, 1, -2}) {
+        for (const double clearance : {1e-2, 1e-5, 1e-8, 1e-10}) {
+            BOOST_TEST_CONTEXT("disk 1 stored " << shift << " periods away, clearance " << clearance) {
+                const ArcCertificate passes = certify({clearance, shift});
+                BOOST_TEST(proved(passes), passes.reason);
+                BOOST_TEST((passes.power == Verdict::proved), passes.power_reason);
+                BOOST_TEST(passes.witness.whole);
+                BOOST_TEST(passes.tube < 1e-11);
+                const cells::ChannelRoll roll{-clearance, shift};
+                const ArcCertificate meets = certify(roll);
+                BOOST_TEST(!proved(meets));
+                BOOST_TEST(meets.reason.find("the gap of " + to_string<2>(roll.passing())) == 0U, meets.reason);
+            }
+        }
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -152,6 +152,79 @@ BOOST_AUTO_TEST_CASE(the_constants_of_a_tube_are_those_of_the_statements) {
     within(0.25 / piece.margin(), beta * beta * off.curve->lipschitz * residual, 1e-2);
 }
 
+// C11, written down once more: sums over the contacts of a disk, and over those with an image.
+BOOST_AUTO_TEST_CASE(the_constants_of_a_curve_in_a_cell_are_those_of_the_statement) {
+    for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
+        const State<2> state = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+        const Packing<2>& packing = state.packing;
+        const std::size_t slot = 3;
+        const KeptCurve<2> curve(packing, state.contacts, slot, 0.0);
+        std::vector<double> squares(packing.radius.size() + 1, 0.0);
+        std::vector<double> fourths = squares;
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const Contact& c = state.contacts[l];
+            if (l == slot || c.kind != ContactKind::disk_disk) {
+                continue;
+            }
+            const double m = std::hypot(c.image.m[0], c.image.m[1]);
+            const double w = (c.i == c.j ? 0 : 2) + m * m;
+            const double d =
+                packing.radius[static_cast<std::size_t>(c.i)] + packing.radius[static_cast<std::size_t>(c.j)];
+            const auto add = [&](std::size_t block) {
+                squares[block] += w;
+                fourths[block] += w * w / (d * d);
+            };
+            for (const int disk : {c.i, c.j}) {
+                if (c.i != c.j) {
+                    add(static_cast<std::size_t>(disk));
+                }
+            }
+            if (m > 0) {
+                add(packing.radius.size());
+            }
+        }
+        const auto within = [](double value, double least) {
+            BOOST_TEST((value >= least && value <= least * (1 + 1e-6)), value << " against " << least);
+        };
+        within(curve.spread, *std::max_element(squares.begin(), squares.end()));
+        within(curve.lipschitz, std::sqrt(*std::max_element(fourths.begin(), fourths.end())));
+        // No matrix with such rows is larger than norm_of says: here those of the normals at this place.
+        std::vector<double> e(state.contacts.size(), 0.0);
+        std::vector<double> x(packing.q.size(), 1.0);
+        double largest = 0;
+        for (int round = 0; round < 200; ++round) {
+            std::vector<double> next(x.size(), 0.0);
+            for (std::size_t l = 0; l < e.size(); ++l) {
+                if (!curve.bends(l)) {
+                    continue;
+                }
+                e[l] = 1.0 / (1.0 + static_cast<double>(l % 3));
+                const GapGradient<2> g = gap_gradient(packing, state.contacts[l]);
+                double y = 0;
+                for (int k = 0; k < g.count; ++k) {
+                    const auto entry = static_cast<std::size_t>(k);
+                    y += e[l] * g.value[entry] * x[static_cast<std::size_t>(g.coordinate[entry])];
+                }
+                for (int k = 0; k < g.count; ++k) {
+                    const auto entry = static_cast<std::size_t>(k);
+                    next[static_cast<std::size_t>(g.coordinate[entry])] += e[l] * g.value[entry] * y;
+                }
+            }
+            double square = 0;
+            for (const double c : next) {
+                square += c * c;
+            }
+            largest = std::sqrt(std::sqrt(square));
+            for (double& c : next) {
+                c /= std::sqrt(square);
+            }
+            x = next;
+        }
+        BOOST_TEST(curve.norm_of(e) >= largest);
+        BOOST_TEST(curve.norm_of(e) <= 2 * largest);
+    }
+}
+
 // The polynomial clears the obstacle, the curve runs into it.
 BOOST_AUTO_TEST_CASE(a_gap_of_the_polynomial_within_the_tube_proves_nothing) {
     constexpr double off = 1e-6;

@@ -397,11 +397,11 @@ BOOST_AUTO_TEST_CASE(a_disk_between_images_carries_force_where_they_are_on_one_l
                             {ContactKind::held, 3, 0},
                             {ContactKind::held, 5, 0}});
         snap_to_grid(state.packing);
-        checker::Place place;
-        (void)checker::make_place(state, place, {}, 4);
+        isostat::checker::Place place;
+        (void)isostat::checker::make_place(state, place, {}, 4);
         BOOST_TEST_REQUIRE(place.evidence->vertex.found);
         for (const std::size_t l : {0U, 1U}) {
-            BOOST_TEST(checker::without_force(place)[l] == (y > 0));
+            BOOST_TEST(isostat::checker::without_force(place)[l] == (y > 0));
         }
     }
 }

@@ -68,6 +68,19 @@ template <std::size_t Dim> Constraint between_disks(const std::array<Pair, Dim>&
     return {f, 4 * u * std::abs(f) + 0x1p-98 * d.sum + underflow * inverse};
 }
 
+/// x_j - x_i + A m: of an image it is one double, exact on the grid (proofs/cells.md, C2).
+template <int Dim, class At, class Minus>
+std::array<Pair, Dim> distance_of(const Separation<Dim>& separation, const Contact& contact, At at, Minus minus) {
+    if (contact.image.is_here()) [[likely]] {
+        return separation.of_centres(at, minus);
+    }
+    const auto r = separation.of_disks(at, std::minus<>());
+    std::array<Pair, Dim> distance{};
+    std::transform(r.begin(), r.end(), distance.begin(), [](double x) { return Pair{x}; });
+    return distance;
+}
+
+/// \pre with periodic axes: the packing is on its grid
 template <int Dim>
 Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>& contacts, double scale) {
     const std::size_t n = contacts.size();
@@ -87,7 +100,7 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
         case ContactKind::disk_disk: {
             const auto j = static_cast<std::size_t>(contacts[l].j);
             const Pair d = exact_sum(scale * radius[i], scale * radius[j]);
-            found = between_disks(separation.of_centres(at, minus), d);
+            found = between_disks(distance_of(separation, contacts[l], at, minus), d);
             ratio = std::max(ratio, std::abs(found.f) * (1 / d.sum));
             smallest = std::min(smallest, d.sum);
             ++count[i];
@@ -117,7 +130,9 @@ Constraints constraints(const Packing<Dim>& packing, const std::vector<Contact>&
     result.worst = ratio * 1.0011 + 0x1p-90;
     result.largest = largest / scale;
     const int most = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
-    result.lipschitz = most == 0 ? 0 : 2 * std::sqrt(most) / smallest * (1 + 0x1p-49);
+    result.lipschitz = packing.cell.any() ? lipschitz_in_cell(packing, contacts) / scale
+                       : most == 0        ? 0
+                                          : 2 * std::sqrt(most) / smallest * (1 + 0x1p-49);
     return result;
 }
 
@@ -141,7 +156,7 @@ struct Rest {
                 size += std::abs(term);
             }
             r[l] = at.f[l] - approach;
-            // 5u of the entries, products and sums; the row of DF is that of G times d / D.
+            // 5u of the entries, products and sums, seven terms at most; the row of DF is that of G times d / D.
             bound[l] = std::abs(r[l]) * (1 + 2 * u) + at.error[l] + (16 * u + 1.01 * at.worst) * size;
         }
     }
@@ -200,8 +215,8 @@ template <int Dim>
 VertexEnclosure enclose_vertex(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                const Factorisation& factorisation, const InverseBound& inverse) {
     const std::optional<double> scale = scale_of(packing.q);
-    const bool displaced = packing.cell.any(); // `Constraints` knows no images
-    if (inverse.verdict != Verdict::proved || !scale || displaced) {
+    const bool rounded = packing.cell.any() && !is_on_grid(packing);
+    if (inverse.verdict != Verdict::proved || !scale || rounded) {
         return enclose_vertex(packing, structure, inverse);
     }
     const Constraints at = constraints(packing, structure.contacts(), *scale);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gmpxx.h>
 
+#include <algorithm>
 #include <array>
 
 namespace isostat {
@@ -202,9 +203,9 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
                 field.at("kind").fail("\"nominal\" or \"true\"");
             }
             load.kind = kind == "nominal" ? LoadKind::nominal : LoadKind::true_stress;
-            if (load.kind == LoadKind::true_stress && packing.cell.any()) {
-                field.at("kind").fail("\"nominal\" in a periodic cell: true stresses have no potential there once a "
-                                      "tilt moves, and are not written yet where none does");
+            const auto& tilts = packing.cell.tilt_moves;
+            if (load.kind == LoadKind::true_stress && std::find(tilts.begin(), tilts.end(), true) != tilts.end()) {
+                field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");
             }
         }
         if (field.has("shear")) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <qd/dd_real.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -424,23 +425,26 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
     if (options.ties != TiePolicy::stop) {
         refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
     }
-    if (state.load.kind != LoadKind::nominal) {
-        refuse("true stresses are for boxes only so far: expected dead loads, kind = \"nominal\"");
-    }
-    if (!state.load.disk_force.empty()) {
-        refuse("forces on disks are for boxes only so far in a run: expected none");
+    const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
+    if (state.load.kind == LoadKind::true_stress && shears) {
+        refuse(
+            "true stresses have no potential where the tilt moves, and nothing would tell where a run leads: expected "
+            "dead loads, kind = \"nominal\", or a tilt that does not move");
     }
     for (std::size_t a = 0; a < Dim; ++a) {
-        dd_real sum = 0.0;
-        for (std::size_t k = a; k < state.load.infinitesimal.size() && cell.periodic[a]; k += Dim) {
-            sum += state.load.infinitesimal[k];
-        }
-        if (!(sum == 0.0)) {
-            refuse(
-                fmt::format("the infinitesimal loads along axis {} sum to {}: expected 0 exactly, or the pinned disk "
-                            "would bear the rest",
-                            a, to_double(sum)));
-        }
+        const auto balanced = [&](const std::vector<double>& forces, const char* what) {
+            dd_real sum = 0.0;
+            for (std::size_t k = a; k < forces.size() && cell.periodic[a]; k += Dim) {
+                sum += forces[k];
+            }
+            if (!(sum == 0.0)) {
+                refuse(fmt::format("the {} along axis {} sum to {}: expected 0 exactly, or the pinned disk would bear "
+                                   "the rest",
+                                   what, a, to_double(sum)));
+            }
+        };
+        balanced(state.load.infinitesimal, "infinitesimal loads");
+        balanced(state.load.disk_force, "forces on disks");
     }
 }
 

@@ -424,6 +424,29 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
+    Segment up;
+    up.equilibria = 3;
+    const auto is_replayed = [&](const State<2>& state) {
+        const scratch::Folder folder;
+        play_and_store(state, {up}, folder / "run");
+        const RunVerification run = verify_run(folder / "run");
+        BOOST_TEST(run.wrong == "");
+        BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+        BOOST_TEST(run.arcs_proved == run.arcs);
+    };
+    for (const char* name : {"rect_16", "channel_16"}) {
+        State<2> state = of_cell(name, 0);
+        state.load.kind = LoadKind::true_stress;
+        is_replayed(state);
+    }
+    State<2> state = of_cell("rect_16", 0);
+    state.load.disk_force.assign(32, 0.0);
+    state.load.disk_force[4] = 0.125;
+    state.load.disk_force[10] = -0.125;
+    is_replayed(state);
+}
+
 BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
     const scratch::Folder folder;
     const std::filesystem::path run = folder / "run";

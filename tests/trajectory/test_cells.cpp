@@ -153,6 +153,16 @@ Disguised in_other_basis(const State<2>& start, int times) {
     return crafted::disguised(std::move(state), moved(times), moved(-times));
 }
 
+/// Two disks are pulled apart; a force across a channel is borne by its walls.
+State<2> with_forces(State<2> state) {
+    state.load.disk_force.assign(2 * state.packing.radius.size(), 0.0);
+    state.load.disk_force[4] = 0.125;
+    state.load.disk_force[10] = -0.125;
+    state.load.disk_force[5] = 0.0625;
+    state.load.disk_force[11] = state.packing.cell.periodic[1] ? -0.0625 : 0;
+    return state;
+}
+
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(trajectory_cells)
@@ -256,6 +266,55 @@ BOOST_AUTO_TEST_CASE(down_and_up_again) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(true_stresses_open_the_same_contacts_at_the_same_ratio_of_forces) {
+    // F_2 / F_1 is sigma_2 L_1 / (sigma_1 L_2): with the reference lengths, or with those of the moment.
+    for (const char* name : {"rect_16", "channel_16"}) {
+        BOOST_TEST_CONTEXT(name) {
+            State<2> state = start_of(name);
+            const Played nominal = play(state, +1, 3);
+            state.load.kind = LoadKind::true_stress;
+            RunOptions options;
+            options.certify = CertifyLevel::arcs;
+            const Played present = play(state, +1, 3, {}, options);
+            BOOST_TEST_REQUIRE(present.outcome.completed, present.why());
+            BOOST_TEST_REQUIRE(present.records.arcs.size() == nominal.records.arcs.size());
+            for (std::size_t k = 0; k < present.records.arcs.size(); ++k) {
+                const ArcRecord<2>& arc = present.records.arcs[k];
+                BOOST_TEST((arc.opened == nominal.records.arcs[k].opened));
+                BOOST_TEST((arc.closed == nominal.records.arcs[k].closed));
+                BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
+            }
+            const auto& reference = state.load.reference_length;
+            for (std::size_t e = 0; e + 1 < present.records.equilibria.size(); ++e) {
+                const auto& length = present.records.equilibria[e].length;
+                const double dead = nominal.records.equilibria[e + 1].stress * reference[0] / reference[1];
+                const double now = present.records.equilibria[e + 1].stress * length[0] / length[1];
+                BOOST_TEST(now == dead, boost::test_tools::tolerance(1e-9));
+            }
+            BOOST_TEST(present.records.equilibria[3].stress != nominal.records.equilibria[3].stress);
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forces_on_disks_do_not_depend_on_the_pin) {
+    for (const std::string& name : names) {
+        BOOST_TEST_CONTEXT(name) {
+            const State<2> start = with_forces(start_of(name));
+            const Played played = play(start, +1, 3);
+            BOOST_TEST_REQUIRE(played.outcome.completed, played.why());
+            const Played bare = play(start_of(name), +1, 3);
+            BOOST_TEST(played.records.equilibria[1].stress != bare.records.equilibria[1].stress);
+            for (const int pin : {3, 12}) { // none that becomes a rattler: its zeros are not seen then (C9)
+                State<2> other = start;
+                other.packing.cell.pin = pin;
+                const Played again = play(other, +1, 3);
+                BOOST_TEST_REQUIRE(again.outcome.completed, again.why());
+                crafted::check_same_sequence(played, again, crafted::events(again.records, crafted::same), 1e-11);
+            }
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     // One disk: f(1,-1) = F2 / sqrt 3 - T vanishes at F2 = sqrt 3 T, and the disk rolls over its own image.
     State<2> state = cells::one_tilted_disk(1, 1, 0.5);
@@ -286,9 +345,13 @@ BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
     RunOptions options;
     options.ties = TiePolicy::choose;
     refuses(start, options, "expected ties = \"stop\"");
-    State<2> state = start;
+    State<2> state = start_of("tilt_16");
     state.load.kind = LoadKind::true_stress;
-    refuses(state, {}, "expected dead loads");
+    refuses(state, {}, "no potential where the tilt moves");
+    state = with_forces(start);
+    BOOST_CHECK_NO_THROW(require_followed(state, RunOptions(), "state"));
+    state.load.disk_force[4] += 0x1p-40;
+    refuses(state, {}, "forces on disks along axis 0");
     state = start;
     state.load.infinitesimal[0] += 1;
     refuses(state, {}, "expected 0 exactly");

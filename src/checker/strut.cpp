@@ -16,10 +16,12 @@ Vector outward(const State<2>& state, const Contact& c, std::size_t disk) {
         normal[static_cast<std::size_t>(c.j)] = c.kind == ContactKind::upper_wall ? 1 : -1;
         return normal;
     }
-    const auto other = static_cast<std::size_t>(static_cast<std::size_t>(c.i) == disk ? c.j : c.i);
-    const double x = state.packing.q[2 * other] - state.packing.q[2 * disk];
-    const double y = state.packing.q[2 * other + 1] - state.packing.q[2 * disk + 1];
-    const double length = std::hypot(x, y);
+    const Row row(c, state.packing.disk_count());
+    double x = 0; // from j to i
+    double y = 0;
+    row.separate(state.packing.q, 0, x);
+    row.separate(state.packing.q, 1, y);
+    const double length = static_cast<std::size_t>(c.i) == disk ? -std::hypot(x, y) : std::hypot(x, y);
     return {x / length, y / length};
 }
 
@@ -73,7 +75,8 @@ struct Bare {
         around.assign(movable.size(), {});
         for (std::size_t l = 0; l < state.contacts.size(); ++l) {
             const Contact& c = state.contacts[l];
-            if (left_out[l] || c.kind == ContactKind::held) {
+            const bool own = c.kind == ContactKind::disk_disk && c.i == c.j; // it presses on the cell alone
+            if (left_out[l] || own || c.kind == ContactKind::held) {
                 continue;
             }
             around[static_cast<std::size_t>(c.i)].push_back(l);

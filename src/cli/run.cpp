@@ -184,11 +184,7 @@ int run(const RunArguments& arguments) {
     const std::string open = left_open(counters);
     complain(arguments, ending, open);
     if ((scene.pictures || scene.vtk) && ending.status != RunStatus::interrupted && start.ok()) {
-        if (start.value().packing.cell.any()) {
-            fmt::print(stderr, "isostat: {}: no figures: of a periodic cell there are none yet\n", arguments.output);
-        } else {
-            draw(scene, directory, quiet);
-        }
+        draw(scene, directory, quiet);
     }
     record_work(directory.path() / "work.json");
     return ending.status == RunStatus::completed && !open.empty() ? undecided : exit_status(ending.status);

@@ -257,7 +257,10 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     Page page;
     Json data = header_json(directory);
     std::optional<Frames> frames;
-    if (const std::optional<StateFile<2>> first = records.stored(0)) {
+    const std::optional<StateFile<2>> first = records.stored(0);
+    if (first && first->state.packing.cell.any()) {
+        page.left_out.emplace_back("the packing in its periodic cell: the force pictures show it");
+    } else if (first) {
         const Packing<2>& packing = first->state.packing;
         data["packing"] = packing_json(first->state);
         data["events"] = events_json(records, packing);

@@ -87,6 +87,21 @@ inline std::optional<State<2>> piled_start(Random& random) {
     return state;
 }
 
+/// A few disks in a cell or a channel, or some more that are prepared.
+inline std::optional<State<2>> start_in_cell(Random& random) {
+    if (random.integer(4) != 0) {
+        return in_small_cell(static_cast<CellKind>(random.integer(3)), random);
+    }
+    PreparationOptions options;
+    options.disks = 20 + random.integer(21);
+    options.radii = random_radii(options.disks, random);
+    options.seed = random.bits() >> 12;
+    options.cell = random.integer(2) == 0 ? PreparedCell::rectangular : PreparedCell::tilted;
+    PreparationReport<2> report;
+    auto made = prepare<2>(options, report);
+    return made.ok() ? std::optional(made.value()) : std::nullopt;
+}
+
 /// Up or down by some equilibria, or to a stress inside or beyond what is supported: near ones need no arc.
 inline void add_segment(RandomRun& run, Random& random) {
     Segment segment;
@@ -136,9 +151,11 @@ inline RunHeader header_of(const RandomRun& run) {
 } // namespace detail
 
 /// Nothing: the draw gave no start that a run takes.
-inline std::optional<RandomRun> random_run(std::uint64_t seed) {
+inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell) {
     Random random(seed);
-    auto start = random.integer(3) == 0 ? detail::piled_start(random) : detail::prepared_start(random);
+    auto start = in_cell                  ? detail::start_in_cell(random)
+                 : random.integer(3) == 0 ? detail::piled_start(random)
+                                          : detail::prepared_start(random);
     if (!start) {
         return {};
     }
@@ -153,10 +170,10 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed) {
     run.options.rule = static_cast<OpeningRule>(
         random.integer(2) == 0 ? 0 : random.integer(static_cast<int>(opening_rule_words.size())));
     run.options.rule_seed = random.bits();
-    run.options.certify = static_cast<CertifyLevel>(random.integer(4));
+    run.options.certify = static_cast<CertifyLevel>(random.integer(in_cell ? 2 : 4)); // cells: plain, decisions
     run.options.max_strain = 1e3;
     run.options.max_arcs = 400;
-    if (run.options.certify != CertifyLevel::plain && random.integer(5) == 0) {
+    if (!in_cell && run.options.certify != CertifyLevel::plain && random.integer(5) == 0) {
         run.options.ties = TiePolicy::perturb;
         run.options.ties_seed = random.bits();
     }

@@ -1,7 +1,7 @@
 #pragma once
 // States that lie at the thresholds of the program's decisions, class by class.
 
-#include "contradictions/piles.hpp"
+#include "contradictions/cell_states.hpp"
 
 #include <functional>
 
@@ -362,6 +362,9 @@ inline std::vector<StateClass> state_classes() {
         {"true stresses", true_stresses},
         {"exact numbers", exact_lattice},
         {"held coordinates", held_coordinate, false},
+        {"rectangular cells", [](Random& r) { return cell_at_threshold(CellKind::rectangular, r); }},
+        {"tilted cells", [](Random& r) { return cell_at_threshold(CellKind::tilted, r); }},
+        {"channels", [](Random& r) { return cell_at_threshold(CellKind::channel, r); }},
     };
 }
 

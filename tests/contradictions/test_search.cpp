@@ -179,7 +179,7 @@ Verdict run_from(const State<2>& state, const Truth& truth, Count& tally, Object
 
 /// The same doubles as exact numbers, where they touch exactly.
 Verdict crafted_verdict(const State<2>& state) {
-    if (state.load.kind != LoadKind::nominal) {
+    if (state.load.kind != LoadKind::nominal || state.packing.cell.any()) { // crafted packings have walls
         return Verdict::undecided;
     }
     isostat::crafted::ExactPacking packing = isostat::crafted::exact_copy(state.packing);

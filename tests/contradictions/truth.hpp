@@ -1,7 +1,7 @@
 #pragma once
-// What is true of a state, to some 200 digits: Newton to the vertex, dense elimination, brute force over all pairs.
-// Nothing of the library is used but its data structures. A number below 1e-150 of its scale is taken for 0: the states
-// here have condition numbers far below 1e40.
+// What is true of a state, to some 200 digits: Newton to the vertex, dense elimination, brute force over all pairs, in
+// a periodic cell over all images that can be the nearest. Nothing of the library is used but its data structures. A
+// number below 1e-150 of its scale is taken for 0: the states here have condition numbers far below 1e40.
 
 #include <isostat/contact/state.hpp>
 
@@ -9,12 +9,16 @@
 #include <boost/multiprecision/mpfr.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 namespace contradictions {
 
 using isostat::Contact;
 using isostat::ContactKind;
+using isostat::Packing;
 using isostat::State;
 using isostat::WallKind;
 
@@ -149,6 +153,12 @@ class Truth {
     [[nodiscard]] std::size_t wall(int axis) const {
         return 2 * state_->packing.radius.size() + static_cast<std::size_t>(axis);
     }
+    /// From disk i to disk j, or to the image of it that the contact names.
+    [[nodiscard]] std::array<Real, 2> between(const Contact& c) const;
+    [[nodiscard]] bool moves(std::size_t coordinate) const;
+    [[nodiscard]] bool can_move(const Contact& pair) const;
+    /// Images of all pairs that can be the nearest, those that overlap among them.
+    [[nodiscard]] std::vector<Contact> near_images() const;
     void find_dofs();
     bool newton();
     void find_forces();
@@ -172,13 +182,23 @@ template <class Visit> void Truth::gradient(const Contact& c, Visit visit) const
     const auto j = static_cast<std::size_t>(c.j);
     switch (c.kind) {
     case ContactKind::disk_disk: {
-        const Real dx = q[2 * j] - q[2 * i];
-        const Real dy = q[2 * j + 1] - q[2 * i + 1];
+        const auto [dx, dy] = between(c);
         const Real d = sqrt(dx * dx + dy * dy);
-        put(2 * i, -dx / d);
-        put(2 * i + 1, -dy / d);
-        put(2 * j, dx / d);
-        put(2 * j + 1, dy / d);
+        if (c.i != c.j) {
+            put(2 * i, -dx / d);
+            put(2 * i + 1, -dy / d);
+            put(2 * j, dx / d);
+            put(2 * j + 1, dy / d);
+        }
+        if (c.image.m[0] != 0) {
+            put(wall(0), c.image.m[0] * dx / d);
+        }
+        if (c.image.m[1] != 0) {
+            put(wall(1), c.image.m[1] * dy / d);
+            if (state_->packing.cell.any()) {
+                put(wall(2), c.image.m[1] * dx / d);
+            }
+        }
         break;
     }
     case ContactKind::lower_wall: put(2 * i + j, Real(1)); break;
@@ -192,28 +212,57 @@ template <class Visit> void Truth::gradient(const Contact& c, Visit visit) const
 
 inline Real Truth::gap(const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
-    const auto j = static_cast<std::size_t>(c.j);
     switch (c.kind) {
     case ContactKind::disk_disk: {
-        const Real dx = q[2 * j] - q[2 * i];
-        const Real dy = q[2 * j + 1] - q[2 * i + 1];
+        const auto [dx, dy] = between(c);
         return sqrt(dx * dx + dy * dy) - (radius(c.i) + radius(c.j));
     }
-    case ContactKind::lower_wall: return q[2 * i + j] - radius(c.i);
-    case ContactKind::upper_wall: return q[wall(c.j)] - q[2 * i + j] - radius(c.i);
+    case ContactKind::lower_wall: return q[2 * i + static_cast<std::size_t>(c.j)] - radius(c.i);
+    case ContactKind::upper_wall: return q[wall(c.j)] - q[2 * i + static_cast<std::size_t>(c.j)] - radius(c.i);
     case ContactKind::held: break;
     }
     return q[i] - Real(state_->packing.q[i]);
 }
 
+inline std::array<Real, 2> Truth::between(const Contact& c) const {
+    const auto i = static_cast<std::size_t>(c.i);
+    const auto j = static_cast<std::size_t>(c.j);
+    std::array<Real, 2> r{q[2 * j] - q[2 * i], q[2 * j + 1] - q[2 * i + 1]};
+    if (!c.image.is_here()) {
+        r[0] += c.image.m[0] * q[wall(0)] + c.image.m[1] * q[wall(2)];
+        r[1] += c.image.m[1] * q[wall(1)];
+    }
+    return r;
+}
+
+inline bool Truth::moves(std::size_t coordinate) const {
+    const auto& p = state_->packing;
+    const std::size_t disk = coordinate / 2;
+    if (disk < p.radius.size()) {
+        const bool pinned = p.cell.periodic[coordinate % 2] && static_cast<int>(disk) == p.cell.pin;
+        return !pinned && (p.fixed.empty() || p.fixed[disk] == 0);
+    }
+    if (coordinate == wall(2)) {
+        return p.cell.tilt_moves[0];
+    }
+    return p.walls.upper[coordinate % 2] == WallKind::movable || p.cell.period_moves[coordinate % 2];
+}
+
+/// A disk and its own image move with the cell alone.
+inline bool Truth::can_move(const Contact& pair) const {
+    const auto& p = state_->packing;
+    if (pair.i == pair.j) {
+        return (pair.image.m[0] != 0 && moves(wall(0))) || (pair.image.m[1] != 0 && (moves(wall(1)) || moves(wall(2))));
+    }
+    const auto free = [&p](int i) { return p.fixed.empty() || p.fixed[static_cast<std::size_t>(i)] == 0; };
+    return free(pair.i) || free(pair.j);
+}
+
 inline void Truth::find_dofs() {
     const auto& p = state_->packing;
     for (std::size_t k = 0; k < p.q.size(); ++k) {
-        const std::size_t disk = k / 2;
-        const bool moves =
-            disk < p.radius.size() ? p.fixed.empty() || p.fixed[disk] == 0 : p.walls.upper[k % 2] == WallKind::movable;
-        dof_.push_back(moves ? static_cast<int>(coordinate_.size()) : -1);
-        if (moves) {
+        dof_.push_back(moves(k) ? static_cast<int>(coordinate_.size()) : -1);
+        if (moves(k)) {
             coordinate_.push_back(static_cast<int>(k));
         }
     }
@@ -277,6 +326,9 @@ inline void Truth::find_forces() {
     for (std::size_t k = 0; k < load.infinitesimal.size(); ++k) {
         add(small, k, Real(load.infinitesimal[k]));
     }
+    if (state_->packing.cell.any()) {
+        add(finite, wall(2), -Real(load.shear[0]) * Real(load.reference_length[0]));
+    }
     for (int a = 0; a < 2; ++a) {
         const auto other = static_cast<std::size_t>(1 - a);
         const Real length =
@@ -296,6 +348,57 @@ inline void Truth::find_forces() {
     }
 }
 
+inline std::vector<Contact> Truth::near_images() const {
+    const auto& p = state_->packing;
+    std::vector<std::pair<double, Contact>> found; // gaps in double: only those that are not far from the smallest
+    if (!p.cell.any()) {
+        return {};
+    }
+    const auto at = [this](std::size_t k) { return static_cast<double>(q[k]); };
+    const double lx = at(wall(0));
+    const double ly = at(wall(1));
+    const double tilt = at(wall(2));
+    // |r| below this for one image at least of any disk and its own; a height of the cell is det A over a side.
+    const double reach = 2 * p.max_radius() + 2 * (p.cell.periodic[0] ? lx : std::hypot(tilt, ly));
+    const int across = p.cell.periodic[0] ? static_cast<int>(reach / (lx * ly / std::hypot(tilt, ly))) + 1 : 0;
+    const int up = p.cell.periodic[1] ? static_cast<int>(reach / ly) + 1 : 0;
+    double smallest = HUGE_VAL;
+    for (int i = 0; i < p.disk_count(); ++i) {
+        for (int j = i; j < p.disk_count(); ++j) {
+            const auto x = static_cast<std::size_t>(2 * i);
+            const auto y = static_cast<std::size_t>(2 * j);
+            const double down = p.cell.periodic[1] ? std::round((at(y + 1) - at(x + 1)) / ly) : 0;
+            const double left =
+                p.cell.periodic[0] ? std::round((at(y) - at(x) - tilt * (at(y + 1) - at(x + 1)) / ly) / lx) : 0;
+            for (int m = -across; m <= across; ++m) {
+                for (int k = -up; k <= up; ++k) {
+                    const Contact pair(ContactKind::disk_disk, i, j,
+                                       {{static_cast<std::int8_t>(m - left), static_cast<std::int8_t>(k - down), 0}});
+                    if (i == j && !(pair.image > isostat::Image{})) {
+                        continue;
+                    }
+                    const auto& c = pair.image.m;
+                    const double dx = at(y) - at(x) + c[0] * lx + c[1] * tilt;
+                    const double dy = at(y + 1) - at(x + 1) + c[1] * ly;
+                    const double gap = std::hypot(dx, dy) - p.radius[static_cast<std::size_t>(i)] -
+                                       p.radius[static_cast<std::size_t>(j)];
+                    const bool listed =
+                        std::find(state_->contacts.begin(), state_->contacts.end(), pair) != state_->contacts.end();
+                    smallest = !listed && can_move(pair) ? std::min(smallest, gap) : smallest;
+                    found.emplace_back(gap, pair);
+                }
+            }
+        }
+    }
+    std::vector<Contact> near;
+    for (const auto& [gap, pair] : found) {
+        if (gap <= std::max(smallest, 0.0) + 1e-6 * p.min_radius()) {
+            near.push_back(pair);
+        }
+    }
+    return near;
+}
+
 inline void Truth::find_other_pairs() {
     const auto& p = state_->packing;
     const auto listed = [this](const Contact& c) {
@@ -306,20 +409,23 @@ inline void Truth::find_other_pairs() {
             others.push_back({c, gap(c), can_move});
         }
     };
-    const auto moves = [&p](int i) { return p.fixed.empty() || p.fixed[static_cast<std::size_t>(i)] == 0; };
+    const auto free = [&p](int i) { return p.fixed.empty() || p.fixed[static_cast<std::size_t>(i)] == 0; };
     for (int i = 0; i < p.disk_count(); ++i) {
-        for (int j = i + 1; j < p.disk_count(); ++j) {
-            add({ContactKind::disk_disk, i, j}, moves(i) || moves(j));
+        for (int j = i + 1; j < p.disk_count() && !p.cell.any(); ++j) {
+            add({ContactKind::disk_disk, i, j}, can_move({ContactKind::disk_disk, i, j}));
         }
         for (int a = 0; a < 2; ++a) {
             const auto axis = static_cast<std::size_t>(a);
             if (p.walls.lower[axis] != WallKind::absent) {
-                add({ContactKind::lower_wall, i, a}, moves(i));
+                add({ContactKind::lower_wall, i, a}, free(i));
             }
             if (p.walls.upper[axis] != WallKind::absent) {
-                add({ContactKind::upper_wall, i, a}, moves(i) || p.walls.upper[axis] == WallKind::movable);
+                add({ContactKind::upper_wall, i, a}, free(i) || p.walls.upper[axis] == WallKind::movable);
             }
         }
+    }
+    for (const Contact& pair : near_images()) {
+        add(pair, can_move(pair));
     }
     std::sort(others.begin(), others.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
 }

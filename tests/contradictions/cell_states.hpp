@@ -1,0 +1,158 @@
+#pragma once
+// States in periodic cells that lie at the thresholds of the program's decisions.
+
+#include "contradictions/cells.hpp"
+
+namespace contradictions::detail {
+
+inline double a_few_ulps_from(double x, Random& random) {
+    for (int k = random.integer(7) - 3; k != 0; k += k > 0 ? -1 : 1) {
+        x = std::nextafter(x, k > 0 ? HUGE_VAL : -HUGE_VAL);
+    }
+    return x;
+}
+
+/// From 1 to 2, up to ten times as large, equal, or equal but for little.
+inline std::vector<double> cell_radii(int disks, Random& random) {
+    const int law = random.integer(5);
+    const double spread = law < 2 ? 1 : law == 2 ? 9 : law == 3 ? std::ldexp(1.0, -4 - random.integer(46)) : 0;
+    std::vector<double> radii;
+    for (int i = 0; i < disks; ++i) {
+        radii.push_back(0.5 * (1 + spread * random.real()));
+    }
+    return radii;
+}
+
+inline void draw_infinitesimal(State<2>& state, Random& random) {
+    state.load.infinitesimal.clear();
+    for (std::size_t k = 0; k < 2 * state.packing.radius.size(); ++k) {
+        state.load.infinitesimal.push_back(random.integer(8) == 0 ? 0.0 : random.real(-1, 0.3));
+    }
+    isostat::balance<2>(state.load.infinitesimal, state.packing.cell);
+}
+
+/// One more disk, in a void: it rests on two others, or on their images. \pre state at its vertex
+inline bool add_rattler(State<2>& state, Random& random) {
+    const State<2> before = state;
+    const auto& p = before.packing;
+    const int count = p.disk_count();
+    for (int tries = 0; tries < 60; ++tries) {
+        const double r = p.min_radius() * random.real(0.1, 0.6);
+        Pile pair; // of the two that carry it
+        std::vector<Contact> contacts;
+        for (int side = 0; side < 2; ++side) {
+            const auto i = static_cast<std::size_t>(random.integer(count));
+            const int m = side == 1 && p.cell.periodic[0] ? random.integer(3) - 1 : 0;
+            const int k = side == 1 && p.cell.periodic[1] ? random.integer(3) - 1 : 0;
+            pair.radius.push_back(p.radius[i]);
+            pair.at.push_back(
+                {p.q[2 * i] + m * p.lattice(0, 0) + k * p.lattice(0, 1), p.q[2 * i + 1] + k * p.lattice(1, 1)});
+            contacts.push_back(isostat::pair_of(count, static_cast<int>(i),
+                                                {{static_cast<std::int8_t>(m), static_cast<std::int8_t>(k), 0}}));
+        }
+        if (contacts[0] == contacts[1] || gap(pair, 0, pair.at[1][0], pair.at[1][1], pair.radius[1]) > 2 * r) {
+            continue;
+        }
+        const auto place = resting_place(pair, 0, 1, r, random.integer(2) == 0 ? -1 : 1);
+        if (!place) {
+            continue;
+        }
+        state = before;
+        state.packing.radius.push_back(r);
+        const std::array<double, 2> at{static_cast<double>((*place)[0]), static_cast<double>((*place)[1])};
+        state.packing.q.insert(state.packing.q.begin() + 2 * count, at.begin(), at.end());
+        state.contacts.insert(state.contacts.end(), contacts.begin(), contacts.end());
+        std::sort(state.contacts.begin(), state.contacts.end());
+        state.load.infinitesimal.insert(state.load.infinitesimal.end(), {0, 0});
+        const Truth truth(state);
+        if (truth.known && (truth.others.empty() || truth.others.front().gap > 0)) {
+            return true;
+        }
+    }
+    state = before;
+    return false;
+}
+
+/// The shear at which the force of one contact vanishes, or a few ulps beside it.
+inline void shear_to_the_end(State<2>& state, const Truth& truth, Random& random) {
+    State<2> sheared = state;
+    sheared.load.shear[0] += 1;
+    const Truth other(sheared);
+    const auto l = static_cast<std::size_t>(random.integer(static_cast<int>(state.contacts.size())));
+    const Real rate = other.force[l] - truth.force[l];
+    if (abs(rate) > Real(1e-3)) {
+        const Real at = Real(state.load.shear[0]) - truth.force[l] / rate;
+        state.load.shear[0] = a_few_ulps_from(static_cast<double>(at), random);
+    }
+}
+
+inline void stress_to_the_end(State<2>& state, const Truth& truth, Random& random) {
+    const End& end = random.integer(2) == 0 ? truth.low : truth.high;
+    if (!end.unbounded && abs(end.stress) > 1e-30) {
+        state.load.stress[1] = a_few_ulps_from(static_cast<double>(end.stress), random);
+    }
+}
+
+inline CellOptions cell_options(CellKind kind, int disks, Random& random) {
+    CellOptions options;
+    options.kind = kind;
+    options.radii = cell_radii(disks, random);
+    if (random.integer(3) != 0) {
+        options.force = {random.real(0.5, 2), random.real(0.5, 2)};
+    }
+    options.shear_force = kind == CellKind::tilted && random.integer(2) == 0 ? random.real(-0.3, 0.3) : 0;
+    return options;
+}
+
+/// A packing of one to six disks, some with a rattler, described by whatever pin and representatives.
+inline std::optional<State<2>> in_small_cell(CellKind kind, Random& random) {
+    auto state = make_cell(cell_options(kind, 1 + random.integer(5), random), random);
+    if (!state) {
+        return {};
+    }
+    describe_otherwise(*state, random);
+    if (!polish(*state)) {
+        return {};
+    }
+    if (random.integer(3) == 0) {
+        add_rattler(*state, random);
+    }
+    if (random.integer(3) != 0) {
+        isostat::snap_to_grid(state->packing); // a run asks for that
+    }
+    draw_infinitesimal(*state, random);
+    return state;
+}
+
+inline std::optional<State<2>> cell_at_threshold(CellKind kind, Random& random) {
+    auto state = in_small_cell(kind, random);
+    if (!state) {
+        return {};
+    }
+    const Truth truth(*state);
+    if (!truth.known) {
+        return {};
+    }
+    switch (random.integer(6)) {
+    case 0: stress_to_the_end(*state, truth, random); break;
+    case 1:
+        if (kind == CellKind::tilted) {
+            shear_to_the_end(*state, truth, random);
+        }
+        break;
+    case 2:
+        for (double& x : state->packing.q) {
+            x = x == 0 ? 0 : a_few_ulps_from(x, random);
+        }
+        break;
+    case 3: state->load.stress[static_cast<std::size_t>(random.integer(2))] = 0; break;
+    case 4:
+        state->load.reference_length = {random.real(0.5, 3), random.real(0.5, 3)};
+        stress_to_the_end(*state, Truth(*state), random);
+        break;
+    default: break;
+    }
+    return state;
+}
+
+} // namespace contradictions::detail

@@ -1,5 +1,7 @@
 #include "compare/departure.hpp"
 
+#include "compare/backbone.hpp"
+
 #include <isostat/compare/snap.hpp>
 
 #include <fmt/format.h>

@@ -1,5 +1,6 @@
 #include "compare/path.hpp"
 
+#include "compare/backbone.hpp"
 #include "core/parallel.hpp"
 
 #include <isostat/compare/snap.hpp>
@@ -66,10 +67,6 @@ void predict(PathEquilibrium& e, int direction, double stiffness) {
 }
 
 } // namespace
-
-State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {
-    return snap({state.packing, carrying, state.load}).backbone;
-}
 
 Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness) {
     Path path;

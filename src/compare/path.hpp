@@ -24,7 +24,4 @@ Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& 
 /// the way, or with `jump` after the whole change at once.
 Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump, const RunOptions& options);
 
-/// The same state without rattlers.
-State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying);
-
 } // namespace isostat::compare

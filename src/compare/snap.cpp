@@ -1,3 +1,4 @@
+#include "compare/backbone.hpp"
 #include "compare/room.hpp"
 #include "preparation/polish.hpp"
 
@@ -143,6 +144,12 @@ const char* to_string(SnapOutcome outcome) {
     case SnapOutcome::undecided: break;
     }
     return "undecided";
+}
+
+State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {
+    Snap out;
+    take_backbone({state.packing, carrying, state.load}, out);
+    return std::move(out.backbone);
 }
 
 Snap snap(const SoftState& soft) {

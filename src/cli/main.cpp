@@ -453,7 +453,8 @@ struct Program {
             "(law, rest,\n"
             "stiffness), and what it is: same, early, late, other, soft, moving, file, refuted, undecided. Then where "
             "the frames leave the\n"
-            "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json and the figure.\n"
+            "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json, bundle/ and\n"
+            "the figure.\n"
             "Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: "
             "none departs, one is\n"
             "undecided.\n"
@@ -467,7 +468,9 @@ struct Program {
                 "the first frame that has one)")
             ->type_name("STATE|DIR");
         command
-            .add_option("--bundle", a.bundle, "exact runs with other rules of opening at the departure (default 16)")
+            .add_option(
+                "--bundle", a.bundle,
+                "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)")
             ->check(CLI::Range(0, 10000));
         command.add_flag(
             "--local", a.local,

@@ -202,6 +202,17 @@ BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     BOOST_TEST(compare::frames_csv(turned.compare()) == text);
 }
 
+BOOST_AUTO_TEST_CASE(a_disk_moved_by_a_thousandth_is_no_frame_in_motion) {
+    for (const std::size_t row : {2U, 30U, 66U}) {
+        expect_file(
+            [row](Copy& c) {
+                const double x = std::stod(series::words_of(disk_row(c, row))[3]);
+                disk_row(c, row) = Copy::field(disk_row(c, row), 3, fmt::format("{}", x + 1e-3));
+            },
+            {"overlap"});
+    }
+}
+
 BOOST_AUTO_TEST_CASE(two_ids_swapped) {
     expect_file(
         [](Copy& c) {

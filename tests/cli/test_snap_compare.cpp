@@ -34,6 +34,18 @@ BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     expect(run({"verify", (folder / "certificate.json").string()}), 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
+    const scratch::Folder folder;
+    const std::string state = (folder / "state.json").string();
+    expect(run({"convert", scratch::data("vertex100.txt"), "-o", state}), 0);
+    const Outcome made = run({"snap", state, "-o", (folder / "snapped.json").string()});
+    expect(made, 0);
+    BOOST_TEST(contains(made.out, "snap      vertex"), made.out);
+    BOOST_TEST(contains(made.out, "202 contacts of the state"), made.out);
+    BOOST_TEST(!contains(made.out, ", 0 rattlers"), made.out); // they touch and carry nothing
+    expect(run({"certify", (folder / "snapped.json").string(), "-o", (folder / "c.json").string()}), 0);
+}
+
 BOOST_AUTO_TEST_CASE(a_hyperstatic_frame_has_no_state_and_status_1) {
     const scratch::Folder folder;
     const Outcome made = snap(8, "0:16.0045436303101,0:14.4378229180508", "1,1.56", folder / "state.json");

@@ -272,6 +272,12 @@ struct Program {
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
                          "network");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
+        command
+            .add_option("--stiffness", a.stiffness,
+                        "of a run: also where grains of this stiffness (force / overlap) would leave each structure, "
+                        "predicted: soft_limits.csv")
+            ->check(CLI::PositiveNumber)
+            ->type_name("K");
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;

@@ -12,6 +12,8 @@ namespace isostat::compare {
 
 namespace {
 
+/// Of a rearrangement of a member: some rules take ten times as many as others, and a member that ends says so.
+constexpr long most_arcs = 2000;
 constexpr std::array rests{"down", "up", "left", "right"};
 constexpr std::array rules{OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::least_negative};
 
@@ -117,6 +119,7 @@ Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<do
         RunOptions run = options;
         run.rule = m.rule;
         run.rule_seed = m.seed;
+        run.max_arcs = std::min(run.max_arcs, most_arcs);
         paths[k] = follow(std::move(resting.value()), loads, run);
     });
     Tree tree(out);

@@ -135,6 +135,10 @@ class Diagnosis {
 
     /// Members of the bundle that stand where the frame is, at its load.
     bool choice() {
+        const FrameStatus status = after_->result.status;
+        if (status == FrameStatus::undecided || status == FrameStatus::refuted) {
+            return false; // the same list may be that of a member: the frame itself was not shown to be there
+        }
         int here = 0, ended = 0;
         std::set<int> nodes;
         for (const BundleMember& member : bundle_.members) {

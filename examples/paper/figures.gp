@@ -30,8 +30,8 @@ set multiplot layout 1,2
 set format x "%g"
 set rmargin 3
 set key top left reverse Left
-set xlabel "10^{4} ε_2"
-set ylabel "σ_2 / σ_1"
+set xlabel "axial strain 10^{4} ε_2"
+set ylabel "stress ratio σ_2/σ_1"
 do for [n in large] {
   set title sprintf("%s disks: loading%s, then unloading", n, n > 1900 ? " over 95 equilibria" : " to 1.1")
   plot "staircase.csv" using ($1==n+0 && $3==0 ? 1e4*$6 : NaN):7 with fsteps lw 1.5 dt dash[1] lc rgb colour[1] title "loading", \
@@ -58,8 +58,8 @@ set output "figure4.svg"
 set multiplot layout 1,2
 set key top right noreverse Right
 set title "Stress increments of the loading"
-set xlabel "10^{3} Δσ_2 / σ_1"
-set ylabel "density of Δσ_2 / σ_1"
+set xlabel "stress increment 10^{3} Δσ_2/σ_1"
+set ylabel "density"
 set xrange [0:*]
 plot for [i=1:words(large)] "histograms.csv" using ($1==word(large,i)+0 && $2==1 ? 1e3*$3 : NaN):4 with histeps lw 1.5 dt dash[i] lc rgb colour[i] title sprintf("%s disks, %s values", word(large,i), word(stress_counts,i))
 set title "Share of the increments ≥ x: straight lines are exponential laws"
@@ -67,7 +67,7 @@ set autoscale x
 set xrange [0:*]
 set logscale y
 set ylabel "share"
-set xlabel "Δσ_2 / σ_1 divided by its mean"
+set xlabel "stress increment divided by its mean"
 set xrange [0:8]
 set yrange [1e-3:1.2]
 plot for [i=1:words(sizes)] "distributions.csv" using ($1==word(sizes,i)+0 && $2==1 ? $3/(mean[i]) : NaN):4 with steps lw 1.5 dt dash[i] lc rgb colour[i] title word(sizes,i)." disks", \
@@ -79,12 +79,12 @@ set multiplot layout 1,2
 unset logscale
 set autoscale
 set title "Strain increments of the loading"
-set xlabel "10^{6} Δε_2"
-set ylabel "10^{-6} density of Δε_2"
+set xlabel "strain increment 10^{6} Δε_2"
+set ylabel "density / 10^{6}"
 set xrange [0:10]
 plot for [i=1:words(large)] "histograms.csv" using ($1==word(large,i)+0 && $2==2 ? 1e6*$3 : NaN):(1e-6*$4) with histeps lw 1.5 dt dash[i] lc rgb colour[i] title sprintf("%s disks, %s values", word(large,i), word(strain_counts,i))
 set title "Share of the increments ≥ x"
-set xlabel "Δε_2"
+set xlabel "strain increment Δε_2"
 set autoscale x
 set xrange [1e-9:0.1]
 set yrange [5e-4:1.5]
@@ -104,14 +104,14 @@ set format x "%g"
 set xtics autofreq
 set xtics (100, 200, 500, 1000, 2000, 5000)
 set xlabel "disks"
-set ylabel "rate"
+set ylabel "rearrangements per unit of σ_2/σ_1"
 set autoscale
 set xrange [70:7000]
 set key top left
 plot "sizes.csv" using 1:7:8:9 with yerrorbars pt 7 ps 0.6 lw 1.5 lc rgb colour[1] title "measured, 95 %", \
      0.15*x**1.16 dt 2 lc rgb "#000000" title "n^{1.16}"
 set title "Median strain increment of the loading"
-set ylabel "Δε_2"
+set ylabel "strain increment Δε_2"
 set format y "10^{%L}"
 set key top right
 plot "sizes.csv" using 1:13:14:15 with yerrorbars pt 7 ps 0.6 lw 1.5 lc rgb colour[2] title "measured, 95 %", \
@@ -122,8 +122,8 @@ set output "hysteresis.svg"
 first = words(sizes) > 3 ? 4 : 1 # small sizes scatter too much to be drawn
 set multiplot layout 1,2
 set title "Strain at the top of a cycle (filled) and what is left of it (open)"
-set xlabel "amplitude: σ_2 / σ_1 - 1 at the top"
-set ylabel "ε_2"
+set xlabel "amplitude: σ_2/σ_1 - 1 at the top"
+set ylabel "axial strain ε_2"
 set autoscale
 set xrange [1e-4:0.2]
 set xtics autofreq
@@ -135,6 +135,6 @@ set title "Share of the strain that is left"
 unset logscale y
 set format y "%g"
 set yrange [0:1.5]
-set ylabel "left / peak"
+set ylabel "strain left / peak strain"
 plot for [i=first:words(sizes)] "hysteresis.csv" using ($1==word(sizes,i)+0 ? $4 : NaN):($6/$5) with points pt shape[i] ps 0.6 lc rgb colour[i] title word(sizes,i)." disks"
 unset multiplot

@@ -74,6 +74,7 @@ struct ReportArguments {
     bool pdf = false;
     bool html = false;
     bool no_charts = false;
+    double stiffness = 0; ///< > 0: the table of soft limits too
 };
 int report(const ReportArguments& arguments);
 

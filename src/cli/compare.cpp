@@ -58,6 +58,15 @@ void print_local(const std::vector<compare::FrameResult>& frames) {
     }
 }
 
+void print_bundle(const compare::Bundle& bundle) {
+    if (bundle.members.size() < 2) {
+        return;
+    }
+    fmt::print(
+        "\nbundle: {} exact runs from the same start come through {} equilibria; the first {} are common to all\n",
+        bundle.members.size(), bundle.nodes.size(), bundle.common);
+}
+
 void print_ends(const compare::Comparison& comparison, double stiffness) {
     if (stiffness > 0) {
         fmt::print("\n{:>5} {:>10} {:>10} {:>12} {:>11}  {}   (predictions)\n", "exact", "from", "to", "soft limit",
@@ -70,6 +79,7 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
     if (!comparison.path_end.empty()) {
         fmt::print("\nthe exact run ends: {}\n", comparison.path_end);
     }
+    print_bundle(comparison.bundle);
     std::array<int, compare::frame_statuses> counts{};
     for (const compare::FrameResult& f : comparison.frames) {
         ++counts[static_cast<std::size_t>(f.status)];

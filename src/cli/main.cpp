@@ -272,6 +272,12 @@ struct Program {
                          "of a run: also write trajectory.html, one page to look at every equilibrium and arc, without "
                          "network");
         command.add_flag("--no-charts", a.no_charts, "do not call gnuplot");
+        command
+            .add_option("--stiffness", a.stiffness,
+                        "of a run: also where grains of this stiffness (force / overlap) would leave each structure, "
+                        "predicted: soft_limits.csv")
+            ->check(CLI::PositiveNumber)
+            ->type_name("K");
         add_common(command, a.common, true);
         command.callback([&a, line, this] {
             a.common.command = line;
@@ -453,7 +459,8 @@ struct Program {
             "(law, rest,\n"
             "stiffness), and what it is: same, early, late, other, soft, moving, file, refuted, undecided. Then where "
             "the frames leave the\n"
-            "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json and the figure.\n"
+            "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json, bundle/ and\n"
+            "the figure.\n"
             "Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: "
             "none departs, one is\n"
             "undecided.\n"
@@ -467,7 +474,9 @@ struct Program {
                 "the first frame that has one)")
             ->type_name("STATE|DIR");
         command
-            .add_option("--bundle", a.bundle, "exact runs with other rules of opening at the departure (default 16)")
+            .add_option(
+                "--bundle", a.bundle,
+                "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)")
             ->check(CLI::Range(0, 10000));
         command.add_flag(
             "--local", a.local,

@@ -2,6 +2,7 @@
 #include "cli/common.hpp"
 #include "cli/members.hpp"
 #include "cli/progress.hpp"
+#include "cli/soft_limits.hpp"
 #include "report/run_report.hpp"
 
 #include <isostat/core/error.hpp>
@@ -111,12 +112,16 @@ int report_ensemble(const ReportArguments& arguments) {
 int report(const ReportArguments& arguments) {
     const fs::path input = arguments.input;
     if (is_ensemble(input)) {
+        if (arguments.stiffness > 0) {
+            throw Error(ErrorKind::usage,
+                        "--stiffness belongs to the folder of one run: " + arguments.input + " is an ensemble");
+        }
         return report_ensemble(arguments);
     }
     const bool is_run = fs::is_directory(input);
-    if (arguments.html && !is_run) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("--html belongs to the folder of a run: {} is none", arguments.input));
+    if ((arguments.html || arguments.stiffness > 0) && !is_run) {
+        throw Error(ErrorKind::usage, fmt::format("{} belongs to the folder of a run: {} is none",
+                                                  arguments.html ? "--html" : "--stiffness", arguments.input));
     }
     fs::path output = arguments.output;
     if (output.empty()) {
@@ -127,7 +132,11 @@ int report(const ReportArguments& arguments) {
     options.progress = [&line](std::size_t done, std::size_t all) {
         line.show(fmt::format("trajectory.html: arc {} of {}", done, all));
     };
-    const ReportResult result = is_run ? report_run(input, output, options) : report_state(input, output, options);
+    ReportResult result = is_run ? report_run(input, output, options) : report_state(input, output, options);
+    if (arguments.stiffness > 0) {
+        result.text += "\n" + soft_limits(input, output, arguments.stiffness);
+        result.files.push_back(output / "soft_limits.csv");
+    }
     line.clear();
     if (arguments.common.json) {
         print_json(json_of(arguments.input, result));

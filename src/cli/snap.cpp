@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/soft_list.hpp"
+#include "compare/backbone.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 
@@ -39,8 +40,9 @@ Read from_state(const SnapArguments& a) {
                                               "and no force on a disk");
     }
     Read out;
-    out.words = fmt::format("{} contacts of the state", state.contacts.size());
+    out.words = fmt::format("{} contacts of the state, those that can carry a force", state.contacts.size());
     std::sort(state.contacts.begin(), state.contacts.end());
+    state.contacts = compare::able_to_carry(state.packing, std::move(state.contacts));
     out.soft = {std::move(state.packing), std::move(state.contacts), std::move(state.load)};
     return out;
 }

@@ -1,7 +1,7 @@
 #include "cli/soft_list.hpp"
 
+#include "compare/backbone.hpp"
 #include "contact/candidates.hpp"
-#include "crafted/peeling.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -16,18 +16,6 @@
 namespace isostat::cli {
 
 namespace {
-
-/// Those that can carry a force by the positions of the normals: soft rattlers touch now and then.
-std::vector<Contact> backbone_of(const Packing<2>& packing, const std::vector<Contact>& contacts) {
-    const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
-    std::vector<Contact> out;
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (from[l] <= static_cast<int>(contacts.size())) {
-            out.push_back(contacts[l]);
-        }
-    }
-    return out;
-}
 
 /// Walls that a disk overlaps.
 std::vector<Contact> walls_of(const Packing<2>& packing) {
@@ -128,7 +116,7 @@ SoftList list_by_forces(const std::string& file, const ReadPacking& packing, con
     out.words = fmt::format("{} pairs with a force in {}, {} overlaps with walls, without rattlers", pairs, contacts,
                             walls.size());
     std::sort(out.contacts.begin(), out.contacts.end());
-    out.contacts = backbone_of(packing.packing, out.contacts);
+    out.contacts = compare::able_to_carry(packing.packing, out.contacts);
     return out;
 }
 
@@ -141,7 +129,7 @@ SoftList list_by_overlaps(const Packing<2>& packing) {
         }
     }
     out.words = fmt::format("{} overlaps, without rattlers", out.contacts.size());
-    out.contacts = backbone_of(packing, out.contacts);
+    out.contacts = compare::able_to_carry(packing, out.contacts);
     return out;
 }
 

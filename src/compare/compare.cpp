@@ -1,3 +1,4 @@
+#include "compare/bundle.hpp"
 #include "compare/departure.hpp"
 #include "compare/frame.hpp"
 #include "compare/local.hpp"
@@ -49,6 +50,21 @@ void place(JudgedFrame& judged, const Path& path, int expected) {
         r.reason = "its vertex is proved, the equilibrium of the exact run is not";
     } else if (r.found != expected) {
         r.status = r.found < 0 ? FrameStatus::other : r.found > expected ? FrameStatus::early : FrameStatus::late;
+    }
+}
+
+/// And in the bundle.
+void place(JudgedFrame& judged, Bundle& bundle) {
+    FrameResult& r = judged.result;
+    r.node = r.status == FrameStatus::file || r.status == FrameStatus::moving ? -1 : node_with(bundle, judged.list);
+    if (r.node < 0) {
+        return;
+    }
+    BundleNode& node = bundle.nodes[static_cast<std::size_t>(r.node)];
+    node.frames.push_back(r.frame);
+    if (r.status == FrameStatus::other) {
+        r.reason = fmt::format("node {} of the bundle, which {} of {} members come through", r.node,
+                               node.members.size(), bundle.members.size());
     }
 }
 
@@ -107,16 +123,20 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
         loads.push_back(frame.result.sigma2);
     }
     if (start) {
-        path = follow(*start, loads, run, series.stiffness);
+        path = follow_beyond(*start, loads, run, series.stiffness);
     } else {
         path.at_load.assign(loads.size(), -1);
         path.end = "no frame has a proved vertex to start from";
     }
+    if (start) {
+        out.bundle = make_bundle(*start, path, loads, options.bundle, run);
+    }
     for (std::size_t k = 0; k < judged.size(); ++k) {
         place(judged[k], path, path.at_load[k]);
+        place(judged[k], out.bundle);
         out.frames.push_back(judged[k].result);
     }
-    out.departure = find_departure(series, judged, path, options);
+    out.departure = find_departure(series, judged, path, out.bundle, options);
     out.path = std::move(path.equilibria);
     out.path_end = path.end;
     out.status = status_of(out.frames);

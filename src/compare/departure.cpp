@@ -1,11 +1,13 @@
 #include "compare/departure.hpp"
 
+#include "compare/backbone.hpp"
+
 #include <isostat/compare/snap.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <set>
 
 namespace isostat::compare {
 
@@ -14,9 +16,9 @@ namespace {
 /// The frames and equilibria on both sides of a departure.
 class Diagnosis {
   public:
-    Diagnosis(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path,
+    Diagnosis(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path, const Bundle& bundle,
               const CompareOptions& options)
-        : series_(series), frames_(frames), path_(path), options_(options) {}
+        : series_(series), frames_(frames), path_(path), bundle_(bundle), options_(options) {}
 
     std::optional<Departure> run() {
         const auto find = [&](std::size_t from) {
@@ -131,38 +133,34 @@ class Diagnosis {
         return state;
     }
 
+    /// Members of the bundle that stand where the frame is, at its load.
     bool choice() {
-        const PathEquilibrium* e = common();
-        if (e == nullptr || options_.bundle < 1) {
-            return false;
+        const FrameStatus status = after_->result.status;
+        if (status == FrameStatus::undecided || status == FrameStatus::refuted) {
+            return false; // the same list may be that of a member: the frame itself was not shown to be there
         }
         int here = 0, ended = 0;
-        std::vector<std::vector<Contact>> lists;
-        for (int m = 0; m < options_.bundle; ++m) {
-            constexpr std::array rules{OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::least_negative};
-            RunOptions run;
-            run.rule = m < 3 ? rules[static_cast<std::size_t>(m)] : OpeningRule::random;
-            run.rule_seed = static_cast<std::uint64_t>(m);
-            run.stop = options_.stop;
-            const auto list = list_after(at(*e), after_->result.sigma2, m % 2 == 1, run);
-            if (!list.ok()) {
-                continue;
-            }
-            ++ended;
-            here += list.value() == after_->list ? 1 : 0;
-            if (std::find(lists.begin(), lists.end(), list.value()) == lists.end()) {
-                lists.push_back(list.value());
+        std::set<int> nodes;
+        for (const BundleMember& member : bundle_.members) {
+            const int node = member.at_load[static_cast<std::size_t>(after_->result.frame)];
+            if (node >= 0) {
+                ++ended;
+                nodes.insert(node);
+                here += node == after_->result.node ? 1 : 0;
             }
         }
-        bundle_ = fmt::format("{} exact runs from frame {} (other rules of opening, on the way and at once) end at {} "
-                              "equilibria, {} of them where the frame is",
-                              ended, out_.from, lists.size(), here);
-        return here > 0 && is("choice", bundle_);
+        if (ended < 2) {
+            return false;
+        }
+        members_ = fmt::format("{} exact runs (other rules of opening, rattlers that rest elsewhere) stand at {} "
+                               "equilibria at this load, {} of them where the frame is",
+                               ended, nodes.size(), here);
+        return here > 0 && is("choice", members_);
     }
 
     void last() {
         const FrameResult& r = after_->result;
-        const std::string words = r.reason + (bundle_.empty() || r.reason.empty() ? "" : "; ") + bundle_;
+        const std::string words = r.reason + (members_.empty() || r.reason.empty() ? "" : "; ") + members_;
         (void)(r.status == FrameStatus::refuted     ? is("wrong", words)
                : r.status == FrameStatus::undecided ? is("undecided", words)
                                                     : is("dynamics", words));
@@ -171,18 +169,19 @@ class Diagnosis {
     const Series& series_;
     const std::vector<JudgedFrame>& frames_;
     const Path& path_;
+    const Bundle& bundle_;
     const CompareOptions& options_;
     const JudgedFrame* before_ = nullptr;
     const JudgedFrame* after_ = nullptr;
-    std::string bundle_;
+    std::string members_;
     Departure out_;
 };
 
 } // namespace
 
 std::optional<Departure> find_departure(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path,
-                                        const CompareOptions& options) {
-    return Diagnosis(series, frames, path, options).run();
+                                        const Bundle& bundle, const CompareOptions& options) {
+    return Diagnosis(series, frames, path, bundle, options).run();
 }
 
 } // namespace isostat::compare

@@ -9,6 +9,6 @@ namespace isostat::compare {
 
 /// Of the first frame that is not `same` (frames in motion alone are no departure). None: there is no such frame.
 std::optional<Departure> find_departure(const Series& series, const std::vector<JudgedFrame>& frames, const Path& path,
-                                        const CompareOptions& options);
+                                        const Bundle& bundle, const CompareOptions& options);
 
 } // namespace isostat::compare

@@ -1,5 +1,6 @@
 #include "compare/path.hpp"
 
+#include "compare/backbone.hpp"
 #include "core/parallel.hpp"
 
 #include <isostat/compare/snap.hpp>
@@ -67,51 +68,80 @@ void predict(PathEquilibrium& e, int direction, double stiffness) {
 
 } // namespace
 
-State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {
-    return snap({state.packing, carrying, state.load}).backbone;
+namespace {
+
+/// The run along the loads, segment by segment.
+class Follower {
+  public:
+    Follower(State<2> state, const RunOptions& options) : state_(std::move(state)), options_(options) {}
+
+    void run(const std::vector<double>& loads) {
+        Segment start;
+        start.equilibria = 0;
+        if (const auto failure = advance(start)) {
+            path.end = failure->message();
+        }
+        for (const double load : loads) {
+            if (path.end.empty() && load != loaded(state_)) {
+                direction_ = load > loaded(state_) ? 1 : -1;
+                if (!directions_.empty()) {
+                    directions_.back() = direction_;
+                }
+                Segment segment;
+                segment.to_stress = load;
+                if (const auto failure = advance(segment)) {
+                    path.end = failure->message();
+                }
+            }
+            path.at_load.push_back(path.end.empty() ? static_cast<int>(path.equilibria.size()) - 1 : -1);
+        }
+    }
+    void run_on() {
+        if (path.end.empty()) {
+            Segment on;
+            on.equilibria = further;
+            (void)advance(on); // as far as it goes
+        }
+    }
+    void predict_limits(double stiffness) {
+        parallel_pieces(path.equilibria.size(), [&](std::size_t k) {
+            path.equilibria[k].opens = collector_.opens(k, directions_[k]);
+            predict(path.equilibria[k], directions_[k], stiffness);
+        });
+    }
+
+    Path path;
+
+  private:
+    std::optional<Failure> advance(Segment segment) {
+        segment.direction = direction_;
+        const SegmentOutcome outcome = run_segment(state_, segment, number_++, options_, counters_, collector_);
+        directions_.resize(path.equilibria.size(), direction_);
+        return outcome.failure;
+    }
+
+    State<2> state_;
+    const RunOptions& options_;
+    Collector collector_{path.equilibria};
+    RunCounters counters_;
+    std::vector<int> directions_;
+    int direction_ = 1, number_ = 0;
+};
+
+} // namespace
+
+Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options) {
+    Follower follower(std::move(state), options);
+    follower.run(loads);
+    return std::move(follower.path);
 }
 
-Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness) {
-    Path path;
-    Collector collector(path.equilibria);
-    RunCounters counters;
-    std::vector<int> directions;
-    int direction = 1, number = 0;
-    const auto advance = [&](Segment segment) {
-        segment.direction = direction;
-        const SegmentOutcome outcome = run_segment(state, segment, number++, options, counters, collector);
-        directions.resize(path.equilibria.size(), direction);
-        return outcome.failure;
-    };
-    Segment start;
-    start.equilibria = 0;
-    if (const auto failure = advance(start)) {
-        path.end = failure->message();
-    }
-    for (const double load : loads) {
-        if (path.end.empty() && load != loaded(state)) {
-            direction = load > loaded(state) ? 1 : -1;
-            if (!directions.empty()) {
-                directions.back() = direction;
-            }
-            Segment segment;
-            segment.to_stress = load;
-            if (const auto failure = advance(segment)) {
-                path.end = failure->message();
-            }
-        }
-        path.at_load.push_back(path.end.empty() ? static_cast<int>(path.equilibria.size()) - 1 : -1);
-    }
-    if (path.end.empty()) {
-        Segment on;
-        on.equilibria = further;
-        (void)advance(on); // as far as it goes
-    }
-    parallel_pieces(path.equilibria.size(), [&](std::size_t k) {
-        path.equilibria[k].opens = collector.opens(k, directions[k]);
-        predict(path.equilibria[k], directions[k], stiffness);
-    });
-    return path;
+Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness) {
+    Follower follower(std::move(state), options);
+    follower.run(loads);
+    follower.run_on();
+    follower.predict_limits(stiffness);
+    return std::move(follower.path);
 }
 
 Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump, const RunOptions& options) {

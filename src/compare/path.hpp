@@ -16,15 +16,13 @@ struct Path {
     std::string end;          ///< empty, or why it ends before the last load
 };
 
-/// From `state` to each of the loads in turn, then three equilibria on in the last direction. Soft limits are added
-/// when `stiffness` > 0.
-Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness);
+/// From `state` to each of the loads in turn.
+Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options);
+/// The same, then three equilibria on in the last direction; soft limits are added when `stiffness` > 0.
+Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness);
 
 /// The contacts that carry a force in the equilibrium at the loaded stress `sigma` that a run from `state` finds: on
 /// the way, or with `jump` after the whole change at once.
 Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump, const RunOptions& options);
-
-/// The same state without rattlers.
-State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying);
 
 } // namespace isostat::compare

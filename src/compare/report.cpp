@@ -5,6 +5,8 @@
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
 
+#include <isostat/io/state_file.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -54,6 +56,7 @@ const std::vector<Column<FrameResult>>& of_frames() {
                                                 {"walls", [](const F& f) { return or_null(f.walls); }},
                                                 {"expected", [](const F& f) { return f.expected; }},
                                                 {"found", [](const F& f) { return f.found; }},
+                                                {"node", [](const F& f) { return f.node; }},
                                                 {"status", [](const F& f) { return to_string(f.status); }},
                                                 {"missing", [](const F& f) { return names(f.missing); }},
                                                 {"extra", [](const F& f) { return names(f.extra); }},
@@ -84,6 +87,35 @@ const std::vector<Column<PathEquilibrium>>& of_path() {
         {"opens", [](const E& e) { return e.opens.i < 0 ? Json() : Json(to_string<2>(e.opens)); }},
         {"soft_limit", [](const E& e) { return or_null(e.soft_limit); }},
         {"stiffness_needed", [](const E& e) { return or_null(e.stiffness_needed); }}};
+    return columns;
+}
+
+Json numbers(const std::vector<int>& values) {
+    return fmt::format("{}", fmt::join(values, " "));
+}
+
+const std::vector<Column<BundleNode>>& of_nodes() {
+    using N = BundleNode;
+    static const std::vector<Column<N>> columns{{"node", [](const N& n) { return n.equilibrium.number; }},
+                                                {"sigma2", [](const N& n) { return or_null(n.equilibrium.sigma2); }},
+                                                {"eps2", [](const N& n) { return or_null(n.equilibrium.eps2); }},
+                                                {"sigma2_low", [](const N& n) { return or_null(n.equilibrium.low); }},
+                                                {"sigma2_high", [](const N& n) { return or_null(n.equilibrium.high); }},
+                                                {"contacts", [](const N& n) { return n.equilibrium.contacts.size(); }},
+                                                {"proved", [](const N& n) { return n.equilibrium.proved ? 1 : 0; }},
+                                                {"members", [](const N& n) { return numbers(n.members); }},
+                                                {"frames", [](const N& n) { return numbers(n.frames); }}};
+    return columns;
+}
+
+const std::vector<Column<BundleMember>>& of_members() {
+    using M = BundleMember;
+    static const std::vector<Column<M>> columns{
+        {"rule", [](const M& m) { return opening_rule_words[static_cast<std::size_t>(m.rule)]; }},
+        {"seed", [](const M& m) { return m.seed; }},
+        {"rattlers", [](const M& m) { return m.rest; }},
+        {"nodes", [](const M& m) { return numbers(m.nodes); }},
+        {"end", [](const M& m) { return m.end; }}};
     return columns;
 }
 
@@ -161,6 +193,13 @@ std::string figure_data(const Comparison& comparison) {
         const auto shown = [](double x) { return x > 0 && std::isfinite(x) ? fmt::format("{}", x) : "nan"; };
         text += fmt::format("{} {} {} {}\n", f.sigma2, shown(f.law), shown(f.rest), shown(f.stiffness));
     }
+    text += "\n\n# bundle: eps2 sigma2_low sigma2_high members\n";
+    for (const BundleNode& node : comparison.bundle.nodes) {
+        const PathEquilibrium& e = node.equilibrium;
+        if (std::isfinite(e.high)) {
+            text += fmt::format("{} {} {} {}\n", e.eps2, e.low, e.high, node.members.size());
+        }
+    }
     return text;
 }
 
@@ -179,8 +218,12 @@ Chart figure(const Comparison& comparison) {
     std::string body = "set multiplot layout 3,1\nset grid\nset key right bottom\n";
     body +=
         fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_2\"\nset ylabel \"σ_2\"\n", low - margin, high + margin);
-    body += fmt::format("plot {0} index 0 with lines lw 2 lc \"#1f4e79\" title \"exact run\", {0} index 1 with points "
-                        "pt 6 lc \"#c55a11\" title \"frames\"\n",
+    const char* bundle = comparison.bundle.nodes.empty() ? ""
+                                                         : "{0} index 5 using 1:2:(0):($3-$2) with vectors nohead lw 4 "
+                                                           "lc \"#c3d3e3\" title \"bundle: supported loads\", ";
+    body += fmt::format(fmt::runtime(std::string("plot ") + bundle +
+                                     "{0} index 0 with lines lw 2 lc \"#1f4e79\" title \"exact run\", {0} index 1 with "
+                                     "points pt 6 lc \"#c55a11\" title \"frames\"\n"),
                         data);
     body += fmt::format("unset key\nset xrange [{}:{}]\nset xlabel \"σ_2\"\nset ylabel \"\"\nset yrange [-0.5:{}] "
                         "reverse\nset ytics ({})\n",
@@ -212,12 +255,30 @@ const std::vector<std::string>& path_columns() {
     return columns;
 }
 
+const std::vector<std::string>& node_columns() {
+    static const std::vector<std::string> columns = names_of_columns(of_nodes());
+    return columns;
+}
+
+const std::vector<std::string>& member_columns() {
+    static const std::vector<std::string> columns = names_of_columns(of_members());
+    return columns;
+}
+
 std::string frames_csv(const Comparison& comparison) {
     return csv(of_frames(), comparison.frames);
 }
 
 std::string path_csv(const Comparison& comparison) {
     return csv(of_path(), comparison.path);
+}
+
+std::string bundle_csv(const Comparison& comparison) {
+    return csv(of_nodes(), comparison.bundle.nodes);
+}
+
+std::string members_csv(const Comparison& comparison) {
+    return csv(of_members(), comparison.bundle.members);
 }
 
 std::string comparison_json(const Series& series, const Comparison& comparison) {
@@ -245,14 +306,34 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
     out["status"] = comparison.status;
     out["frames"] = objects(of_frames(), comparison.frames);
     out["path"] = objects(of_path(), comparison.path);
+    out["bundle"] = {{"common", comparison.bundle.common},
+                     {"nodes", objects(of_nodes(), comparison.bundle.nodes)},
+                     {"members", objects(of_members(), comparison.bundle.members)}};
     return json::dumped(out, 1) + "\n";
 }
+
+namespace {
+
+void write_bundle(const std::filesystem::path& folder, const Comparison& comparison) {
+    if (comparison.bundle.members.empty()) {
+        return;
+    }
+    make_directory(folder);
+    write_atomically(folder / "nodes.csv", bundle_csv(comparison));
+    write_atomically(folder / "members.csv", members_csv(comparison));
+    for (const BundleNode& node : comparison.bundle.nodes) {
+        write_state<2>(folder / fmt::format("node_{:04}.json", node.equilibrium.number), node.equilibrium.state);
+    }
+}
+
+} // namespace
 
 std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison) {
     make_directory(folder);
     const Chart chart = figure(comparison);
     write_atomically(folder / "comparison.csv", frames_csv(comparison));
     write_atomically(folder / "path.csv", path_csv(comparison));
+    write_bundle(folder / "bundle", comparison);
     write_atomically(folder / "comparison.json", comparison_json(series, comparison));
     write_atomically(folder / (chart.name + ".dat"), chart.data);
     write_atomically(folder / (chart.name + ".gp"), chart.script);

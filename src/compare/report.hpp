@@ -10,16 +10,23 @@
 
 namespace isostat::compare {
 
-/// Columns of comparison.csv (one row per frame) and of path.csv (one per equilibrium of the exact run).
+/// Columns of comparison.csv (one row per frame), path.csv (one per equilibrium of the exact run), bundle/nodes.csv and
+/// bundle/members.csv.
 const std::vector<std::string>& frame_columns();
 const std::vector<std::string>& path_columns();
+const std::vector<std::string>& node_columns();
+const std::vector<std::string>& member_columns();
 
 std::string frames_csv(const Comparison& comparison);
 std::string path_csv(const Comparison& comparison);
+/// Nodes of the bundle and its members.
+std::string bundle_csv(const Comparison& comparison);
+std::string members_csv(const Comparison& comparison);
 /// One object: frames, path, counts, departure, status. null where a number was not found.
 std::string comparison_json(const Series& series, const Comparison& comparison);
 
-/// Writes comparison.csv, path.csv, comparison.json and the figure comparison.svg, .png (staircase with the frames;
+/// Writes comparison.csv, path.csv, comparison.json, bundle/ (nodes.csv, members.csv, node_NNNN.json, a state each) and
+/// the figure comparison.svg, .png (staircase with the frames;
 /// statuses and exact limits against the load; errors of the forces in three parts), each of them atomically. Returns
 /// empty, or why there is no figure (gnuplot; its data and script are there). Throws `Error(cannot_write)`.
 std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison);

@@ -22,11 +22,15 @@ Failure other_list(const std::vector<Contact>& list, const std::vector<Contact>&
 } // namespace
 
 Result<State<2>> with_resting_rattlers(const Snap& snap, std::uint64_t seed) {
+    return with_resting_rattlers(snap, generic_infinitesimal<2>(snap.packing.radius, seed));
+}
+
+Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal) {
     State<2> state;
     state.packing = snap.packing;
     (void)snap_to_grid(state.packing);
     state.load = snap.backbone.load;
-    state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, seed);
+    state.load.infinitesimal = std::move(infinitesimal);
     std::vector<Contact> list;
     for (Contact c : snap.backbone.contacts) {
         c.i = snap.disks[static_cast<std::size_t>(c.i)];

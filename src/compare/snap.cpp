@@ -1,4 +1,6 @@
+#include "compare/backbone.hpp"
 #include "compare/room.hpp"
+#include "crafted/peeling.hpp"
 #include "preparation/polish.hpp"
 
 #include <isostat/compare/snap.hpp>
@@ -8,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <vector>
 
 namespace isostat::compare {
 
@@ -72,7 +75,8 @@ std::string negative_force(const Snap& snap) {
 
 /// The deepest overlap of the backbone at the vertex, or empty.
 std::string overlapping_pair(const Snap& snap) {
-    Admissibility worst = certify_admissible(snap.backbone.packing, 0.0);
+    const double allowance = snap.truth.claims.vertex ? 3 * snap.truth.claims.vertex->radius : 0; // contacts touch
+    Admissibility worst = certify_admissible(snap.backbone.packing, allowance);
     return worst.verdict == Verdict::refuted ? fmt::format("{} overlap by {:.3g} at the vertex of the list",
                                                            renamed(snap, worst.worst), -worst.worst_gap)
                                              : "";
@@ -143,6 +147,24 @@ const char* to_string(SnapOutcome outcome) {
     case SnapOutcome::undecided: break;
     }
     return "undecided";
+}
+
+State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying) {
+    Snap out;
+    take_backbone({state.packing, carrying, state.load}, out);
+    return std::move(out.backbone);
+}
+
+std::vector<Contact> able_to_carry(const Packing<2>& packing, std::vector<Contact> contacts) {
+    std::erase_if(contacts, [](const Contact& c) { return c.kind == ContactKind::held; });
+    const std::vector<int> from = crafted::peel(packing, contacts).contact_from;
+    std::vector<Contact> out;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (from[l] <= static_cast<int>(contacts.size())) {
+            out.push_back(contacts[l]);
+        }
+    }
+    return out;
 }
 
 Snap snap(const SoftState& soft) {

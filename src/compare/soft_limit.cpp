@@ -14,86 +14,111 @@ constexpr int most_turns = 40;
 constexpr double settled = 1e-12; ///< of the smallest radius
 constexpr double same_stress = 1e-10;
 
+/// Soft grains on their way to the place where gaps = -f / K: forces at the place, and one step of Newton's method.
+class SoftGrains {
+  public:
+    SoftGrains(const State<2>& state, double stiffness)
+        : contacts_(state.contacts), load_(state.load), stiffness_(stiffness), dofs_(state.packing),
+          packing(state.packing) {}
+
+    /// Forces and their slopes at this place under the loaded stress `sigma`. False: the matrix is singular.
+    bool solve(double sigma) {
+        const auto structure = IsostaticStructure<2>::prove(packing, contacts_);
+        if (!structure.ok()) {
+            return false;
+        }
+        factors_.emplace(structure.value());
+        load_.stress[static_cast<std::size_t>(load_.loaded_axis)] = sigma;
+        forces = on_dofs(load_.external_force(packing), dofs_);
+        slopes = on_dofs(load_.unit_force(packing), dofs_);
+        factors_->solve_forces(forces);
+        factors_->solve_forces(slopes);
+        return true;
+    }
+    /// The step towards gaps that belong to `forces`: whether none of the coordinates moved.
+    bool move() {
+        std::vector<double> step(contacts_.size());
+        for (std::size_t l = 0; l < step.size(); ++l) {
+            step[l] = gap(packing, contacts_[l]) + forces[l] / stiffness_; // approach by that
+        }
+        factors_->solve_velocities(step);
+        double largest = 0;
+        for (std::size_t mu = 0; mu < step.size(); ++mu) {
+            packing.q[static_cast<std::size_t>(dofs_.coordinate_of(static_cast<int>(mu)))] += step[mu];
+            largest = std::max(largest, std::abs(step[mu]));
+        }
+        return largest <= settled * packing.min_radius();
+    }
+
+  private:
+    const std::vector<Contact>& contacts_;
+    Load<2> load_;
+    double stiffness_;
+    DofMap<2> dofs_;
+    std::optional<Factorisation> factors_;
+
+  public:
+    Packing<2> packing;
+    std::vector<double> forces, slopes;
+};
+
+/// Where the first force vanishes on the way from `middle` ahead, forces being linear in the stress at one place.
+/// Nothing: one is not positive in the middle, or none vanishes.
+struct Vanishing {
+    double stress = 0;
+    std::size_t contact = 0;
+};
+std::optional<Vanishing> first_to_vanish(const SoftGrains& grains, double sigma, double middle, int direction) {
+    double least = HUGE_VAL;
+    std::optional<Vanishing> out;
+    for (std::size_t l = 0; l < grains.forces.size(); ++l) {
+        const double slope = direction * grains.slopes[l];
+        const double at_middle = grains.forces[l] + (middle - sigma) * grains.slopes[l];
+        if (!(at_middle > 0)) {
+            return std::nullopt;
+        }
+        if (slope < 0 && at_middle / -slope < least) {
+            least = at_middle / -slope;
+            out = Vanishing{middle + direction * least, l};
+        }
+    }
+    return out;
+}
+
 } // namespace
 
 std::optional<SoftEquilibrium> soften(const State<2>& state, double sigma, double stiffness) {
-    SoftEquilibrium out{state.packing, {}, {}};
-    Load<2> load = state.load;
-    load.stress[static_cast<std::size_t>(load.loaded_axis)] = sigma;
+    SoftGrains grains(state, stiffness);
     for (int turn = 0; turn < most_turns; ++turn) {
-        const auto structure = IsostaticStructure<2>::prove(out.packing, state.contacts);
-        if (!structure.ok()) {
+        if (!grains.solve(sigma)) {
             return std::nullopt;
         }
-        const Factorisation factorisation(structure.value());
-        const DofMap<2>& dofs = structure.value().dofs();
-        out.forces = on_dofs(load.external_force(out.packing), dofs);
-        factorisation.solve_forces(out.forces);
-        std::vector<double> step(state.contacts.size());
-        for (std::size_t l = 0; l < step.size(); ++l) {
-            step[l] = gap(out.packing, state.contacts[l]) + out.forces[l] / stiffness; // approach by that
-        }
-        factorisation.solve_velocities(step);
-        double largest = 0;
-        for (std::size_t mu = 0; mu < step.size(); ++mu) {
-            out.packing.q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
-            largest = std::max(largest, std::abs(step[mu]));
-        }
-        if (largest <= settled * out.packing.min_radius()) {
-            out.slopes = on_dofs(load.unit_force(out.packing), dofs);
-            factorisation.solve_forces(out.slopes);
-            return out;
+        if (grains.move()) {
+            return SoftEquilibrium{std::move(grains.packing), std::move(grains.forces), std::move(grains.slopes)};
         }
     }
     return std::nullopt;
 }
 
-namespace {
-
-/// The smallest force at a stress, and where.
-struct Weakest {
-    double stress = 0, force = 0;
-    Contact contact;
-};
-
-std::optional<Weakest> weakest(const State<2>& state, double stress, double stiffness) {
-    const auto soft = soften(state, stress, stiffness);
-    if (!soft) {
-        return std::nullopt;
-    }
-    const auto least = std::min_element(soft->forces.begin(), soft->forces.end());
-    return Weakest{stress, *least, state.contacts[static_cast<std::size_t>(least - soft->forces.begin())]};
-}
-
-} // namespace
-
 std::optional<SoftLimit> soft_limit(const State<2>& state, const ExactInterval& exact, double stiffness) {
-    const double middle = 0.5 * (exact.low + exact.high);
-    auto inside = weakest(state, middle, stiffness);
-    auto outside = weakest(state, exact.end(), stiffness);
-    if (inside && outside && outside->force > 0) { // softer grains hold longer
-        inside = outside;
-        outside = weakest(state, exact.end() + (exact.end() - middle), stiffness);
-    }
-    if (!inside || !outside || !(inside->force > 0) || outside->force > 0) {
-        return std::nullopt;
-    }
-    double halved = 1; // Illinois: of the side that stays
-    int stayed = 0;
+    const double middle = 0.5 * (exact.low + exact.high), half = std::abs(exact.end() - middle);
+    SoftGrains grains(state, stiffness);
+    double sigma = middle; // place and stress move together: one solve a turn
     for (int turn = 0; turn < most_turns; ++turn) {
-        const double a = inside->force * (stayed > 0 ? halved : 1), b = outside->force * (stayed < 0 ? halved : 1);
-        const double stress = inside->stress + (outside->stress - inside->stress) * a / (a - b);
-        const auto next = weakest(state, stress, stiffness);
-        if (!next) {
+        if (!grains.solve(sigma)) {
             return std::nullopt;
         }
-        const bool in = next->force > 0;
-        halved = stayed == (in ? -1 : 1) ? 0.5 * halved : 0.5;
-        stayed = in ? -1 : 1;
-        (in ? inside : outside) = next;
-        if (std::abs(outside->stress - inside->stress) <= same_stress * stress ||
-            std::abs(next->force) <= same_stress * std::abs(inside->force - outside->force)) {
-            return SoftLimit{next->stress, next->contact};
+        const auto next = first_to_vanish(grains, sigma, middle, exact.direction);
+        if (!next || std::abs(next->stress - middle) > 2 * half) {
+            return std::nullopt;
+        }
+        for (std::size_t l = 0; l < grains.forces.size(); ++l) {
+            grains.forces[l] += (next->stress - sigma) * grains.slopes[l];
+        }
+        const bool same = std::abs(next->stress - sigma) <= same_stress * next->stress;
+        sigma = next->stress;
+        if (grains.move() && same) {
+            return SoftLimit{sigma, state.contacts[next->contact]};
         }
     }
     return std::nullopt;

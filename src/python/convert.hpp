@@ -14,8 +14,14 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <chrono>
+#include <functional>
+#include <future>
 #include <memory>
 #include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace isostat::python {
@@ -71,6 +77,33 @@ template <class Work> auto unlocked(Work work) {
 
 /// Throws KeyboardInterrupt when Ctrl-C was pressed (main thread). Locks the interpreter.
 void check_signals();
+
+/// A computation that Ctrl-C left: it ends by itself, or with the process. `ended` says whether it has.
+void leave_behind(std::thread thread, std::function<bool()> ended);
+
+/// Runs `work` on another thread with the interpreter unlocked; at Ctrl-C throws KeyboardInterrupt and leaves the work
+/// behind. For computations that nothing stops. \pre `work` owns what it uses and touches nothing of Python.
+template <class Work> auto interruptible(Work work) {
+    using Value = std::invoke_result_t<Work>;
+    constexpr std::chrono::milliseconds pause{50};
+    std::packaged_task<Value()> task(std::move(work));
+    const auto value = std::make_shared<std::future<Value>>(task.get_future());
+    const auto ended = [value](std::chrono::milliseconds wait) {
+        return value->wait_for(wait) == std::future_status::ready;
+    };
+    std::thread thread(std::move(task));
+    try {
+        const py::gil_scoped_release release;
+        while (!ended(pause)) {
+            check_signals();
+        }
+    } catch (...) {
+        leave_behind(std::move(thread), [ended] { return ended(std::chrono::milliseconds{0}); });
+        throw;
+    }
+    thread.join();
+    return value->get();
+}
 
 void bind_errors(py::module_& module);
 void bind_state(py::module_& module);

@@ -142,9 +142,10 @@ Crafted read(const std::filesystem::path& path) {
 
 CraftedInspection inspected(const Crafted& crafted) {
     if (crafted.contacts) {
-        return {crafted.packing, unlocked([&] { return inspect_contacts(crafted.packing, *crafted.contacts); })};
+        return {crafted.packing,
+                interruptible([crafted] { return inspect_contacts(crafted.packing, *crafted.contacts); })};
     }
-    return {crafted.packing, value_or_raise(unlocked([&] { return crafted::inspect(crafted.packing); }))};
+    return {crafted.packing, value_or_raise(interruptible([crafted] { return crafted::inspect(crafted.packing); }))};
 }
 
 py::list exact_columns(const Crafted& crafted) {

@@ -3,6 +3,10 @@
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
+#include <unistd.h>
+
+#include <cstdlib>
+
 namespace isostat::python {
 
 void bind_run(py::module_& module); // run.cpp
@@ -83,6 +87,31 @@ void check_signals() {
     if (PyErr_CheckSignals() != 0) {
         throw py::error_already_set();
     }
+}
+
+namespace {
+
+std::vector<std::function<bool()>>& left_behind() {
+    static auto* const list = new std::vector<std::function<bool()>>; // outlives every destructor
+    return *list;
+}
+
+} // namespace
+
+void leave_behind(std::thread thread, std::function<bool()> ended) {
+    static const bool registered [[maybe_unused]] = [] {
+        // Before static objects are destroyed under the feet of a thread, the process ends with its own status.
+        const auto leave = [](int status, void*) {
+            for (const auto& has_ended : left_behind()) {
+                if (!has_ended()) {
+                    _exit(status);
+                }
+            }
+        };
+        return ::on_exit(leave, nullptr) == 0;
+    }();
+    thread.detach();
+    left_behind().push_back(std::move(ended));
 }
 
 /// `Error` of the library becomes isostat.BadInput, ...

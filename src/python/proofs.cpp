@@ -129,12 +129,17 @@ void bind_certificate(py::module_& module) {
             "write",
             [](const Certified& self, const std::filesystem::path& path) { write_certificate(path, self.certificate); },
             py::arg("path"), "Writes the certificate file in one step. Raises CannotWrite.");
-    module.def("certify", &certify_file, py::arg("file"), py::call_guard<py::gil_scoped_release>(),
-               "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
-               "than an inspection; it is not interrupted by Ctrl-C before it ends.");
-    module.def("certify", &certify_state, py::arg("state"), py::call_guard<py::gil_scoped_release>(),
-               "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
-               "than an inspection; it is not interrupted by Ctrl-C before it ends.");
+    module.def(
+        "certify",
+        [](const std::filesystem::path& file) { return interruptible([file] { return certify_file(file); }); },
+        py::arg("file"),
+        "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
+        "than an inspection.");
+    module.def(
+        "certify", [](const PyState& state) { return interruptible([state] { return certify_state(state); }); },
+        py::arg("state"),
+        "Certificate of a State or of a state file. Cost: about one factorisation of the contact matrix more "
+        "than an inspection.");
 }
 
 void bind_inspection(py::module_& module) {
@@ -189,7 +194,9 @@ void bind_inspection(py::module_& module) {
                                "The arithmetic that settled it: \"double\", \"double-double\", \"mpfr\", \"exact\".");
     module.def(
         "inspect",
-        [](const PyState& state) { return value_or_raise(unlocked([&] { return inspect_vertex(state.state); })); },
+        [](const PyState& state) {
+            return value_or_raise(interruptible([state] { return inspect_vertex(state.state); }));
+        },
         py::arg("state"),
         "Inspection of a State: rank, forces, supported interval, gaps, stability. Raises NotIsostatic when h > 0 or "
         "the rank is not proved, Undecided when no bound was proved.");
@@ -244,13 +251,16 @@ void bind_verification(py::module_& module) {
         .def_readonly("ways_proved", &Run::ways_proved, "Arcs whose way was proved.")
         .def_readonly("equilibria", &Run::equilibria, "Rows of equilibria.csv.")
         .def_readonly("equilibria_proved", &Run::equilibria_proved, "Rows proved.");
-    const auto release = py::call_guard<py::gil_scoped_release>();
     module.def(
-        "_verify_certificate", [](const Certified& certified) { return verify(certified.certificate); },
-        py::arg("certificate"), release);
+        "_verify_certificate",
+        [](const Certified& certified) { return interruptible([certified] { return verify(certified.certificate); }); },
+        py::arg("certificate"));
     module.def(
-        "_verify_file", [](const std::filesystem::path& path) { return verify(read_certificate(path)); },
-        py::arg("path"), release);
+        "_verify_file",
+        [](const std::filesystem::path& path) {
+            return interruptible([path] { return verify(read_certificate(path)); });
+        },
+        py::arg("path"));
     module.def("_verify_folder", &verify_folder, py::arg("folder"), py::arg("progress"));
 }
 

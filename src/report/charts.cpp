@@ -86,11 +86,12 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, bo
                             k == 0 ? "plot" : ",\\\n    ", quoted(name + ".dat"), k, dash(k),
                             quoted(colours[k % colours.size()]), quoted(curves[k].title));
     }
-    chart.script = chart_script(name, 800, 560,
-                                "set xlabel \"ε_2\"\nset ylabel \"σ_2 / σ_1\"\nset key top left reverse Left\n"
-                                "set format x \"%g\"\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
-                                    plot + "\n",
-                                pdf);
+    chart.script = chart_script(
+        name, 800, 560,
+        "set xlabel \"axial strain ε_2\"\nset ylabel \"stress ratio σ_2/σ_1\"\nset key top left reverse Left\n"
+        "set format x \"%g\"\nset autoscale xfixmin\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
+            plot + "\n",
+        pdf);
     return chart;
 }
 
@@ -219,8 +220,9 @@ std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const st
                                bool pdf) {
     std::vector<Chart> charts;
     add_stairs(charts, rows, names, pdf);
-    add_distribution(charts, "stress_increments", "Δσ_2 / σ_1", stress_increments(rows), false, pdf);
-    add_distribution(charts, "strain_increments", "Δε_2", strain_increments(rows), true, pdf);
+    add_distribution(charts, "stress_increments", "increment of the stress ratio Δσ_2/σ_1", stress_increments(rows),
+                     false, pdf);
+    add_distribution(charts, "strain_increments", "strain increment Δε_2", strain_increments(rows), true, pdf);
     return charts;
 }
 

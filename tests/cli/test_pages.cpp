@@ -1,6 +1,7 @@
 // What the pages say of keys, columns, fields, commands and exit statuses is what the program has; the commands of
 // README run as they stand.
 #include "cli/program.hpp"
+#include "compare/report.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/io/run_directory.hpp>
@@ -70,6 +71,35 @@ std::string joined(const std::set<std::string>& names) {
         text += " " + name;
     }
     return text;
+}
+
+/// The rows of one table of a page: from its row of names, which begins with `head`, to the first line that is no row.
+std::string table(const std::string& page, const std::string& head) {
+    const std::size_t begin = page.find("| " + head + " |");
+    BOOST_TEST_REQUIRE((begin != std::string::npos), "no table '" << head << "'");
+    return page.substr(begin, page.find("\n\n", begin) - begin);
+}
+
+/// Names of headings as links have them: small letters, no marks, hyphens.
+std::set<std::string> anchors(const std::string& page) {
+    std::set<std::string> names;
+    bool code = false;
+    for (const std::string& line : lines(page)) {
+        code = line.starts_with("```") ? !code : code;
+        if (code || !line.starts_with("#")) {
+            continue;
+        }
+        std::string name;
+        for (const char c : line.substr(line.find_first_not_of("# "))) {
+            const auto u = static_cast<unsigned char>(c);
+            name += c == ' ' ? "-"
+                    : std::isalnum(u) || c == '-' || c == '_' || u >= 128
+                        ? std::string(1, static_cast<char>(std::tolower(u)))
+                        : "";
+        }
+        names.insert(name);
+    }
+    return names;
 }
 
 /// The keys that a section of a scene knows: what the message about an unknown one lists.
@@ -144,6 +174,51 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_in_its_order) {
     const std::string page = scratch::read(project / "src/io/README.md");
     BOOST_TEST(first_column(section(page, "### Columns of `equilibria.csv`")) == isostat::equilibria_columns(),
                boost::test_tools::per_element());
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_column_of_a_comparison) {
+    const std::string page = scratch::read(project / "src/io/README.md");
+    const std::vector<std::pair<std::string, std::vector<std::string>>> tables{
+        {"comparison.csv", isostat::compare::frame_columns()},
+        {"path.csv", isostat::compare::path_columns()},
+        {"bundle/nodes.csv", isostat::compare::node_columns()},
+        {"bundle/members.csv", isostat::compare::member_columns()}};
+    for (const auto& [file, columns] : tables) {
+        const std::set<std::string> told = as_set(first_column(table(page, "column of `" + file + "`")));
+        BOOST_TEST((told == as_set(columns)),
+                   file << ": written:" << joined(as_set(columns)) << "; of the page:" << joined(told));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(links_of_the_pages_lead_somewhere) {
+    const std::regex link(R"(\]\(([^)\s]+)\))");
+    int links = 0;
+    for (auto at = fs::recursive_directory_iterator(project); at != fs::recursive_directory_iterator(); ++at) {
+        const std::string name = at->path().filename().string();
+        if (at->is_directory() && (name == "build" || name == "output" || name.starts_with("."))) {
+            at.disable_recursion_pending();
+        }
+        if (at->path().extension() != ".md") {
+            continue;
+        }
+        const std::string page = scratch::read(at->path());
+        for (auto it = std::sregex_iterator(page.begin(), page.end(), link); it != std::sregex_iterator(); ++it) {
+            const std::string target = (*it)[1];
+            if (target.find("://") != std::string::npos) {
+                continue;
+            }
+            const std::size_t mark = target.find('#');
+            const std::string file = target.substr(0, mark);
+            const fs::path there = file.empty() ? at->path() : at->path().parent_path() / file;
+            BOOST_TEST(fs::exists(there), at->path() << " links to " << target);
+            if (mark != std::string::npos && fs::exists(there) && there.extension() == ".md") {
+                BOOST_TEST(anchors(scratch::read(there)).count(target.substr(mark + 1)) == 1U,
+                           at->path() << " links to " << target << ": no such heading");
+            }
+            ++links;
+        }
+    }
+    BOOST_TEST(links > 100);
 }
 
 BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_an_arc) {

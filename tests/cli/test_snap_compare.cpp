@@ -2,7 +2,11 @@
 // written.
 #include "cli/program.hpp"
 
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 using namespace program;
 namespace fs = std::filesystem;
@@ -32,6 +36,18 @@ BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     }
     expect(run({"certify", state.string(), "-o", (folder / "certificate.json").string()}), 0);
     expect(run({"verify", (folder / "certificate.json").string()}), 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
+    const scratch::Folder folder;
+    const std::string state = (folder / "state.json").string();
+    expect(run({"convert", scratch::data("vertex100.txt"), "-o", state}), 0);
+    const Outcome made = run({"snap", state, "-o", (folder / "snapped.json").string()});
+    expect(made, 0);
+    BOOST_TEST(contains(made.out, "snap      vertex"), made.out);
+    BOOST_TEST(contains(made.out, "202 contacts of the state"), made.out);
+    BOOST_TEST(!contains(made.out, ", 0 rattlers"), made.out); // they touch and carry nothing
+    expect(run({"certify", (folder / "snapped.json").string(), "-o", (folder / "c.json").string()}), 0);
 }
 
 BOOST_AUTO_TEST_CASE(a_hyperstatic_frame_has_no_state_and_status_1) {
@@ -82,6 +98,39 @@ BOOST_AUTO_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables) {
     }
     expect(run({"compare", (folder / "absent.toml").string(), "-o", (folder / "none").string()}), 65, {"absent.toml"});
     BOOST_TEST(!fs::exists(folder / "none"));
+}
+
+BOOST_AUTO_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of_a_run) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"),
+                                                 "[[programme]]\ndo = \"up\"\nequilibria = 2\n", "states_every = 1\n"));
+    const std::string out = (folder / "out").string();
+    expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
+    const auto ends = [&](const std::string& stiffness) {
+        const Outcome made = run({"report", out, "--no-charts", "--stiffness", stiffness});
+        expect(made, 0);
+        BOOST_TEST(contains(made.out, "K for 1e-3"), made.out);
+        std::vector<std::array<double, 3>> rows; // exact, soft, stiffness needed
+        std::istringstream table(scratch::read(folder / "out" / "figures" / "soft_limits.csv"));
+        for (std::string line; std::getline(table, line);) {
+            std::array<double, 3> row{};
+            if (std::sscanf(line.c_str(), "%*d,%*[a-z],%lf,%lf,%lf", row.data(), &row[1], &row[2]) == 3) {
+                rows.push_back(row);
+            }
+        }
+        return rows;
+    };
+    const auto soft = ends("1e6"), hard = ends("1e7");
+    BOOST_TEST_REQUIRE(soft.size() == 6U); // three equilibria, two ends
+    BOOST_TEST_REQUIRE(hard.size() == 6U);
+    for (std::size_t k = 0; k < soft.size(); ++k) {
+        const double far = soft[k][1] - soft[k][0], near = hard[k][1] - hard[k][0];
+        BOOST_TEST(std::abs(near / far - 0.1) < 0.02); // as 1 / stiffness
+        BOOST_TEST(std::abs(near) * 1e7 / (1e-3 * soft[k][0] * hard[k][2]) > 0.9);
+        BOOST_TEST(std::abs(near) * 1e7 / (1e-3 * soft[k][0] * hard[k][2]) < 1.1);
+    }
+    expect(run({"report", out + "/states/last.json", "--stiffness", "1e6"}), 64, {"--stiffness"});
+    expect(run({"report", out, "--stiffness", "-1"}), 64);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -122,6 +122,72 @@ BOOST_AUTO_TEST_CASE(every_frame_is_compared_with_the_exact_run_from_the_frame_b
     }
 }
 
+BOOST_AUTO_TEST_CASE(
+    exact_runs_with_other_rules_and_resting_places_have_their_first_equilibria_in_common_and_make_a_tree) {
+    const Copy copy(9);
+    compare::CompareOptions options;
+    options.bundle = 6; // most_negative: start, up, left, right; steepest: down, up
+    const Comparison result = copy.compare(options);
+    const compare::Bundle& bundle = result.bundle;
+    BOOST_TEST_REQUIRE(bundle.members.size() == 6U);
+    BOOST_TEST(bundle.members[2].rest == "left");
+    BOOST_TEST((bundle.members[5].rule == OpeningRule::steepest));
+    // Rattlers carry nothing: before the first rearrangement that meets one, where they rest changes no equilibrium.
+    BOOST_TEST(bundle.common >= 8);
+    for (const compare::BundleMember& member : bundle.members) {
+        BOOST_TEST(member.end == "");
+        BOOST_TEST_REQUIRE(member.at_load.size() == result.frames.size());
+        for (int k = 0; k < bundle.common; ++k) {
+            BOOST_TEST(member.nodes[static_cast<std::size_t>(k)] ==
+                       bundle.members[0].nodes[static_cast<std::size_t>(k)]);
+        }
+    }
+    BOOST_TEST(bundle.nodes.size() > static_cast<std::size_t>(bundle.common)); // they part in the end
+    for (const compare::BundleNode& node : bundle.nodes) {
+        BOOST_TEST(node.equilibrium.proved);
+        BOOST_TEST(!node.members.empty());
+        BOOST_TEST((certify(node.equilibrium.state).verdict == Verdict::proved));
+        for (const int frame : node.frames) {
+            BOOST_TEST(result.frames[static_cast<std::size_t>(frame)].node == node.equilibrium.number);
+        }
+    }
+    BOOST_TEST(result.frames[0].node == 0);
+    BOOST_TEST(result.frames[3].node == bundle.members[0].nodes[4]); // early: the next one of the exact run
+    // A bundle changes no status.
+    options.bundle = 0;
+    const Comparison alone = copy.compare(options);
+    BOOST_TEST(alone.bundle.members.empty());
+    for (std::size_t k = 0; k < result.frames.size(); ++k) {
+        BOOST_TEST((alone.frames[k].status == result.frames[k].status));
+        BOOST_TEST(alone.frames[k].node == -1);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rattlers_rest_where_the_member_says) {
+    const Copy copy(1);
+    compare::CompareOptions options;
+    options.bundle = 4;
+    const Comparison result = copy.compare(options);
+    const State<2>& start = result.path.front().state;
+    compare::Snap snap = compare::snap({start.packing, result.path.front().contacts, start.load});
+    BOOST_TEST_REQUIRE((snap.outcome == compare::SnapOutcome::vertex), snap.reason);
+    const auto heights = [&](double up) {
+        std::vector<double> g(2 * start.packing.radius.size());
+        const std::vector<double> generic = generic_infinitesimal<2>(start.packing.radius, 1);
+        for (std::size_t i = 0; i < g.size(); ++i) {
+            g[i] = -up * generic[i];
+        }
+        const auto rested = compare::with_resting_rattlers(snap, g);
+        BOOST_TEST_REQUIRE(rested.ok());
+        double sum = 0;
+        for (const int i : snap.rattlers) {
+            sum += rested.value().packing.q[2 * static_cast<std::size_t>(i) + 1];
+        }
+        return sum;
+    };
+    BOOST_TEST(heights(1) > heights(-1));
+}
+
 BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     const Copy copy(3);
     const Comparison result = copy.compare();
@@ -134,6 +200,17 @@ BOOST_AUTO_TEST_CASE(frames_that_are_all_the_exact_equilibrium_give_0) {
     std::swap(disk_row(turned, 3), disk_row(turned, 60));
     std::swap(contact_row(turned, 3), contact_row(turned, 60));
     BOOST_TEST(compare::frames_csv(turned.compare()) == text);
+}
+
+BOOST_AUTO_TEST_CASE(a_disk_moved_by_a_thousandth_is_no_frame_in_motion) {
+    for (const std::size_t row : {2U, 30U, 66U}) {
+        expect_file(
+            [row](Copy& c) {
+                const double x = std::stod(series::words_of(disk_row(c, row))[3]);
+                disk_row(c, row) = Copy::field(disk_row(c, row), 3, fmt::format("{}", x + 1e-3));
+            },
+            {"overlap"});
+    }
 }
 
 BOOST_AUTO_TEST_CASE(two_ids_swapped) {

@@ -104,19 +104,41 @@ class Proofs(Folder):
         with self.assertRaisesRegex(StopIteration, "1 of"):
             isostat.verify(out, progress=stop)
 
-    def test_ctrl_c_ends_a_preparation(self):
+    def interrupted(self, words):
+        """What Ctrl-C makes of a script, 0.3 s after it printed "begun": standard error, and seconds until it ended."""
         process = self.script(
-            "import isostat\nprint('begun', flush=True)\nisostat.prepare(20000)",
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
+            "import isostat\n" + words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
-        process.stdout.readline()
-        time.sleep(0.5)
+        self.assertEqual(process.stdout.readline(), "begun\n")
+        time.sleep(0.3)
         process.send_signal(signal.SIGINT)
+        begin = time.monotonic()
         _, errors = process.communicate(timeout=60)
+        return process.returncode, errors, time.monotonic() - begin
+
+    def test_ctrl_c_ends_a_preparation(self):
+        status, errors, _ = self.interrupted("print('begun', flush=True)\nisostat.prepare(20000)")
         self.assertIn("KeyboardInterrupt", errors)
-        self.assertNotEqual(process.returncode, 0)
+        self.assertNotEqual(status, 0)
+
+    def test_ctrl_c_ends_what_has_no_steps(self):
+        # Disks on a grid, each on its left and its lower neighbour: N = N_f = 80 002 takes many seconds.
+        grid = """
+import numpy as np
+n = 200
+i, j = np.divmod(np.arange(n * n), n)
+contacts = [(int(k - n), int(k)) if i[k] else (int(k), "left") for k in range(n * n)]
+contacts += [(int(k - 1), int(k)) if j[k] else (int(k), "bottom") for k in range(n * n)]
+contacts += [(n * n - 1, "right"), (n * n - 1, "top")]
+state = isostat.State.from_arrays(np.stack([i, j], 1) + 0.5, np.full(n * n, 0.5), [n, n], contacts,
+                                  stress=(1, 1), reference_length=[n, n])
+print("begun", flush=True)
+"""
+        for call in ("inspect", "certify"):
+            status, errors, seconds = self.interrupted(grid + f"isostat.{call}(state)")
+            self.assertIn("KeyboardInterrupt", errors)
+            self.assertNotEqual(status, 0)
+            self.assertLess(seconds, 5)
 
 
 if __name__ == "__main__":

@@ -109,6 +109,7 @@ struct FrameResult {
     double law = 0, ratio = 1, rest = 0, stiffness = 0;
     double eps1 = 0, eps2 = 0;           ///< strains of the frame
     double true_eps1 = 0, true_eps2 = 0; ///< of its true vertex
+    int node = -1;                       ///< of the bundle with this list
     /// With `local`: the exact run from the vertex of the frame before, at the load of this one, has the list of this
     /// frame ("same"), another one ("other"), or ended before ("undecided" and why). Empty: not asked, or no vertex
     /// there.
@@ -129,6 +130,27 @@ struct PathEquilibrium {
     double stiffness_needed = 0;   ///< for which it is within 1e-3 of the exact one
 };
 
+/// Exact runs from the same start: they open other contacts, or rattlers rest elsewhere. A node is a proved equilibrium
+/// that at least one of them comes through, named by its list; members hold numbers of nodes.
+struct BundleNode {
+    PathEquilibrium equilibrium; ///< as the first member came to it; soft limits not asked for
+    std::vector<int> members;    ///< that come through it
+    std::vector<int> frames;     ///< of the series with this list
+};
+struct BundleMember {
+    OpeningRule rule = OpeningRule::most_negative;
+    std::uint64_t seed = 0;   ///< of the rule `random`
+    std::string rest;         ///< down, up, left, right: where rattlers rest; "start": as in the start
+    std::vector<int> nodes;   ///< one after another
+    std::vector<int> at_load; ///< per frame: the node there, -1 beyond the end of the run
+    std::string end;          ///< empty, or why it ends before the last frame
+};
+struct Bundle {
+    std::vector<BundleNode> nodes;
+    std::vector<BundleMember> members; ///< the first one is the exact run
+    int common = 0;                    ///< so many nodes from the start are the same in all members, as far as they go
+};
+
 /// Why the frames leave the exact run: the first of these that holds.
 struct Departure {
     int from = -1, to = -1;              ///< frames: the last one before, and the first one after; -1: none
@@ -140,7 +162,7 @@ struct Departure {
 struct CompareOptions {
     std::optional<State<2>> start; ///< of the exact run; none: the vertex of the first frame that has one
     OpeningRule rule = OpeningRule::most_negative;
-    int bundle = 16;    ///< runs with other rules and resting places, where the departure asks for them
+    int bundle = 16;    ///< members of the bundle; 0: none
     bool local = false; ///< besides, the exact run from every frame to the next
     const std::atomic<bool>* stop = nullptr;
 };
@@ -149,6 +171,7 @@ struct Comparison {
     std::vector<FrameResult> frames;
     std::vector<PathEquilibrium> path;
     std::string path_end; ///< empty, or why the exact run ends before the last frame
+    Bundle bundle;
     std::optional<Departure> departure;
     /// 0 every frame at rest is `same`; 1 one departs; 2 none departs, one is undecided.
     int status = 0;

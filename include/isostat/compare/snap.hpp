@@ -67,6 +67,9 @@ Snap snap(const SoftState& soft);
 /// contacts that carry a force are then not those of the list (the message says which).
 Result<State<2>> with_resting_rattlers(const Snap& snap, std::uint64_t seed);
 
+/// The same on other infinitesimal loads, which say where the rattlers rest.
+Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal);
+
 /// The vertex downhill of the soft place whatever its contacts (`find_vertex`), under the load of the soft state, and
 /// what is proved of it. That it is *the* vertex of a list is not proved: with h > 0 there is none.
 struct Exchanged {

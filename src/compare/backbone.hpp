@@ -1,0 +1,17 @@
+#pragma once
+/// \file
+/// States and lists without rattlers.
+
+#include <isostat/contact/state.hpp>
+
+namespace isostat::compare {
+
+/// The disks and movable walls that `carrying` holds, in these contacts, under the same load; infinitesimal loads are
+/// generic ones of their own.
+State<2> backbone_of(const State<2>& state, const std::vector<Contact>& carrying);
+
+/// The contacts that can carry a force by the positions of the normals, in their order: soft rattlers touch now and
+/// then, and hard ones rest on two contacts. Held coordinates are left out.
+std::vector<Contact> able_to_carry(const Packing<2>& packing, std::vector<Contact> contacts);
+
+} // namespace isostat::compare

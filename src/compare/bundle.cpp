@@ -1,0 +1,144 @@
+#include "compare/bundle.hpp"
+
+#include "core/parallel.hpp"
+
+#include <isostat/compare/snap.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace isostat::compare {
+
+namespace {
+
+/// Of a rearrangement of a member: some rules take ten times as many as others, and a member that ends says so.
+constexpr long most_arcs = 2000;
+constexpr std::array rests{"down", "up", "left", "right"};
+constexpr std::array rules{OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::least_negative};
+
+/// The loads of `generic_infinitesimal` point down: turned until they point where the rattlers shall rest.
+std::vector<double> infinitesimal_towards(std::size_t rest, const std::vector<double>& radius) {
+    constexpr std::array<std::size_t, 4> quarters{0, 2, 3, 1}; // anticlockwise, of down, up, left, right
+    std::vector<double> g = generic_infinitesimal<2>(radius, 1);
+    for (std::size_t i = 0; i + 1 < g.size(); i += 2) {
+        for (std::size_t k = 0; k < quarters[rest]; ++k) {
+            const double x = g[i];
+            g[i] = -g[i + 1];
+            g[i + 1] = x;
+        }
+    }
+    return g;
+}
+
+BundleMember member(int number) {
+    BundleMember out;
+    const auto round = static_cast<std::size_t>(number) / rests.size();
+    out.rule = round < rules.size() ? rules[round] : OpeningRule::random;
+    out.seed = round < rules.size() ? 0 : round - rules.size() + 1;
+    out.rest = rests[static_cast<std::size_t>(number) % rests.size()];
+    return out;
+}
+
+/// Adds what one member came through.
+class Tree {
+  public:
+    explicit Tree(Bundle& out) : out_(out) {}
+
+    void add(BundleMember member, Path path) {
+        const int number = static_cast<int>(out_.members.size());
+        std::vector<int> places; // node of each equilibrium
+        for (PathEquilibrium& e : path.equilibria) {
+            const auto [at, added] = node_.emplace(e.contacts, static_cast<int>(out_.nodes.size()));
+            places.push_back(at->second);
+            if (added) {
+                out_.nodes.push_back({std::move(e), {}, {}});
+                out_.nodes.back().equilibrium.number = at->second;
+            }
+            std::vector<int>& visited = out_.nodes[static_cast<std::size_t>(at->second)].members;
+            if (visited.empty() || visited.back() != number) {
+                visited.push_back(number);
+            }
+        }
+        for (const int at : path.at_load) {
+            member.at_load.push_back(at < 0 ? -1 : places[static_cast<std::size_t>(at)]);
+        }
+        member.nodes = std::move(places);
+        member.end = std::move(path.end);
+        out_.members.push_back(std::move(member));
+    }
+
+  private:
+    Bundle& out_;
+    std::map<std::vector<Contact>, int> node_;
+};
+
+int common_nodes(const std::vector<BundleMember>& members) {
+    std::size_t longest = 0;
+    for (const BundleMember& m : members) {
+        longest = std::max(longest, m.nodes.size());
+    }
+    const auto same = [&](std::size_t k) {
+        return std::all_of(members.begin(), members.end(), [&](const BundleMember& m) {
+            return k >= m.nodes.size() || m.nodes[k] == members.front().nodes[k];
+        });
+    };
+    std::size_t k = 0;
+    while (k < std::min(longest, members.front().nodes.size()) && same(k)) {
+        ++k;
+    }
+    return static_cast<int>(k);
+}
+
+} // namespace
+
+Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<double>& loads, int count,
+                   const RunOptions& options) {
+    Bundle out;
+    if (count < 1 || path.equilibria.empty()) {
+        return out;
+    }
+    std::vector<Path> paths(static_cast<std::size_t>(count));
+    paths.front() = path;
+    const Snap vertex =
+        snap({start.packing, carrying(start, certify(start)), start.load}); // rattlers leave what they touch
+    parallel_pieces(paths.size(), [&](std::size_t k) {
+        if (k == 0) {
+            return;
+        }
+        const BundleMember m = member(static_cast<int>(k));
+        auto resting =
+            vertex.outcome == SnapOutcome::vertex
+                ? with_resting_rattlers(vertex, infinitesimal_towards(k % rests.size(), start.packing.radius))
+                : Failure{FailureKind::undecided, vertex.reason};
+        if (!resting.ok()) {
+            paths[k].end = resting.failure().message();
+            paths[k].at_load.assign(loads.size(), -1);
+            return;
+        }
+        RunOptions run = options;
+        run.rule = m.rule;
+        run.rule_seed = m.seed;
+        run.max_arcs = std::min(run.max_arcs, most_arcs);
+        paths[k] = follow(std::move(resting.value()), loads, run);
+    });
+    Tree tree(out);
+    for (std::size_t k = 0; k < paths.size(); ++k) {
+        BundleMember m = member(static_cast<int>(k));
+        if (k == 0) {
+            m.rule = options.rule;
+            m.rest = "start";
+        }
+        tree.add(std::move(m), std::move(paths[k]));
+    }
+    out.common = common_nodes(out.members);
+    return out;
+}
+
+int node_with(const Bundle& bundle, const std::vector<Contact>& list) {
+    const auto at = std::find_if(bundle.nodes.begin(), bundle.nodes.end(),
+                                 [&](const BundleNode& node) { return node.equilibrium.contacts == list; });
+    return at == bundle.nodes.end() ? -1 : at->equilibrium.number;
+}
+
+} // namespace isostat::compare

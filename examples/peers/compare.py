@@ -34,6 +34,7 @@ def number(value):
 def columns(state):
     """Contact matrix without rounding: entries x_j - x_i, so that an unknown is force / distance of the centres."""
     disks = [[number(v) for v in row] for row in state["disks"]]
+    first = 1 if state["version"] == 1 else 0  # of the coordinates in a row
     n = len(disks)
     out = []
     for i, other in state["contacts"]:
@@ -45,7 +46,7 @@ def columns(state):
                 column[2 * n + axis] = Fraction(-1)
         else:
             for axis in range(2):
-                d = disks[other][1 + axis] - disks[i][1 + axis]
+                d = disks[other][first + axis] - disks[i][first + axis]
                 column[2 * i + axis], column[2 * other + axis] = d, -d
         out.append({row: v for row, v in column.items() if v != 0})
     return 2 * n + 2, out

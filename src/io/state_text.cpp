@@ -85,10 +85,11 @@ template <int Dim> void append_disks(std::string& text, const Packing<Dim>& pack
 
     std::vector<Json> rows;
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-        Json row = Json::array({finite(packing.radius[i], "disks (radius)")});
+        Json row = Json::array();
         for (std::size_t a = 0; a < Dim; ++a) {
             row.push_back(finite(packing.q[Dim * i + a], "disks (position)"));
         }
+        row.push_back(finite(packing.radius[i], "disks (radius)"));
         rows.push_back(std::move(row));
     }
     json::append_rows(text, "disks", rows);
@@ -130,7 +131,7 @@ void append_member(std::string& text, const char* name, const std::vector<Json>&
 
 template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces) {
     const Packing<Dim>& packing = state.packing;
-    std::string text = "{\n  \"format\": \"isostat-state\",\n  \"version\": 1,\n";
+    std::string text = "{\n  \"format\": \"isostat-state\",\n  \"version\": 2,\n";
     text += fmt::format("  \"dimension\": {},\n  \"equilibrium\": {},\n", Dim, state.equilibrium);
     text +=
         fmt::format("  \"provenance\": {},\n", state.provenance.empty() ? "{}" : Json::parse(state.provenance).dump());
@@ -173,7 +174,7 @@ void write_state(const std::filesystem::path& path, const State<Dim>& state, std
 
 template <int Dim>
 void write_packing(const std::filesystem::path& path, const Packing<Dim>& packing, const std::string& reason) {
-    std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 1,\n";
+    std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 2,\n";
     text += fmt::format("  \"incomplete\": {},\n", json::dumped(reason));
     append_disks(text, packing);
     write_atomically(path, text + "\n}\n");

@@ -191,10 +191,15 @@ template <int Dim> typename Follower<Dim>::Attempt Follower<Dim>::reach_event(Ga
     return shorten_before(event, longest);
 }
 
-/// The direct solve failed: renews the factors, and shortens the step when that does not help.
+/// The direct solve failed: renews the factors, and shortens the step when that does not help. In the end it is 0 long
+/// before a gap that nearly grazes: 0 to rounding where it still falls. Then the arc ends here, and the caller looks
+/// for the end in more digits.
 template <int Dim>
 typename Follower<Dim>::Attempt Follower<Dim>::shorten_before(const GapEvent& event, double longest) {
     if (longest < 1e-12 * step_limit_ || pace_.shrink < 1e-9) {
+        if (moved_ && std::abs(quick_gap(here_.at, event.contact)) <= noise_) {
+            return Attempt(Reached{{here_.at, here_.tangent}, 0, event.contact});
+        }
         return failed(FailureKind::not_converged, "the event at contact {} was not reached", named<Dim>(event.contact));
     }
     if (pace_.renewed) {

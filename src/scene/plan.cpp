@@ -38,6 +38,12 @@ bool equal_radii(const PreparationOptions& options) {
     return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
+bool all_equal(const PreparationOptions& options) {
+    const DiameterLaw& law = options.diameters;
+    const auto& [least, most] = std::minmax_element(options.radii.begin(), options.radii.end());
+    return options.radii.empty() ? law.kind == RadiiLaw::equal || law.smallest == law.largest : *least == *most;
+}
+
 void add_stages(Plan& plan, const Scene& scene) {
     const bool prepares = scene.start.empty();
     const std::string given = fmt::format("the packing is read from {}", scene.start.string());
@@ -48,8 +54,9 @@ void add_stages(Plan& plan, const Scene& scene) {
              : jitter > 0
                  ? fmt::format("radii R_i (1 + {} rho_i), rho_i in [-1, 1) from the seed of the packing", jitter)
              : equal_radii(scene.preparation)
-                 ? "jitter = 0; the scene has equal radii, so that ties are common: jitter = 1e-9 in [packing] makes "
-                   "them different"
+                 ? fmt::format("jitter = 0; the scene has equal radii, so that ties are common: jitter = {} in "
+                               "[packing] makes them different",
+                               all_equal(scene.preparation) ? "1e-4" : "1e-9")
                  : "jitter = 0; no radii are equal");
     std::string soft = "random disks to a relaxed soft packing";
     if (const int above = scene.preparation.newton_above; prepares_more(scene, above)) {

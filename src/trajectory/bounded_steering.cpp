@@ -1,5 +1,6 @@
 #include "trajectory/bounded_steering.hpp"
 
+#include "motion/precise_end.hpp"
 #include "trajectory/prover.hpp"
 #include "trajectory/record.hpp"
 
@@ -84,7 +85,18 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
         return arc.failure();
     }
     proposed_ = true;
+    if (precisely_) {
+        improve_end(arc.value());
+    }
     return proposal(std::move(arc.value()));
+}
+
+template <int Dim> void BoundedSteering<Dim>::improve_end(Arc<Dim>& path) const {
+    auto end = precise_end(
+        RoughEnd<Dim>{from_.structure, start_.opening.contact, path.closed, path.end, path.tangent, path.displacement});
+    if (end) {
+        path.end = std::move(*end);
+    }
 }
 
 template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path) const {
@@ -132,6 +144,8 @@ template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refuse
         fresh_.emplace(from_.structure); // old factors may also have ended it badly
     } else if (went_too_far(refused)) {
         arc_options_.sharp_power = true;
+    } else if (!refused.vertex && !precisely_ && !next_to_ && refused.record.closed.kind != ContactKind::held) {
+        precisely_ = true; // before what double takes for the end the contacts are another matrix
     } else if (may_graze(refused)) {
         arc_options_.resting.push_back(refused.record.closed); // the gaps at the end tell whether it did
     } else {

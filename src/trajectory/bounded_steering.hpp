@@ -10,10 +10,10 @@ namespace isostat {
 
 /// The arc from a vertex, with its factors or fresh ones where these serve badly. A proof that finds another contact
 /// closed before, a power that is negative at the end, or nothing at all with old factors, is answered by another
-/// proposal; where ties are chosen also one that finds no regular vertex with fresh factors: the pair that seemed to
-/// close may only graze, and is passed by.
-/// Failures besides those of `follow_arc`: that of `departure`; `undecided` when the order of the contacts that close
-/// is not settled in a few proposals.
+/// proposal; no vertex with fresh factors by an end in more digits; where ties are chosen also one that finds no
+/// regular vertex with fresh factors: the pair that seemed to close may only graze, and is passed by. Failures besides
+/// those of `follow_arc`: that of `departure`; `undecided` when the order of the contacts that close is not settled in
+/// a few proposals.
 template <int Dim> class BoundedSteering final : public Steering<Dim> {
   public:
     /// `departure`: of the pairs that touch; none overlaps at second order. The candidates and the load must outlive
@@ -29,6 +29,7 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
     void refresh();
     Result<Arc<Dim>> attempt();
     ArcProposal<Dim> proposal(Arc<Dim> path) const;
+    void improve_end(Arc<Dim>& path) const;
     [[nodiscard]] bool went_too_far(const ArcProof<Dim>& refused) const;
     [[nodiscard]] bool may_graze(const ArcProof<Dim>& refused) const;
 
@@ -41,6 +42,7 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
     std::optional<Contact> next_to_; ///< closes on a way of length O(eps)
     Result<Departure<Dim>> departure_;
     std::optional<Factorisation> fresh_; ///< instead of the factors of the vertex
+    bool precisely_ = false;             ///< the end of the arc in more digits
     int proposals_ = 0;
     bool proposed_ = false;
 };

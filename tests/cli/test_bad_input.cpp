@@ -54,9 +54,9 @@ BOOST_AUTO_TEST_CASE(overlapping_disks) {
 }
 
 BOOST_AUTO_TEST_CASE(radii_that_are_not_positive_numbers) {
-    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[0.0,1.0,1.0]"), {"disks[0][0]", "0.0", "positive"});
-    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[-1.0,1.0,1.0]"), {"disks[0][0]", "-1.0", "positive"});
-    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[NaN,1.0,1.0]"), {"start.json:", "JSON"});
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[1.0,1.0,0.0]"), {"disks[0][2]", "0.0", "positive"});
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[1.0,1.0,-1.0]"), {"disks[0][2]", "-1.0", "positive"});
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[1.0,1.0,NaN]"), {"start.json:", "JSON"});
     run_refuses("1\nnan 1 1 0 0\n", {":2:", "radius of disk 0", "nan", "finite"});
     run_refuses("1\n-3 1 1 0 0\n", {":2:", "radius of disk 0", "-3", "positive"});
     scene_refused("[packing]\nradii = [1.0, nan]\n", {":2:", "radii[1]", "nan", "finite"});
@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_start_with_self_stresses) {
 }
 
 BOOST_AUTO_TEST_CASE(disks_larger_than_the_box) {
-    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[50.0,1.0,1.0]"), {"disk 0", "100", "larger than the box"});
+    run_refuses(replaced(two, "[1.0,1.0,1.0]", "[1.0,1.0,50.0]"), {"disk 0", "100", "larger than the box"});
 }
 
 BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {

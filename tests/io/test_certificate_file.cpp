@@ -180,7 +180,7 @@ BOOST_AUTO_TEST_CASE(bad_claims_are_named_with_their_value_and_what_was_expected
     refused("\"undecided\": [\"", "\"undecided\": [7,\"", {"claims.undecided[0]", "7", "string"});
     refused("\"input_hash\": \"", "\"input_hash\": \"0", {"input_hash", "64"});
     refused("\"contacts\": [", "\"forces\": [],\n\"contacts\": [", {"state.forces", "no such field"});
-    refused("[1.0,1.0,1.0]", "[0.0,1.0,1.0]", {"state.disks[0][0]", "positive radius"});
+    refused("[1.0,1.0,1.0]", "[1.0,1.0,0.0]", {"state.disks[0][2]", "positive radius"});
     refuses_certificate(replaced(text, "\"digest\"", "\"digets\""), {"digets"});
     refuses_certificate("[]", {"isostat-certificate"});
     refuses_certificate(std::string(200000, '[') + std::string(200000, ']'), {"nested"});

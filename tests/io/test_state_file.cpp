@@ -72,6 +72,11 @@ BOOST_AUTO_TEST_CASE(rows_of_disks_are_in_the_order_of_their_version) {
     const Packing<2> old = parse_state<2>(text("1", "[1, 3, 4], [2, 9, 5]"), "s").state.packing;
     BOOST_TEST((old.radius == packing.radius));
     BOOST_TEST((old.q == packing.q));
+    State<2> state;
+    state.packing = packing;
+    const std::string written = state_text(state);
+    BOOST_TEST(written.find("\"version\": 2") != std::string::npos);
+    BOOST_TEST(written.find("[3.0,4.0,1.0],\n") != std::string::npos);
     refuses_state(text("2", "[3, 4, 0]"), {"disks[0][2]", "positive radius"});
     refuses_state(text("2", "[3, 4]"), {"disks[0]", "[x, y, radius]"});
     refuses_state(text("1", "[0, 3, 4]"), {"disks[0][0]", "positive radius"});
@@ -175,7 +180,7 @@ BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected
     const std::string text = two_disk_text();
     refuses_state("[1]", {"isostat-state"});
     refuses_state(replaced(text, "isostat-state", "isostat-run"), {"format", "isostat-run"});
-    refuses_state(replaced(text, "\"version\": 1", "\"version\": 3"), {"version", "3"});
+    refuses_state(replaced(text, "\"version\": 2", "\"version\": 3"), {"version", "3"});
     refuses_state(replaced(text, "\"contacts\"", "\"contcts\""), {"unknown field 'contcts'"});
     refuses_state(replaced(text, "\"disks\"", "\"disk_force\""), {"'disks' is missing"});
     refuses_state(replaced(text, "\"dimension\": 2", "\"dimension\": 3"), {"dimension", "3"});
@@ -184,13 +189,13 @@ BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected
     refuses_state(replaced(text, "\"loaded_axis\":1", "\"loaded_axis\":2"), {"load.loaded_axis", "2"});
     refuses_state(replaced(text, "\"fixed\"", "\"frozen\""), {"walls.lower[0]", "frozen"});
     refuses_state(replaced(text, "\"equilibrium\": 0", "\"equilibrium\": -1"), {"equilibrium", "-1"});
-    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[0.0,1.0,1.0]"), {"disks[0][0]", "0.0", "positive radius"});
-    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[-1.0,1.0,1.0]"), {"disks[0][0]", "-1.0", "positive radius"});
-    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1e999,1.0,1.0]"), {"out of"});
-    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[NaN,1.0,1.0]"), {"crafted.json:", "not valid JSON"});
-    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[null,1.0,1.0]"), {"disks[0][0]", "null", "finite number"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0,0.0]"), {"disks[0][2]", "0.0", "positive radius"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0,-1.0]"), {"disks[0][2]", "-1.0", "positive radius"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0,1e999]"), {"out of"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0,NaN]"), {"crafted.json:", "not valid JSON"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0,null]"), {"disks[0][2]", "null", "finite number"});
     refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0]"), {"disks[0]", "3 values"});
-    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[100.0,1.0,1.0]"), {"disk 0", "200", "larger than the box"});
+    refuses_state(replaced(text, "[1.0,1.0,1.0]", "[1.0,1.0,100.0]"), {"disk 0", "200", "larger than the box"});
 }
 
 BOOST_AUTO_TEST_CASE(bad_contacts_are_named) {
@@ -339,12 +344,12 @@ BOOST_AUTO_TEST_CASE(lengths_beyond_the_range_of_the_arithmetic_are_refused) {
         expect_bad_input(
             [&] {
                 (void)parse_state<2>(
-                    replaced(two_disk_text(), "[1.0,1.0,1.0]", std::string("[") + radius + ",1.0,1.0]"), "FILE");
+                    replaced(two_disk_text(), "[1.0,1.0,1.0]", std::string("[1.0,1.0,") + radius + "]"), "FILE");
             },
             {"FILE", "radius of disk 0", "1e-150"});
     }
     expect_bad_input(
-        [&] { (void)parse_state<2>(replaced(two_disk_text(), "[1.0,1.0,1.0]", "[1.0,-1e200,1.0]"), "FILE"); },
+        [&] { (void)parse_state<2>(replaced(two_disk_text(), "[1.0,1.0,1.0]", "[-1e200,1.0,1.0]"), "FILE"); },
         {"FILE", "x of disk 0", "1e+150"});
 }
 

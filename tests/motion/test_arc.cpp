@@ -1,5 +1,6 @@
 // Arcs with known ends: a free disk rolls over a fixed one past obstacles.
 #include "motion/arc.hpp"
+#include "motion/precise_end.hpp"
 #include "support/crafted.hpp"
 
 #include <boost/test/unit_test.hpp>
@@ -96,6 +97,41 @@ BOOST_AUTO_TEST_CASE(a_grazing_dip_counts_and_a_near_miss_does_not) {
             }
         }
     }
+}
+
+/// An obstacle of radius 2 at (0, 5 - overlap), below which the rolling disk comes to rest, or not.
+struct Grazing : Rolling {
+    explicit Grazing(double overlap) {
+        obstacle(std::numbers::pi / 2, 2, 0);
+        state.packing.q[6] = 0;
+        state.packing.q[7] = 5 - overlap;
+    }
+    /// From a rough end on top of the fixed disk, rolling up to it (+1) or back (-1).
+    [[nodiscard]] std::optional<Packing<2>> end(double direction) {
+        snap_to_grid(state.packing);
+        const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
+        BOOST_TEST_REQUIRE(structure.ok());
+        Packing<2> top = state.packing;
+        top.q[4] = 0;
+        top.q[5] = 2;
+        std::vector<double> tangent(top.q.size(), 0.0);
+        tangent[4] = -direction;
+        return precise_end(RoughEnd<2>{structure.value(), ContactId(1), pair(2, 3), top, tangent, 0.1});
+    }
+};
+
+BOOST_AUTO_TEST_CASE(the_first_of_two_ends_is_found_where_double_sees_a_stretch) {
+    const double overlap = 0x1p-49;
+    const double d = 5 - overlap; // exact
+    // Law of cosines, 1 - cos = 2 sin^2 of half the angle: no cancellation.
+    const double angle = 2 * std::asin(std::sqrt(overlap * (6 - overlap) / (8 * d)));
+    BOOST_TEST(angle > 3e-8);
+    for (const double direction : {+1.0, -1.0}) {
+        const auto end = Grazing(overlap).end(direction);
+        BOOST_TEST_REQUIRE(end.has_value());
+        BOOST_TEST(std::abs(end->q[4] - direction * 2 * std::sin(angle)) < 1e-15);
+    }
+    BOOST_TEST(!Grazing(-overlap).end(1).has_value(), "it passes by");
 }
 
 BOOST_AUTO_TEST_CASE(an_exactly_grazing_gap_is_never_followed_by_a_guess_beyond_rounding) {

@@ -110,8 +110,8 @@ class Page(unittest.TestCase):
         for path in sorted((self.out / "states").glob("eq_*.json")):
             state = json.loads(path.read_text())
             q = self.browser.value(f"[...film.positions[film.frameOf.get({state['equilibrium']})]]")
-            mean = sum(disk[0] for disk in state["disks"]) / len(state["disks"])
-            for i, (_, x, y) in enumerate(state["disks"]):
+            mean = sum(disk[2] for disk in state["disks"]) / len(state["disks"])
+            for i, (x, y, _) in enumerate(state["disks"]):
                 self.assertLess(abs(q[2 * i] - x), mean / 500)
                 self.assertLess(abs(q[2 * i + 1] - y), mean / 500)
 

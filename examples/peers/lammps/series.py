@@ -29,7 +29,7 @@ def write_input(state, folder, stiffness):
     """LAMMPS wants diameter and density of spheres. The walls are atoms of type 2. Returns variables of in.loading."""
     disks, (width, height) = state["disks"], state["length"]
     n = len(disks)
-    rows = [f"{i + 1} 1 {2 * r!r} 1.0 {x!r} {y!r} 0" for i, (r, x, y) in enumerate(disks)]
+    rows = [f"{i + 1} 1 {2 * r!r} 1.0 {x!r} {y!r} 0" for i, (x, y, r) in enumerate(disks)]
     rows += [f"{n + 1} 2 1.0 {0.02 * n} {width!r} -2.0 0", f"{n + 2} 2 1.0 {0.02 * n} -2.0 {height!r} 0"]
     (folder / "start.data").write_text(
         f"disks and two walls\n\n{n + 2} atoms\n2 atom types\n\n-4 {2 * width!r} xlo xhi\n-4 {2 * height!r} ylo yhi\n-0.5 0.5 zlo zhi\n\n"

@@ -18,7 +18,7 @@ template <int Dim> struct StateFile {
         forces; ///< empty, or f0 of every contact of the state: for pictures, never a start of a computation
 };
 
-/// The JSON text of a state (format "isostat-state", version 1): packing, load, contacts, provenance, and forces when
+/// The JSON text of a state (format "isostat-state", version 2): packing, load, contacts, provenance, and forces when
 /// given (one per contact). Doubles are written in a short form that reads back to the same bits. Rows are one per
 /// line. Throws `Error(bad_input)` naming the field when a number is not finite.
 template <int Dim> std::string state_text(const State<Dim>& state, std::span<const double> forces = {});

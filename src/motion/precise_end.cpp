@@ -1,0 +1,78 @@
+#include "motion/precise_end.hpp"
+
+#include "core/dot.hpp"
+#include "linear/factorisation.hpp"
+#include "verified/corrected_configuration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat {
+
+namespace {
+
+/// Where the iteration begins: before the place that double took for the end, on the curve to (1e-6)^2.
+template <int Dim> Packing<Dim> a_little_before(const RoughEnd<Dim>& rough) {
+    constexpr double back = 1e-6; // of a radius: a hundred times the stretch on which a gap is 0 to rounding
+    Packing<Dim> at = rough.end;
+    const double speed = largest(rough.tangent);
+    const double way = std::min(back * at.min_radius(), 0.5 * rough.displacement);
+    for (std::size_t k = 0; k < rough.tangent.size() && speed > 0; ++k) {
+        at.q[k] -= way / speed * rough.tangent[k];
+    }
+    return at;
+}
+
+/// The step that closes the gaps of `at` + `correction`; empty: the contacts are structurally singular.
+template <int Dim>
+std::vector<double> newton_step(const RoughEnd<Dim>& rough, const Packing<Dim>& at,
+                                const std::vector<dd_real>& correction) {
+    Packing<Dim> rounded = at;
+    for (std::size_t k = 0; k < correction.size(); ++k) {
+        rounded.q[k] += correction[k].x[0];
+    }
+    auto contacts = IsostaticStructure<Dim>::exchange(rough.structure, rounded, rough.opened, rough.closed);
+    if (!contacts) {
+        return {};
+    }
+    const auto there = IsostaticStructure<Dim>::without_proof(std::move(*contacts));
+    const CorrectedConfiguration<Dim, dd_real> place(Arithmetic<dd_real>(), at, correction);
+    std::vector<double> step;
+    for (const Contact& contact : there.contacts()) {
+        step.push_back(place.gap_function(contact).x[0]);
+    }
+    Factorisation(there).solve_velocities(step); // approach velocities equal to the gaps close them
+    return step;
+}
+
+} // namespace
+
+template <int Dim> std::optional<Packing<Dim>> precise_end(const RoughEnd<Dim>& rough) {
+    constexpr int max_steps = 60;
+    constexpr double converged = 1e-22; // of a radius: coordinates are rounded to doubles afterwards
+    Packing<Dim> at = a_little_before(rough);
+    std::vector<dd_real> correction(at.q.size(), dd_real(0.0));
+    const DofMap<Dim>& dofs = rough.structure.dofs();
+    for (int k = 0; k < max_steps; ++k) {
+        const std::vector<double> step = newton_step(rough, at, correction);
+        const double size = step.empty() ? roundoff::infinity : largest(step);
+        if (!(size <= 0.01 * at.min_radius())) {
+            return std::nullopt;
+        }
+        for (std::size_t mu = 0; mu < step.size(); ++mu) {
+            correction[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
+        }
+        if (size <= converged * at.min_radius()) {
+            for (std::size_t c = 0; c < correction.size(); ++c) {
+                at.q[c] = (dd_real(at.q[c]) + correction[c]).x[0];
+            }
+            snap_to_grid(at);
+            return at;
+        }
+    }
+    return std::nullopt;
+}
+
+template std::optional<Packing<2>> precise_end<2>(const RoughEnd<2>&);
+
+} // namespace isostat

@@ -383,6 +383,12 @@ template <int Dim> ForceSigns Prover<Dim>::look_at(const std::vector<Interval>& 
     return signs;
 }
 
+/// A run that settles ties at first order, or chooses, calls that an equilibrium of the finite loads.
+template <int Dim> bool left_at_zero(const State<Dim>& state, const Contact& contact) {
+    return state.perturbation && std::any_of(state.perturbation->zero.begin(), state.perturbation->zero.end(),
+                                             [&](const auto& left) { return left.first == contact; });
+}
+
 /// The infinitesimal forces, where the finite ones are exactly 0.
 template <int Dim> void Prover<Dim>::look_at_zeros(ForcesClaim& claim, SignFailures& failures) const {
     claim.infinitesimal.clear();
@@ -394,7 +400,9 @@ template <int Dim> void Prover<Dim>::look_at_zeros(ForcesClaim& claim, SignFailu
         const auto l = static_cast<std::size_t>(zero);
         const Interval& f = infinitesimal[l];
         claim.infinitesimal.push_back(f);
-        if (f.upper < 0 && failures.negative.empty()) {
+        if (f.upper < 0 && left_at_zero(state_, state_.contacts[l])) {
+            failures.doubtful = "the run left the force at 0, and the infinitesimal one " + in_contact(l, f);
+        } else if (f.upper < 0 && failures.negative.empty()) {
             failures.negative = "the finite force is exactly 0 and the infinitesimal one " + in_contact(l, f);
         } else if (!(f.lower > 0) && failures.doubtful.empty()) {
             failures.doubtful = "the finite force is exactly 0 and the infinitesimal one " + in_contact(l, f);

@@ -50,6 +50,11 @@ BOOST_AUTO_TEST_CASE(a_force_that_a_run_left_at_zero_is_not_refuted_by_the_infin
     BOOST_TEST((certify(state).verdict == Verdict::undecided));
     state.load.infinitesimal = {-1, -1};
     BOOST_TEST((certify(state).verdict == Verdict::proved));
+    // At the load where it vanishes, which is no double: at the stored one the force is -1e-17.
+    state.load.disk_force = {1e-17, 0};
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation->load_zero = crafted::left(0);
+    BOOST_TEST((certify(state).verdict == Verdict::undecided));
 }
 
 BOOST_AUTO_TEST_CASE(a_refuted_equilibrium_ends_the_run_and_is_not_recorded_as_proved) {

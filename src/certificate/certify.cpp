@@ -364,6 +364,17 @@ template <int Dim> bool Prover<Dim>::prove_forces() {
     return true;
 }
 
+/// A run that settles ties at first order, or chooses, calls that an equilibrium of the finite loads.
+template <int Dim> bool left_at_zero(const State<Dim>& state, const Contact& contact) {
+    return state.perturbation && std::any_of(state.perturbation->zero.begin(), state.perturbation->zero.end(),
+                                             [&](const auto& left) { return left.first == contact; });
+}
+
+/// Its load is the one at which a force vanishes, not the double nearest to that, which is stored.
+template <int Dim> bool load_is_exact(const State<Dim>& state) {
+    return state.perturbation && state.perturbation->load_zero.i >= 0;
+}
+
 template <int Dim> ForceSigns Prover<Dim>::look_at(const std::vector<Interval>& finite, SignFailures& failures) const {
     ForceSigns signs;
     for (std::size_t l = 0; l < finite.size(); ++l) {
@@ -372,6 +383,10 @@ template <int Dim> ForceSigns Prover<Dim>::look_at(const std::vector<Interval>& 
             ++signs.structural_zero;
         } else if (f.lower > 0) {
             ++signs.positive;
+        } else if (f.upper < 0 && load_is_exact(state_) && left_at_zero(state_, state_.contacts[l])) {
+            ++signs.undecided;
+            failures.doubtful =
+                "the run left the force at 0, at another load than the double stored; it " + in_contact(l, f);
         } else if (f.upper < 0) {
             ++signs.negative;
             failures.negative = failures.negative.empty() ? "the force " + in_contact(l, f) : failures.negative;
@@ -394,7 +409,9 @@ template <int Dim> void Prover<Dim>::look_at_zeros(ForcesClaim& claim, SignFailu
         const auto l = static_cast<std::size_t>(zero);
         const Interval& f = infinitesimal[l];
         claim.infinitesimal.push_back(f);
-        if (f.upper < 0 && failures.negative.empty()) {
+        if (f.upper < 0 && left_at_zero(state_, state_.contacts[l])) {
+            failures.doubtful = "the run left the force at 0, and the infinitesimal one " + in_contact(l, f);
+        } else if (f.upper < 0 && failures.negative.empty()) {
             failures.negative = "the finite force is exactly 0 and the infinitesimal one " + in_contact(l, f);
         } else if (!(f.lower > 0) && failures.doubtful.empty()) {
             failures.doubtful = "the finite force is exactly 0 and the infinitesimal one " + in_contact(l, f);

@@ -125,8 +125,9 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
 /// A row of equilibria.csv against the vertex that was reached.
 Objections check_equilibrium(const Place& place, const EquilibriumLine& line);
 
-/// A stored state against the vertex that was reached.
-Objections check_stored(const Place& place, const State<2>& stored);
+/// A stored state against the vertex that was reached. `start`: of the run, which may be as far from its vertex as the
+/// proof that there is one allows.
+Objections check_stored(const Place& place, const State<2>& stored, const std::vector<double>& start);
 /// The forces in its file; none may be there.
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces);
 

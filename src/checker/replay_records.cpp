@@ -425,8 +425,9 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
 }
 
 /// The doubles of a stored state against the vertex that was reached. Where they are farther from it than doubles of a
-/// well conditioned packing, but its contacts are as closed as doubles allow, the vertex near the stored state tells.
-Objections check_coordinates(const Place& place, const State<2>& stored) {
+/// well conditioned packing, but its contacts are as closed as doubles allow, or it is the start of the run as it was
+/// given, the vertex near the stored state tells.
+Objections check_coordinates(const Place& place, const State<2>& stored, bool given) {
     const double size = stored.packing.max_radius();
     Objections wrong;
     for (std::size_t k = 0; k < stored.packing.q.size() && !wrong; ++k) {
@@ -435,7 +436,7 @@ Objections check_coordinates(const Place& place, const State<2>& stored) {
     const System system(stored.packing, stored.contacts);
     const auto closed = [&](const Contact& contact) {
         constexpr double rounding = 0x1p-40;
-        return contact.kind == ContactKind::held ||
+        return given || contact.kind == ContactKind::held ||
                std::abs(system.value(stored.packing.q, contact)) <= rounding * size;
     };
     if (!wrong || !wrong->wrong || !std::all_of(stored.contacts.begin(), stored.contacts.end(), closed)) {
@@ -458,7 +459,7 @@ Objections check_coordinates(const Place& place, const State<2>& stored) {
 
 } // namespace
 
-Objections check_stored(const Place& place, const State<2>& stored) {
+Objections check_stored(const Place& place, const State<2>& stored, const std::vector<double>& start) {
     const auto as_set = [](const State<2>& state) {
         return std::set<Contact>(state.contacts.begin(), state.contacts.end());
     };
@@ -485,7 +486,7 @@ Objections check_stored(const Place& place, const State<2>& stored) {
             return wrong;
         }
     }
-    return check_coordinates(place, stored);
+    return check_coordinates(place, stored, stored.packing.q == start);
 }
 
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces) {

@@ -89,12 +89,12 @@ Objections check_folder(const fs::path& directory, const RunRecords& records) {
     }
 }
 
-Objections check_certificate(const fs::path& directory, const Place& place, const EquilibriumLine& line) {
+Objections check_certificate(const RunRecords& records, const Place& place, const EquilibriumLine& line) {
     const std::string name = fmt::format("certificates/eq_{:06}.json", line.integer("number"));
     const bool claims_all = line.integer("certified") == 1;
     try {
-        const Certificate certificate = read_certificate(directory / name);
-        if (Objections other = check_stored(place, certificate.state)) {
+        const Certificate certificate = read_certificate(records.directory / name);
+        if (Objections other = check_stored(place, certificate.state, records.start)) {
             return Objection{other->wrong, fmt::format("{}: {}", name, other->text)};
         }
         const Verification found = verify(certificate);

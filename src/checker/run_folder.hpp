@@ -14,6 +14,6 @@ Objections check_folder(const std::filesystem::path& directory, const RunRecords
 
 /// The certificate file of an equilibrium of a run of level `states` or above is of this equilibrium, and its claims
 /// are right. `line`: the row of equilibria.csv, which says whether it claims everything.
-Objections check_certificate(const std::filesystem::path& directory, const Place& place, const EquilibriumLine& line);
+Objections check_certificate(const RunRecords& records, const Place& place, const EquilibriumLine& line);
 
 } // namespace isostat::checker

@@ -221,6 +221,9 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.certified_arcs = level == "arcs";
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
+    if (std::filesystem::exists(directory / "start.json")) {
+        records.start = read_any_state<2>(directory / "start.json").state.packing.q;
+    }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {

@@ -57,6 +57,7 @@ struct RunRecords {
     std::vector<EventRecord> events;
     std::vector<EquilibriumLine> equilibria;
     std::filesystem::path states;
+    std::vector<double> start; ///< coordinates of start.json; may be far from the true vertex, until the first arc
     /// The stored state of an equilibrium, with its forces, if there is one.
     [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
 };

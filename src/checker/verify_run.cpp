@@ -463,7 +463,7 @@ class Replay {
         const bool row = judged(asked([&] { return check_equilibrium(here_, line); }), line.where);
         const bool row_and_files =
             row && same_file(state) && (number + 1 < result_.equilibria || same_file("states/last.json")) &&
-            (!records_.certified_states || judged(check_certificate(records_.directory, here_, line), line.where));
+            (!records_.certified_states || judged(check_certificate(records_, here_, line), line.where));
         result_.equilibria_proved += row_and_files ? 1 : 0;
         reached.state = *here_.state;
         reached.load = here_.load;
@@ -478,7 +478,8 @@ class Replay {
             return true;
         }
         const StateFile<2> file = read_any_state<2>(path);
-        return judged(check_stored(here_, file.state), name) && judged(check_stored_forces(here_, file.forces), name);
+        return judged(check_stored(here_, file.state, records_.start), name) &&
+               judged(check_stored_forces(here_, file.forces), name);
     }
 
     const RunRecords& records_;

@@ -9,6 +9,7 @@
 #include <isostat/core/machine.hpp>
 
 #include <CLI/CLI.hpp>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -659,9 +660,7 @@ int answered(const std::function<int()>& work) {
     } catch (const isostat::Error& error) {
         return complain(error.kind(), error.what());
     } catch (const std::bad_alloc&) {
-        const int status = complain(ErrorKind::internal, "not enough memory");
-        std::fflush(nullptr);
-        std::_Exit(status); // at exit, threads of a library that wait for memory would be waited for
+        isostat::end_at_once(complain(ErrorKind::internal, "not enough memory"));
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(ErrorKind::cannot_write, error.what());
     } catch (const std::exception& error) {
@@ -691,5 +690,11 @@ int delivered(int status) {
 
 int main(int argc, char** argv) {
     isostat::keep_freed_memory();
-    return delivered(answered([&] { return run_program(argc, argv); }));
+    isostat::say_when_memory_ends();
+    const int status = delivered(answered([&] { return run_program(argc, argv); }));
+    rlimit memory{};
+    if (::getrlimit(RLIMIT_AS, &memory) == 0 && memory.rlim_cur != RLIM_INFINITY) {
+        isostat::end_at_once(status);
+    }
+    return status;
 }

@@ -60,12 +60,24 @@ struct EnsembleDirectory::Lock {
     Descriptor file;
 };
 
+namespace {
+
+[[noreturn]] void refuse_to_resume(const fs::path& directory) {
+    throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no ensemble to resume",
+                                                  (directory / "ensemble.json").string()));
+}
+
+} // namespace
+
 EnsembleDirectory::EnsembleDirectory(fs::path directory, EnsembleHeader header, Mode mode)
     : samples_(std::move(directory), std::move(header)), lock_(std::make_unique<Lock>()) {
     const EnsembleHeader& asked = samples_.header();
     (void)samples_.scene(0);
     (void)samples_.scene(static_cast<std::size_t>(asked.samples) - 1);
     const fs::path& path = samples_.path();
+    if (mode == Mode::resume && !fs::exists(path / "lock") && !fs::exists(path / "ensemble.json")) {
+        refuse_to_resume(path); // and nothing is left there that looks like an ensemble
+    }
     make_directory(path);
     lock_->file = Descriptor::open(path / "lock", O_RDWR | O_CREAT);
     if (!lock_->file.try_lock()) {
@@ -94,9 +106,11 @@ EnsembleDirectory::~EnsembleDirectory() = default;
 
 void EnsembleDirectory::check_resumed() const {
     const fs::path file = samples_.path() / "ensemble.json";
+    if (holds_only_a_lock(file)) { // killed before it wrote anything
+        return;
+    }
     if (!fs::exists(file)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: does not exist: there is no ensemble to resume", file.string()));
+        refuse_to_resume(samples_.path());
     }
     const Json parsed = Field::parse(read_text(file), file.string());
     const Field old(parsed, file.string());

@@ -94,6 +94,17 @@ void write_atomically(const std::filesystem::path& path, const std::string& text
     sync_directory_of(path);
 }
 
+bool holds_only_a_lock(const std::filesystem::path& first) {
+    namespace fs = std::filesystem;
+    const fs::path folder = first.parent_path();
+    return fs::exists(folder / "lock") &&
+           std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [&](const fs::directory_entry& e) {
+               const fs::path name = e.path().filename();
+               return name == "lock" || name == first.filename().string() + ".part" ||
+                      (e.is_directory() && fs::is_empty(e.path()));
+           });
+}
+
 void make_directory(const std::filesystem::path& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);

@@ -20,6 +20,10 @@ std::string_view without_byte_order_mark(std::string_view text);
 /// disk. Throws `Error(cannot_write)` naming the file and the system's reason; nothing is left behind then.
 void write_atomically(const std::filesystem::path& path, const std::string& text);
 
+/// A folder that was made for `first`, and was left before that file was complete: a lock is there, and nothing else
+/// but what a kill leaves of `first`, and empty folders.
+bool holds_only_a_lock(const std::filesystem::path& first);
+
 /// Makes a directory and its parents. Throws `Error(cannot_write)` naming the directory and the reason.
 void make_directory(const std::filesystem::path& path);
 

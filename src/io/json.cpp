@@ -43,6 +43,12 @@ bool parse_hexadecimal(const std::string& text, double& value) {
 
 Json Field::parse(const std::string& text, const std::string& source) {
     require_floating_point(); // the library behind reads numbers as the C library does, which rounds as it is told
+    const auto line_of = [&](std::size_t at) {
+        return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+    };
+    if (const std::size_t at = text.find('\0'); at != std::string::npos) { // the parser would stop there
+        throw Error(ErrorKind::bad_input, fmt::format("{}:{}: a byte 0: expected text", source, line_of(at)));
+    }
     std::vector<std::set<std::string>> open; // names of the fields of the objects that are not complete yet
     const Json::parser_callback_t watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > deepest) {
@@ -64,9 +70,8 @@ Json Field::parse(const std::string& text, const std::string& source) {
         return Json::parse(text, watch);
     } catch (const nlohmann::json::parse_error& error) {
         const std::size_t at = std::min(error.byte, text.size());
-        const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: {}", source, line,
+                    fmt::format("{}:{}: {}", source, line_of(at),
                                 at >= text.size() ? "the file ends before its JSON document is complete: truncated?"
                                                   : "not valid JSON here: expected a complete JSON document"));
     } catch (const nlohmann::json::exception& error) {

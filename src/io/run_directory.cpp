@@ -46,10 +46,9 @@ std::string header_text(const RunHeader& header, const std::string& status) {
     return json::dumped(object, 2) + "\n";
 }
 
-bool holds_only_a_lock(const fs::path& directory) {
-    return std::all_of(fs::directory_iterator(directory), fs::directory_iterator(), [](const fs::directory_entry& e) {
-        return e.path().filename() == "lock" || (e.is_directory() && fs::is_empty(e.path()));
-    });
+[[noreturn]] void refuse_to_resume(const fs::path& directory) {
+    throw Error(ErrorKind::bad_input,
+                fmt::format("{}: does not exist: there is no run to resume", (directory / "run.json").string()));
 }
 
 /// What is known of the way between the equilibria.
@@ -85,8 +84,10 @@ struct RunDirectory::Files {
 RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, const RunCounters& counters)
     : directory_(std::move(directory)), header_(std::move(header)), counters_(counters), resumed_(mode == Mode::resume),
       files_(std::make_unique<Files>()) {
+    if (mode == Mode::resume && !fs::exists(directory_ / "lock") && !fs::exists(directory_ / "run.json")) {
+        refuse_to_resume(directory_); // and nothing is left there that looks like a run
+    }
     make_directory(directory_);
-    const bool begun = fs::exists(directory_ / "lock");
     files_->lock = Descriptor::open(directory_ / "lock", O_RDWR | O_CREAT);
     if (!files_->lock.try_lock()) {
         throw Error(ErrorKind::cannot_write,
@@ -100,7 +101,7 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
                                 directory_.string()));
     }
     if (mode == Mode::resume) {
-        open_for_resume(begun);
+        open_for_resume();
     } else if (holds_a_run) {
         for (const char* name : run_files) {
             fs::remove(directory_ / name);
@@ -133,15 +134,15 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
 
 RunDirectory::~RunDirectory() = default;
 
-void RunDirectory::open_for_resume(bool begun) {
+void RunDirectory::open_for_resume() {
     const fs::path run = directory_ / "run.json";
-    if (begun && !fs::exists(run) && holds_only_a_lock(directory_)) { // killed before it wrote anything
+    if (holds_only_a_lock(run)) { // killed before it wrote anything
         previous_status_ = "killed before it began";
         resumed_ = false;
         return;
     }
     if (!fs::exists(run)) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no run to resume", run.string()));
+        refuse_to_resume(directory_);
     }
     const Json parsed = Field::parse(read_text(run), run.string());
     const Field old(parsed, run.string());

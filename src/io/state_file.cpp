@@ -157,7 +157,7 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     }
     if (document.has("fixed")) {
         const Field fixed = document.at("fixed");
-        packing.fixed.assign(packing.radius.size(), 0);
+        packing.fixed.assign(fixed.size() > 0 ? packing.radius.size() : 0, 0);
         for (std::size_t k = 0; k < fixed.size(); ++k) {
             const long i = fixed.at(k).integer();
             if (i < 0 || i >= packing.disk_count()) {

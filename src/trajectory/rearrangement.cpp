@@ -78,6 +78,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
                       ahead_ ? window : 0);
         const int before = arcs_;
         proposed_ = 0;
+        steered_to_.reset();
         std::optional<Failure> failed; // to propose an arc
         while (steering_->goes_on() && !failed && !proofs.ended() && !recorder_.stopped() &&
                before + proposed_ < options().max_arcs) {

@@ -89,8 +89,8 @@ template <int Dim> class Rearrangement {
     int proposed_ = 0;               ///< arcs by it
     bool ended_ = false;             ///< no force is negative where it is
     std::unique_ptr<NextRearrangement<Dim>> next_;
-    std::unique_ptr<Steering<Dim>> steering_; ///< refers to `here_`
-    std::optional<SteeredEnd<Dim>> steered_to_;
+    std::unique_ptr<Steering<Dim>> steering_;   ///< refers to `here_`
+    std::optional<SteeredEnd<Dim>> steered_to_; ///< by `steering_`, if it came to an end
     std::optional<EndProof<Dim>> end_;
 };
 

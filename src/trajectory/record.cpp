@@ -97,7 +97,7 @@ template <int Dim> Enclosure strain_of(const TrueCoordinates<Dim>& q, const Load
     return shown((reference - q[k]) / reference, (q.error(k) + rounding) / reference);
 }
 
-/// Of dead loads; true stresses have none: an infinite bound.
+/// Of dead loads on the degrees of freedom; true stresses have none: an infinite bound.
 template <int Dim>
 void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>& q, const Load<Dim>& load) {
     dd_real sum = 0.0;
@@ -109,7 +109,7 @@ void record_potential(EquilibriumRecord<Dim>& record, const TrueCoordinates<Dim>
             std::abs(force.x[0]) * q.error(k) * rounded_up + dd_rounding * (std::abs(term.x[0]) + std::abs(sum.x[0]));
     };
     for (std::size_t k = 0; k < load.disk_force.size(); ++k) {
-        if (load.disk_force[k] != 0) {
+        if (load.disk_force[k] != 0 && q.vertex.structure.dofs().dof_of(k) >= 0) {
             add(load.disk_force[k], k);
         }
     }

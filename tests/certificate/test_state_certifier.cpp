@@ -3,6 +3,9 @@
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
+#include <isostat/certificate/certify.hpp>
+#include <isostat/io/state_file.hpp>
+
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
@@ -30,6 +33,29 @@ struct Claimed {
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(certificate)
+
+// What a run left at 0 it calls an equilibrium of the finite loads: what the infinitesimal ones do there is no
+// refutation.
+BOOST_AUTO_TEST_CASE(a_force_that_a_run_left_at_zero_is_not_refuted_by_the_infinitesimal_loads) {
+    State<2> state = parse_state<2>(R"({"format": "isostat-state", "version": 1, "disks": [[1, 1, 1]],
+        "length": [10, 2], "walls": {"lower": ["fixed", "fixed"], "upper": ["absent", "movable"]},
+        "load": {"kind": "nominal", "stress": [1, 1], "loaded_axis": 1, "reference_length": [1, 1]},
+        "infinitesimal": [[1, -1]], "contacts": [[0, "left"], [0, "bottom"], [0, "top"]]})",
+                                    "state")
+                         .state;
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation.emplace().rho = {0.1};
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation->zero = {{crafted::left(0), {0, 0}}};
+    BOOST_TEST((certify(state).verdict == Verdict::undecided));
+    state.load.infinitesimal = {-1, -1};
+    BOOST_TEST((certify(state).verdict == Verdict::proved));
+    // At the load where it vanishes, which is no double: at the stored one the force is -1e-17.
+    state.load.disk_force = {1e-17, 0};
+    BOOST_TEST((certify(state).verdict == Verdict::refuted));
+    state.perturbation->load_zero = crafted::left(0);
+    BOOST_TEST((certify(state).verdict == Verdict::undecided));
+}
 
 BOOST_AUTO_TEST_CASE(a_refuted_equilibrium_ends_the_run_and_is_not_recorded_as_proved) {
     Claimed wrong;

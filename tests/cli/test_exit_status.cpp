@@ -170,6 +170,22 @@ BOOST_AUTO_TEST_CASE(a_library_that_changed_the_rounding_is_an_internal_failure)
     }
 }
 
+BOOST_AUTO_TEST_CASE(whatever_memory_there_is_a_command_answers_or_says_that_it_does_not_suffice) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "out").string();
+    expect(run({"run", small_scene(folder).string(), "-o", out, "-q"}), 0);
+    for (const char* limit : {"ulimit -v 400000; ", "ulimit -v 250000; ", "ulimit -v 200000; "}) {
+        for (const std::vector<std::string>& command :
+             std::vector<std::vector<std::string>>{{"verify", out, "-q"}, {"inspect", vertex}}) {
+            std::vector<std::string> many = command;
+            many.insert(many.end(), {"--threads", "64"});
+            const Outcome found = run(many, limit);
+            const bool says = found.status == 70 && found.err.find("not enough memory") != std::string::npos;
+            BOOST_TEST((found.status == 0 || says), limit << command[0] << ": " << found.status << " " << found.err);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(memory_that_does_not_suffice_is_an_internal_failure) {
     const scratch::Folder folder;
     std::string table = "x y r\n";

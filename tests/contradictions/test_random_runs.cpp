@@ -254,6 +254,37 @@ BOOST_AUTO_TEST_CASE(a_stored_state_far_from_its_vertex_is_not_refuted) {
     BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
 }
 
+// Nor is the start that was given, 2.7e-7 from its true vertex with contacts as open as that.
+BOOST_AUTO_TEST_CASE(a_start_far_from_its_vertex_is_not_refuted) {
+    const scratch::Folder folder;
+    RandomRun run = run_from("../definition/11-same-height-refuted.json", -1);
+    std::vector<Recorded> records;
+    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
+    BOOST_TEST(!records.empty());
+    write_state<2>(folder.path() / "run" / "start.json", run.start); // as the program does
+    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+}
+
+// W counts what the load does to the degrees of freedom: a force on a fixed disk does nothing.
+BOOST_AUTO_TEST_CASE(a_force_on_a_fixed_disk_has_no_part_in_the_potential) {
+    const scratch::Folder folder;
+    RandomRun run = run_from("force_on_a_fixed_disk.json", +1);
+    std::vector<Recorded> records;
+    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
+    BOOST_TEST_REQUIRE(!records.empty());
+    BOOST_TEST(records.front().record.potential < 10);
+    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+}
+
+// Steered ahead to an end that is none; the next proposal fails at once, and there is no end to prove.
+BOOST_AUTO_TEST_CASE(a_rearrangement_steered_in_vain_ends_with_words) {
+    const scratch::Folder folder;
+    std::vector<Recorded> records;
+    RandomRun run = run_from("steered_in_vain.json", +1);
+    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
+    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+}
+
 // The power of the load jumps where the motion of a nearly singular list turns round: no coordinate is held there, and
 // no equilibrium is reported.
 BOOST_AUTO_TEST_CASE(a_power_that_changes_its_sign_without_vanishing_is_no_turn) {

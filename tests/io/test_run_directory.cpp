@@ -241,6 +241,7 @@ BOOST_AUTO_TEST_CASE(a_killed_run_has_no_summary_and_says_running) {
 BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_resume) {
     const scratch::Folder folder;
     scratch::write(folder / "lock", "");
+    scratch::write(folder / "run.json.part", "{");
     const RunCounters counters;
     {
         const RunDirectory directory(folder.path(), header(), RunDirectory::Mode::resume, counters);
@@ -254,7 +255,11 @@ BOOST_AUTO_TEST_CASE(a_run_that_was_killed_before_it_wrote_anything_is_begun_by_
     scratch::write(other / "notes.txt", "mine");
     BOOST_CHECK_THROW(RunDirectory(other.path(), header(), RunDirectory::Mode::resume, counters), Error);
     const scratch::Folder empty;
-    BOOST_CHECK_THROW(RunDirectory(empty.path(), header(), RunDirectory::Mode::resume, counters), Error);
+    for (int again = 0; again < 2; ++again) { // a refusal leaves nothing that looks like a run
+        BOOST_CHECK_THROW(RunDirectory(empty.path(), header(), RunDirectory::Mode::resume, counters), Error);
+        BOOST_TEST(fs::is_empty(empty.path()));
+        BOOST_CHECK_THROW(RunDirectory(empty / "none", header(), RunDirectory::Mode::resume, counters), Error);
+    }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -174,6 +174,12 @@ BOOST_AUTO_TEST_CASE(a_state_cut_short_anywhere_is_refused) {
     BOOST_CHECK_NO_THROW((void)parse_state<2>(text.substr(0, end + 1), "whole.json"));
     refuses_state(text.substr(0, text.size() / 2), {"crafted.json:", "truncated"});
     refuses_state(text + "}", {"crafted.json:", "JSON"});
+    refuses_state(text + '\0' + "more", {"crafted.json:", "byte 0"});
+}
+
+BOOST_AUTO_TEST_CASE(an_empty_list_of_fixed_disks_is_none) {
+    const std::string none = replaced(two_disk_text(), "\"contacts\"", "\"fixed\": [], \"contacts\"");
+    BOOST_TEST(parse_state<2>(none, "s").state.packing.fixed.empty());
 }
 
 BOOST_AUTO_TEST_CASE(bad_fields_are_named_with_their_value_and_what_was_expected) {

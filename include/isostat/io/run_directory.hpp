@@ -110,7 +110,7 @@ class RunDirectory final : public RunObserver<2> {
     void keep_digest(const std::string& name);
     /// The last equilibrium completed its segment.
     [[nodiscard]] bool segment_done() const;
-    void open_for_resume(bool begun);
+    void open_for_resume();
     std::filesystem::path directory_;
     RunHeader header_;
     const RunCounters& counters_;

@@ -241,7 +241,10 @@ template <int Dim> double grid_step(const Packing<Dim>& packing) {
 
 template <int Dim> bool is_on_grid(const Packing<Dim>& packing) {
     const double step = grid_step(packing);
-    return std::all_of(packing.q.begin(), packing.q.end(), [step](double x) { return std::fmod(x, step) == 0; });
+    return std::all_of(packing.q.begin(), packing.q.end(), [step](double x) {
+        const double steps = x / step; // exact but for underflow, as the step is a power of two; fmod is slow
+        return x == 0 || (std::abs(steps) >= 1 && steps == std::nearbyint(steps));
+    });
 }
 
 template <int Dim> double snap_to_grid(Packing<Dim>& packing) {

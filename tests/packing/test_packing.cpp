@@ -258,4 +258,21 @@ BOOST_AUTO_TEST_CASE(solid_fraction_of_a_square_lattice) {
     BOOST_TEST(!packing.is_fixed(DiskId(4)));
 }
 
+BOOST_AUTO_TEST_CASE(on_the_grid_is_a_multiple_of_the_step_and_nothing_else) {
+    for (const double unit : {1.0, 0x1p400, 0x1p-400}) {
+        isostat::Packing<2> packing;
+        packing.radius = {unit};
+        packing.q = {unit, 1.25 * unit, 3 * unit, 3 * unit};
+        const double step = isostat::grid_step(packing);
+        for (const double x : {0.0, step, -step, 3 * step, unit + step}) {
+            packing.q[0] = x;
+            BOOST_TEST(isostat::is_on_grid(packing), x);
+        }
+        for (const double x : {0.5 * step, -0.5 * step, 1.5 * step, 5e-324, 0x1p-600 * unit}) {
+            packing.q[0] = x;
+            BOOST_TEST(!isostat::is_on_grid(packing), x);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

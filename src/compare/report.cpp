@@ -232,7 +232,7 @@ Chart figure(const Comparison& comparison) {
         fmt::format("plot {0} index 3 using 1:(-0.5):(0):({1}) with vectors nohead lc \"#bbbbbb\", {0} index 2 with "
                     "points pt 7 ps 0.7 lc \"#c55a11\"\n",
                     data, frame_statuses);
-    body += "set key right center\nset yrange [*:*] noreverse\nset ytics auto\nset logscale y\nset format y "
+    body += "set key below horizontal\nset yrange [*:*] noreverse\nset ytics auto\nset logscale y\nset format y "
             "\"10^{%L}\"\nset ylabel \"error / mean force\"\n";
     body +=
         fmt::format("plot {0} index 4 using 1:2 with points pt 4 lc \"#548235\" title \"law\", {0} index 4 using 1:3 "

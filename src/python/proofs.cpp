@@ -202,6 +202,19 @@ void bind_inspection(py::module_& module) {
         "the rank is not proved, Undecided when no bound was proved.");
 }
 
+void bind_forces(py::module_& module) {
+    module.def(
+        "forces_at",
+        [](const PyState& state, double sigma) {
+            const State<2> copy = state.state;
+            return interval_array(value_or_raise(interruptible([copy, sigma] { return forces_at(copy, sigma); })));
+        },
+        py::arg("state"), py::arg("sigma2"),
+        "(N, 2) ends of the intervals that hold the forces at the true vertex under the loaded stress `sigma2` instead "
+        "of the state's own; stress x length. Outside of the supported interval some are negative: then no equilibrium "
+        "has them. Raises NotIsostatic or Undecided.");
+}
+
 RunVerification verify_folder(const std::filesystem::path& folder, const py::object& progress) {
     const py::gil_scoped_release release;
     return verify_run(folder, [&progress](const VerificationProgress& at) {
@@ -269,6 +282,7 @@ void bind_verification(py::module_& module) {
 void bind_proofs(py::module_& module) {
     bind_certificate(module);
     bind_inspection(module);
+    bind_forces(module);
     bind_verification(module);
 }
 

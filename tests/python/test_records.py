@@ -31,6 +31,22 @@ class Records(Folder):
         with self.assertRaises(KeyError):
             run.states[6]
 
+    def test_forces_at_any_load_of_a_run(self):
+        run = isostat.load(self.run_scene())
+        row = run.equilibria[1]
+        middle = 0.5 * (max(row["sigma2_low"], run.equilibria[0]["sigma2_high"]) + row["sigma2_high"])
+        state, forces = run.at(middle)
+        self.assertEqual(state.equilibrium, 1)
+        self.assertEqual(state.stress[1], middle)
+        seen = isostat.inspect(state)
+        self.assertEqual(forces.shape, (62, 2))
+        self.assertTrue(np.all(forces[:, 0] <= seen.forces[:62]) and np.all(seen.forces[:62] <= forces[:, 1]))
+        # Beyond the interval of that structure a force is negative.
+        beyond = isostat.forces_at(state, row["sigma2_high"] * 1.01)
+        self.assertLess(beyond[:, 1].min(), 0)
+        with self.assertRaises(KeyError):
+            run.at(1e9)
+
     def test_events_are_those_of_the_file(self):
         run = isostat.load(self.run_scene())
         lines = [json.loads(line) for line in (run.path / "events.jsonl").read_text().splitlines()]

@@ -31,6 +31,7 @@ from ._core import (
     certify,
     count,
     find_vertex,
+    forces_at,
     inspect,
     plateau,
     prepare,

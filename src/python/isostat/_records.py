@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ._core import State
+from ._core import State, forces_at
 from ._words import BadInput, Verdict
 
 _integers = frozenset(
@@ -199,6 +199,21 @@ class Records:
     def forces(self) -> list[np.ndarray]:
         """Forces (N,) in the contacts of each stored state; stress x length, positive in compression."""
         return [state.forces for state in self._stored]
+
+    def at(self, sigma2: float) -> tuple[State, np.ndarray]:
+        """The first stored equilibrium whose supported interval holds `sigma2`, under that stress, and the intervals
+        (N, 2) of its forces there (`forces_at`). Structures of later segments may hold the same stress: `forces_at`
+        asks any state. Raises KeyError when no stored equilibrium holds it (``states_every = 1`` stores all).
+        """
+        rows = self.equilibria
+        holds = (rows["sigma2_low"] <= sigma2) & (sigma2 <= rows["sigma2_high"])
+        for number in rows["number"][holds]:
+            if int(number) in self.states:
+                state = self.states[int(number)]
+                stress = [float(value) for value in state.stress]
+                stress[state.loaded_axis] = sigma2
+                return state.with_stress(stress), forces_at(state, sigma2)
+        raise KeyError(sigma2)
 
     def certified(self) -> dict[int, Verdict]:
         """What the certificate of each equilibrium says, where one was made (level ``states``)."""

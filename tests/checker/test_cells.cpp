@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
         {"a force", [](Certificate& c) { c.claims.forces->finite[0] = c.claims.forces->finite[1]; }},
         {"the other end", [](Certificate& c) { std::swap(c.claims.load_interval->low, c.claims.load_interval->high); }},
         {"a degree of freedom more", [](Certificate& c) { ++c.claims.counting->dof_count; }}};
-    for (const char* name : {"rect", "tilt"}) {
+    for (const char* name : {"rect", "tilt", "channel"}) {
         const Certificate original = proved(of_file(name));
         for (const Forgery& forgery : forgeries) {
             Certificate forged = original;
@@ -209,8 +209,7 @@ BOOST_AUTO_TEST_CASE(forged_certificates_of_cells_do_not_verify) {
             BOOST_TEST(!accepted(forged), name << ": " << forgery.name);
         }
     }
-    for (const char* name :
-         {"rect", "tilt", "channel"}) { // where the lengths are those of reference it is the same load
+    for (const char* name : {"rect", "tilt"}) { // where the lengths are those of reference it is the same load
         State<2> state = of_file(name);
         state.load.reference_length[0] *= 1 + 0x1p-10;
         Certificate forged = proved(state);

@@ -48,9 +48,7 @@ KeptCurve<Dim>::KeptCurve(const Packing<Dim>& start_packing, std::vector<Contact
     if (std::isfinite(smallest)) {
         lipschitz = 2 * std::sqrt(std::max(degree, 1.0)) / smallest * up;
     }
-    const double weight = std::sqrt(most_at_rest) * rest_radius;
-    rest_residual = 1.01 * weight * up;
-    rest_derivative = std::isfinite(smallest) ? weight / smallest * up : 0;
+    bound_rest(most_at_rest, 1);
 }
 
 template <int Dim> void KeptCurve<Dim>::find_blocks() {
@@ -98,9 +96,14 @@ template <int Dim> void KeptCurve<Dim>::bound_in_cell() {
     }
     spread = std::max(2.0, *std::max_element(squares.begin(), squares.end())) * up;
     lipschitz = std::sqrt(*std::max_element(fourths.begin(), fourths.end())) * up;
-    const double weight = std::sqrt(*std::max_element(at_rest.begin(), at_rest.end())) * rest_radius;
+    bound_rest(*std::max_element(at_rest.begin(), at_rest.end()), root2);
+}
+
+/// `heaviest`: sum of the squares of what a block at rest does; `row`: 2-norm of the signs in a row of moving disks.
+template <int Dim> void KeptCurve<Dim>::bound_rest(double heaviest, double row) {
+    const double weight = std::sqrt(heaviest) * rest_radius;
     rest_residual = 1.01 * weight * up;
-    rest_derivative = std::isfinite(smallest) ? root2 * weight / smallest * up : 0;
+    rest_derivative = std::isfinite(smallest) ? row * weight / smallest * up : 0;
 }
 
 template <int Dim> double KeptCurve<Dim>::norm_of(const std::vector<double>& e) const {

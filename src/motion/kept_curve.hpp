@@ -47,6 +47,7 @@ template <int Dim> struct KeptCurve {
   private:
     void find_blocks();
     void bound_in_cell();
+    void bound_rest(double heaviest, double row);
 };
 
 extern template struct KeptCurve<2>;

@@ -144,7 +144,14 @@ class Walk {
                 continue;
             }
             if (met.end) {
-                return arrive(next, *met.end);
+                Followed there = arrive(next, *met.end);
+                return there.end || turns_ ? there : arrive_slowly();
+            }
+            if (!turns_ && !passed_ && displacement(next) >= motion_.displacement) { // a gap that grazes is 0 nowhere
+                passed_ = true;
+                if (Followed there = arrive_slowly(); there.end) {
+                    return there;
+                }
             }
             if (std::string wrong = closed_before(next); !wrong.empty()) {
                 return {{}, std::move(wrong)};
@@ -286,10 +293,33 @@ class Walk {
         return {q, {}, end.solver()};
     }
 
+    [[nodiscard]] double displacement(const std::vector<double>& q) const {
+        double moved = 0;
+        for (std::size_t c = 0; c < q.size(); ++c) {
+            moved = std::max(moved, std::abs(q[c] - from_.packing.q[c]));
+        }
+        return moved;
+    }
+
+    /// The same where the contacts are nearly singular, from the beginning of the last step: of two places the first.
+    [[nodiscard]] Followed arrive_slowly() const {
+        std::vector<Contact> contacts = from_.contacts;
+        contacts[motion_.opened] = motion_.closed;
+        System end(from_.packing, std::move(contacts));
+        std::vector<double> q = q_;
+        constexpr double near = 1e-3; // of the recorded displacement
+        if (!end.newton_in_quadruple(q) ||
+            !(std::abs(displacement(q) - motion_.displacement) <= near * motion_.displacement)) {
+            return {};
+        }
+        return {q, {}, end.solver()};
+    }
+
     const State<2>& from_;
     const Motion& motion_;
     bool turns_;
-    double tolerance_; ///< of gaps that are looked at, not proved
+    bool passed_ = false; ///< the recorded displacement
+    double tolerance_;    ///< of gaps that are looked at, not proved
     double reach_;
     System kept_;
     std::vector<double> q_;

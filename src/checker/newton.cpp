@@ -9,6 +9,12 @@ namespace {
 /// Factors that reduce a residual by less than this are made anew.
 constexpr double slow = 0.25;
 
+#ifdef __SIZEOF_FLOAT128__
+__extension__ typedef __float128 Quadruple;
+#else
+using Quadruple = long double;
+#endif
+
 } // namespace
 
 System::System(const Packing<2>& packing, std::vector<Contact> contacts, std::shared_ptr<const Solver> near)
@@ -19,7 +25,7 @@ double System::held_value(const Contact& c) const {
     return fresh_ && fresh_->first == c ? fresh_->second : packing_.q[static_cast<std::size_t>(c.i)];
 }
 
-double System::value(const std::vector<double>& q, const Contact& c) const {
+template <class T> T System::value(const std::vector<T>& q, const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     const auto& r = packing_.radius;
@@ -28,15 +34,17 @@ double System::value(const std::vector<double>& q, const Contact& c) const {
     }
     if (c.kind == ContactKind::disk_disk) {
         const Row row(c, packing_.disk_count());
-        double dx = 0;
-        double dy = 0;
+        T dx = 0;
+        T dy = 0;
         row.separate(q, 0, dx);
         row.separate(q, 1, dy);
-        const double sum = r[i] + r[j];
+        const T sum = T(r[i]) + r[j];
         return (dx * dx + dy * dy - sum * sum) / 2;
     }
     return weight_ * ((c.kind == ContactKind::lower_wall ? q[2 * i + j] : q[2 * r.size() + j] - q[2 * i + j]) - r[i]);
 }
+
+template double System::value(const std::vector<double>&, const Contact&) const;
 
 void System::renew(const std::vector<double>& q) {
     solver_ = std::make_shared<Solver>(structure_, q);
@@ -147,6 +155,35 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
         } else {
             renew(q);
             last = std::numeric_limits<double>::infinity();
+        }
+    }
+    return false;
+}
+
+bool System::newton_in_quadruple(std::vector<double>& q) {
+    constexpr int most = 60; // half the way to one of two zeros that are near each other, step by step
+    const double scale = packing_.max_radius();
+    std::vector<Quadruple> at(q.begin(), q.end());
+    for (int k = 0; k < most; ++k) {
+        renew(q);
+        if (!solver_->usable()) {
+            return false;
+        }
+        Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
+        for (std::size_t l = 0; l < contacts_.size(); ++l) {
+            residual(static_cast<Eigen::Index>(l)) = static_cast<double>(-value(at, contacts_[l]));
+        }
+        const Eigen::VectorXd x = step(residual);
+        const double size = x.lpNorm<Eigen::Infinity>();
+        if (!(size < scale)) {
+            return false;
+        }
+        for (std::size_t d = 0; d < this->size(); ++d) {
+            at[coordinate(d)] += x(static_cast<Eigen::Index>(d));
+            q[coordinate(d)] = static_cast<double>(at[coordinate(d)]);
+        }
+        if (size <= 0x1p-38 * scale) { // the next step would be its square, or rounding
+            return true;
         }
     }
     return false;

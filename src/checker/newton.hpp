@@ -27,7 +27,7 @@ class System {
     /// A coordinate that becomes held at a value of its own; the others are held where the packing has them.
     void hold(const Contact& c, double at) { fresh_ = {c, at}; }
     [[nodiscard]] double held_value(const Contact& c) const;
-    [[nodiscard]] double value(const std::vector<double>& q, const Contact& c) const;
+    template <class T> [[nodiscard]] T value(const std::vector<T>& q, const Contact& c) const;
     [[nodiscard]] std::shared_ptr<const Solver> solver() const { return solver_; }
 
     /// A(q) v = e_opened; v before is a guess, or empty.
@@ -39,6 +39,9 @@ class System {
         Eigen::Index kept;
     };
     bool newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
+    /// To a zero of all F where the contacts are nearly singular: F in quadruple precision, factors made anew at each
+    /// step.
+    bool newton_in_quadruple(std::vector<double>& q);
 
   private:
     void renew(const std::vector<double>& q);

@@ -61,6 +61,19 @@ BOOST_AUTO_TEST_CASE(a_mixture_of_two_radii_ties_and_a_jitter_leaves_no_tie) {
     BOOST_TEST(radii.size() == 100U);
 }
 
+BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_where_contacts_are_nearly_singular_and_verified) {
+    for (const int seed : {8, 12}) {
+        BOOST_TEST_CONTEXT("seed " << seed) {
+            const scratch::Folder folder;
+            const std::string text = "law = \"equal\"\njitter = 1e-9\nseed = " + std::to_string(seed) + "\n";
+            expect(run_scene(folder, scratch::replaced(scene(text, 12), "disks = 100", "disks = 36")), 0);
+            const Outcome verified = run({"verify", (folder / "run").string()});
+            expect(verified, 0);
+            BOOST_TEST(contains(verified.out, "ends proved"));
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_plan_offers_a_jitter_for_equal_radii_only) {
     const scratch::Folder folder;
     const auto planned = [&](const std::string& packing) {

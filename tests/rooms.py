@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""No room includes a higher one (the order is that of CONTRIBUTING.md), public headers include public ones only, and the
-umbrella has them all:  python3 tests/rooms.py [the tree]"""
+"""No room includes a higher one (the order is that of CONTRIBUTING.md), public headers include public ones only, the
+umbrella has them all, and a type has one definition:  python3 tests/rooms.py [the tree]"""
+import collections
 import pathlib
 import re
 import sys
@@ -20,6 +21,19 @@ for folder in (top / "include/isostat", top / "src"):
 public = sorted(str(path.relative_to(top / "include")) for path in (top / "include/isostat").glob("*/*.hpp"))
 umbrella = (top / "include/isostat/isostat.hpp").read_text()
 wrong += [f"isostat.hpp does not include {header}" for header in public if f"#include <{header}>\n" not in umbrella]
+# Two types of one name in one namespace are one type to the linker, which does not say so.
+types = collections.defaultdict(set)
+for folder in (top / "include/isostat", top / "src"):
+    for path in folder.rglob("*.[ch]pp"):
+        namespace = [""]
+        for line in path.read_text().splitlines():
+            if opened := re.match(r"namespace ([\w:]*) ?\{$", line):
+                namespace.append(opened[1] or str(path)) # of a file alone
+            elif line.startswith("} // namespace"):
+                namespace.pop()
+            elif defined := re.match(r"(?:template <[^>]*> )?(?:struct|class|enum class) (\w+)(?: final)?(?: : .*)? \{", line):
+                types[namespace[-1], defined[1]].add(str(path.relative_to(top)))
+wrong += [f"{name}: defined in {' and in '.join(sorted(files))}" for (_, name), files in types.items() if len(files) > 1]
 if wrong:
     sys.exit("\n".join(wrong))
-print(f"{len(order)} rooms in order, {len(public)} public headers")
+print(f"{len(order)} rooms in order, {len(public)} public headers, {len(types)} types")

@@ -144,7 +144,7 @@ std::string increments_table(const std::vector<Size>& sizes) {
             continue;
         }
         for (const Sample& sample : size.samples) {
-            for (const isostat::Rearrangement& r : sample.loading) {
+            for (const isostat::RearrangementRow& r : sample.loading) {
                 table += fmt::format("{},{},{:.7g},{},{:.5g},{:.5g}\n", size.disks, sample.seed, r.ratio, r.arcs,
                                      r.stress_increment.value_or(NAN), r.strain_increment.value_or(NAN));
             }

@@ -49,7 +49,7 @@ Sample read_sample(const fs::path& folder) {
     sample.status = status_of(folder / "run.json");
     sample.completed = sample.status == "completed";
     sample.rows = isostat::read_equilibria(folder / "equilibria.csv");
-    for (const isostat::Rearrangement& one : isostat::rearrangements(sample.rows)) {
+    for (const isostat::RearrangementRow& one : isostat::rearrangements(sample.rows)) {
         if (one.segment != 0) {
             continue;
         }

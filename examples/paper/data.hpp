@@ -25,7 +25,7 @@ struct Sample {
     bool completed = false;
     std::string status;
     std::vector<isostat::EquilibriumRow> rows;
-    std::vector<isostat::Rearrangement> loading;
+    std::vector<isostat::RearrangementRow> loading;
     std::vector<double> stress, strain, arcs; ///< of the loading
     std::vector<Cycle> cycles;
 

@@ -147,7 +147,7 @@ Range Velocities::bend(const Contact& pair, std::size_t opened, const Solution& 
         b.push_back((second.lower + second.upper) / 2);
         off = std::max<Rational>(off, (second.upper - second.lower) / 2);
     }
-    const Range along = gap_rate(pair, solve(b, off));
+    Range along = gap_rate(pair, solve(b, off));
     if (pair.kind != ContactKind::disk_disk) {
         return along;
     }

@@ -128,7 +128,7 @@ Row::Row(const Contact& contact, int disks) {
         add((a < 2 ? i : 2 * contact.j) + a % 2, a < 2 ? 1 : -1, a % 2);
     }
     for (int a = 0; a < 2; ++a) {
-        if (const int m = contact.image.m[static_cast<std::size_t>(a)]; m != 0) {
+        if (const std::int8_t m = contact.image.m[static_cast<std::size_t>(a)]; m != 0) {
             add(behind + a, -m, a);
         }
     }

@@ -32,9 +32,8 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
         const Range& force = contains(place.ties, l) && finite ? place.first_force[l]
                              : finite                          ? e.forces[l]
                                                                : e.infinitesimal()[l];
-        if (place.is_held(l) && (force.negative() || force.positive())) {
-            negative.push_back(static_cast<int>(l)); // it competes with minus its magnitude
-        } else if (force.negative()) {
+        // A held coordinate competes with minus its magnitude.
+        if (force.negative() || (force.positive() && place.is_held(l))) {
             negative.push_back(static_cast<int>(l));
         } else if (!force.positive()) {
             return Objection{false, fmt::format("the sign of the {}force of {} is not known: {}",

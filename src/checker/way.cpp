@@ -46,7 +46,7 @@ class Follower {
     void load();
     [[nodiscard]] std::vector<double> widened(const std::vector<double>& q) const;
     std::unique_ptr<Tube> start();
-    std::unique_ptr<Tube> tube_at(std::vector<double> centre, int row, int direction) const;
+    [[nodiscard]] std::unique_ptr<Tube> tube_at(std::vector<double> centre, int row, int direction) const;
     Objections begin();
     /// Joins the tube around q, in which a row falls or grows as here, at s of this one.
     bool join_near(const std::vector<double>& q, double s, int row);

@@ -122,7 +122,7 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
     fmt::print("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words,
                snap.counting.dof_count, snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity,
                snap.counting.mechanisms, snap.rattlers.size());
-    fmt::print("snap      {}{}{}\n", to_string(snap.outcome), report["reason"] == "" ? "" : ": ",
+    fmt::print("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
                report["reason"].get<std::string>());
     if (!report["distance"].is_null()) {
         fmt::print("distance  of a disk with a force from its true place at most {}\n",

@@ -98,8 +98,9 @@ class Encloser {
   private:
     /// Forces of the independent contacts that balance a unit force in the free one; the multipliers of the held
     /// degrees of freedom are 0 because the column of the free contact depends on the others (the rank is proved).
-    EnclosedVector self_stress(const IsostaticStructure<2>& structure, const Factorisation& factorisation,
-                               const InverseBound& inverse, const std::vector<int>& columns, int free) const {
+    [[nodiscard]] EnclosedVector self_stress(const IsostaticStructure<2>& structure, const Factorisation& factorisation,
+                                             const InverseBound& inverse, const std::vector<int>& columns,
+                                             int free) const {
         const auto l = static_cast<std::size_t>(free);
         std::vector<double> right(static_cast<std::size_t>(structure.size()), 0.0);
         const GapGradient<2> g = gap_gradient(stored_, inspection_.contacts[l]);
@@ -124,8 +125,8 @@ class Encloser {
     }
 
     /// Velocity that keeps all gaps and is 1 in the held degree of freedom number `row` of the structure.
-    EnclosedVector motion(const IsostaticStructure<2>& structure, const Factorisation& factorisation, std::size_t row,
-                          int free) const {
+    [[nodiscard]] EnclosedVector motion(const IsostaticStructure<2>& structure, const Factorisation& factorisation,
+                                        std::size_t row, int free) const {
         std::vector<double> v(static_cast<std::size_t>(structure.size()), 0.0);
         v[row] = -1; // approach velocities; the column of a held coordinate is -1
         factorisation.solve_velocities(v);

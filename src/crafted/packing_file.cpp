@@ -4,6 +4,8 @@
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <initializer_list>
 #include <sstream>
@@ -89,14 +91,14 @@ class Reader {
                 for (const std::string_view k : keys) {
                     wanted += (wanted.empty() ? "" : ", ") + std::string(k);
                 }
-                throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(key.source().begin.line) +
-                                                      ": unknown key \"" + where + std::string(key.str()) +
-                                                      "\", expected one of " + wanted);
+                throw Error(ErrorKind::bad_input, fmt::format("{}:{}: unknown key \"{}{}\", expected one of {}", name_,
+                                                              key.source().begin.line, where, key.str(), wanted));
             }
         }
     }
 
-    const toml::node& required(const toml::table& table, const std::string& key, const std::string& where = "") const {
+    [[nodiscard]] const toml::node& required(const toml::table& table, const std::string& key,
+                                             const std::string& where = "") const {
         const toml::node* node = table.get(key);
         if (node == nullptr) {
             throw Error(ErrorKind::bad_input, name_ + ":" + std::to_string(std::max(table.source().begin.line, 1u)) +
@@ -105,14 +107,14 @@ class Reader {
         return *node;
     }
 
-    const toml::table& table(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] const toml::table& table(const toml::node& node, const std::string& key) const {
         if (!node.is_table()) {
             fail(node, key, type_name(node), "a table");
         }
         return *node.as_table();
     }
 
-    const toml::array& array(const toml::node& node, const std::string& key, std::size_t size = 0) const {
+    [[nodiscard]] const toml::array& array(const toml::node& node, const std::string& key, std::size_t size = 0) const {
         if (!node.is_array()) {
             fail(node, key, type_name(node), "an array");
         }
@@ -123,21 +125,21 @@ class Reader {
         return out;
     }
 
-    std::string string(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] std::string string(const toml::node& node, const std::string& key) const {
         if (!node.is_string()) {
             fail(node, key, type_name(node), "a string");
         }
         return node.as_string()->get();
     }
 
-    bool boolean(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] bool boolean(const toml::node& node, const std::string& key) const {
         if (!node.is_boolean()) {
             fail(node, key, type_name(node), "true or false");
         }
         return node.as_boolean()->get();
     }
 
-    Number number(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] Number number(const toml::node& node, const std::string& key) const {
         if (node.is_integer()) {
             return Number(static_cast<long long>(node.as_integer()->get()));
         }
@@ -156,15 +158,15 @@ class Reader {
         fail(node, key, type_name(node), "a number, or a string with an exact number");
     }
 
-    Number positive(const toml::node& node, const std::string& key) const {
-        const Number value = number(node, key);
+    [[nodiscard]] Number positive(const toml::node& node, const std::string& key) const {
+        Number value = number(node, key);
         if (value.sign() <= 0) {
             fail(node, key, value.text(), "a number above 0");
         }
         return value;
     }
 
-    int index(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] int index(const toml::node& node, const std::string& key) const {
         const auto n = static_cast<std::int64_t>(out_.packing.radius.size());
         if (!node.is_integer() || node.as_integer()->get() < 0 || node.as_integer()->get() >= n) {
             fail(node, key, node.is_integer() ? std::to_string(node.as_integer()->get()) : type_name(node),
@@ -201,7 +203,7 @@ class Reader {
         }
     }
 
-    WallKind wall(const toml::node& node, const std::string& key, bool may_move) const {
+    [[nodiscard]] WallKind wall(const toml::node& node, const std::string& key, bool may_move) const {
         const std::string kind = string(node, key);
         if (kind == "absent") {
             return WallKind::absent;
@@ -279,7 +281,7 @@ class Reader {
     }
 
     /// A single value of `[expected]` as text: strings as they are, numbers exactly.
-    std::string word(const toml::node& node, const std::string& key) const {
+    [[nodiscard]] std::string word(const toml::node& node, const std::string& key) const {
         if (node.is_boolean()) {
             return boolean(node, key) ? "true" : "false";
         }

@@ -48,7 +48,7 @@ void append_equilibria(std::string& table, std::uint64_t seed, const std::string
 
 void append_increments(std::string& table, std::uint64_t seed, const std::vector<EquilibriumRow>& rows) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    for (const Rearrangement& one : rearrangements(rows)) {
+    for (const RearrangementRow& one : rearrangements(rows)) {
         table += fmt::format("{},{},{},{},{},{},{},{}\n", seed, one.segment, one.number, one.direction, one.ratio,
                              one.arcs, one.stress_increment.value_or(none), one.strain_increment.value_or(none));
     }

@@ -81,7 +81,7 @@ class SampleFolders {
 ///   log.txt, what the process printed; `isostat run scene.toml` alone makes the same run;
 /// - equilibria.csv: those of all samples, columns `seed` and those of a run without its last one, the time;
 /// - increments.csv: one row per rearrangement, columns `seed, segment, number, direction, ratio, arcs,
-///   stress_increment, strain_increment`: see `Rearrangement`; nan where there is no increment;
+///   stress_increment, strain_increment`: see `RearrangementRow`; nan where there is no increment;
 /// - samples.csv: one row per sample: `seed, status, equilibria, proved, arcs, seconds`, status as the number of
 ///   `SampleStatus`.
 /// The tables are sorted by seed and contain no time but the last column of samples.csv: how many processes or ranks

@@ -50,7 +50,7 @@ template <class Field> class Elimination {
     bool enter(int pivot);
     void act(const Node& node, int first_column);
     template <std::size_t Columns> void act_together(const Node& node, int column);
-    int choose_pivot(int preferred, std::span<const int> weight) const;
+    [[nodiscard]] int choose_pivot(int preferred, std::span<const int> weight) const;
     void store(int pivot_row);
     void join(Node& node, int pivot_row);
     void prune(int pivot_row);

@@ -9,12 +9,9 @@ template <int Dim> struct ArcDeparture<Dim>::Implementation {
 };
 
 template <int Dim>
-ArcDeparture<Dim>::ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
-                                const Factorisation& factorisation, ContactId opened, int direction,
-                                const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options,
-                                std::vector<Contact> open)
-    : implementation_(new Implementation{Follower<Dim>({start, structure, factorisation, opened, direction}, power,
-                                                       candidates, options, std::move(open))}) {
+ArcDeparture<Dim>::ArcDeparture(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power,
+                                CandidateList<Dim>& candidates, const ArcOptions& options, std::vector<Contact> open)
+    : implementation_(new Implementation{Follower<Dim>(origin, power, candidates, options, std::move(open))}) {
     implementation_->follower.begin();
 }
 template <int Dim> ArcDeparture<Dim>::ArcDeparture(ArcDeparture&&) noexcept = default;
@@ -29,14 +26,12 @@ template <int Dim> Result<Arc<Dim>> ArcDeparture<Dim>::follow() {
 }
 
 template <int Dim>
-Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
-                            const Factorisation& factorisation, ContactId opened, int direction,
-                            const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options) {
-    return ArcDeparture<Dim>(start, structure, factorisation, opened, direction, power, candidates, options).follow();
+Result<Arc<Dim>> follow_arc(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+                            const ArcOptions& options) {
+    return ArcDeparture<Dim>(origin, power, candidates, options).follow();
 }
 
 template class ArcDeparture<2>;
-template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&, ContactId,
-                                      int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
+template Result<Arc<2>> follow_arc<2>(const ArcOrigin<2>&, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
 
 } // namespace isostat

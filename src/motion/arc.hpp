@@ -32,6 +32,17 @@ struct ArcOptions {
     std::vector<Contact> resting;
 };
 
+/// What an arc starts from: a structure made at the packing, with factors that solve well for it. The gap of `opened`
+/// grows (`direction` +1; a held coordinate grows, or falls with -1).
+template <int Dim> struct ArcOrigin {
+    static_assert(has_dimension<Dim>());
+    const Packing<Dim>& packing;
+    const IsostaticStructure<Dim>& structure;
+    const Factorisation& factorisation;
+    ContactId opened;
+    int direction = 1;
+};
+
 /// The load whose power is watched along the arc: -dW/ds = F_ext . dq/ds must stay positive.
 template <int Dim> struct PowerLoad {
     static_assert(has_dimension<Dim>());
@@ -61,9 +72,8 @@ template <int Dim> struct Arc {
     int passes = 0;          ///< applications of the factors
 };
 
-/// Follows the curve { gap_l = 0, l != opened } from `start` in the direction in which the gap of `opened` grows
-/// (`direction` +1; for a held coordinate: in which it grows, or falls with -1) to the first event: a candidate's gap
-/// closes, or the power of the load vanishes.
+/// Follows the curve { gap_l = 0, l != opened } from the origin to the first event: a candidate's gap closes, or the
+/// power of the load vanishes.
 ///
 /// Predictor: tangent and curvature in the fastest coordinate, re-chosen at each step. Corrector: chord iterations with
 /// the factors of the start (a structure proved again on the way when they become stale). The event is solved directly
@@ -71,27 +81,26 @@ template <int Dim> struct Arc {
 /// through the end values and slopes comes near 0 the step is divided. This is *not* a proof that no contact was missed
 /// inside a step; the end is checked by the caller with proved bounds.
 ///
-/// \pre `structure` was made at `start`. `candidates` must be complete there; it is rebuilt when the motion leaves its
-/// reach. Failures: `unbounded`, `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided`
-/// (a dip that touches). Cost: about 10 to 30 triangular solves for a short arc; no factorisation.
+/// \pre `candidates` is complete at the origin; it is rebuilt when the motion leaves its reach. Failures: `unbounded`,
+/// `not_converged`, `not_isostatic` (the mechanism is not unique on the way), `undecided` (a dip that touches). Cost:
+/// about 10 to 30 triangular solves for a short arc; no factorisation.
 template <int Dim>
-Result<Arc<Dim>> follow_arc(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
-                            const Factorisation& factorisation, ContactId opened, int direction,
-                            const PowerLoad<Dim>& power, CandidateList<Dim>& candidates, const ArcOptions& options);
+Result<Arc<Dim>> follow_arc(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+                            const ArcOptions& options);
 
 /// Candidates anew, when less than a quarter of their reach is left at a configuration; whether they were. What every
 /// step of an arc begins with.
 template <int Dim> bool renew_candidates(CandidateList<Dim>& candidates, const Packing<Dim>& at);
 
 /// An arc of which tangent, curvature and the candidates at the start are worked out: the part that can be done beside
-/// other work on the same vertex. `follow` is then what `follow_arc` is. What the constructor refers to must outlive
-/// it. The candidates are made anew only when `renew_candidates` would. `open`: those that are not contacts of the
-/// structure, if they are at hand (`Arc::open` of the arc before). Cost: about half the solves of a short arc.
+/// other work on the same vertex. `follow` is then what `follow_arc` is. What the origin and the constructor refer to
+/// must outlive it. The candidates are made anew only when `renew_candidates` would. `open`: those that are not
+/// contacts of the structure, if they are at hand (`Arc::open` of the arc before). Cost: about half the solves of a
+/// short arc.
 template <int Dim> class ArcDeparture {
   public:
-    ArcDeparture(const Packing<Dim>& start, const IsostaticStructure<Dim>& structure,
-                 const Factorisation& factorisation, ContactId opened, int direction, const PowerLoad<Dim>& power,
-                 CandidateList<Dim>& candidates, const ArcOptions& options, std::vector<Contact> open = {});
+    ArcDeparture(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+                 const ArcOptions& options, std::vector<Contact> open = {});
     ArcDeparture(ArcDeparture&&) noexcept;
     ~ArcDeparture();
     /// The end as the start foretells it.
@@ -111,7 +120,7 @@ template <int Dim> class ArcDeparture {
 
 extern template bool renew_candidates<2>(CandidateList<2>&, const Packing<2>&);
 extern template class ArcDeparture<2>;
-extern template Result<Arc<2>> follow_arc<2>(const Packing<2>&, const IsostaticStructure<2>&, const Factorisation&,
-                                             ContactId, int, const PowerLoad<2>&, CandidateList<2>&, const ArcOptions&);
+extern template Result<Arc<2>> follow_arc<2>(const ArcOrigin<2>&, const PowerLoad<2>&, CandidateList<2>&,
+                                             const ArcOptions&);
 
 } // namespace isostat

@@ -21,15 +21,16 @@ constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips 
 } // namespace
 
 template <int Dim>
-Follower<Dim>::Follower(const ArcStart<Dim>& start, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+Follower<Dim>::Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
                         const ArcOptions& options, std::vector<Contact> open)
-    : start_(start.packing), opened_(start.structure.contacts()[start.opened.index()]), options_(options),
-      chord_(start.structure, start.factorisation, start.opened.index()),
+    : start_(origin.packing), opened_(origin.structure.contacts()[origin.opened.index()]), options_(options),
+      chord_(origin.structure, origin.factorisation, origin.opened.index()),
       scan_(opened_, options, candidates, std::move(open)), power_(power),
-      here_{start.packing, chord_.mechanism(), {}, 0}, step_limit_(options.step_fraction * start.packing.min_radius()),
-      noise_(16 * grid_step(start.packing)), here_power_(power.starts_at_zero ? 0.0 : infinity) {
+      here_{origin.packing, chord_.mechanism(), {}, 0},
+      step_limit_(options.step_fraction * origin.packing.min_radius()), noise_(16 * grid_step(origin.packing)),
+      here_power_(power.starts_at_zero ? 0.0 : infinity) {
     for (double& c : here_.tangent) {
-        c *= -start.direction;
+        c *= -origin.direction;
     }
 }
 

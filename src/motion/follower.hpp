@@ -13,19 +13,10 @@
 
 namespace isostat {
 
-/// What an arc starts from, as for `ArcDeparture`.
-template <int Dim> struct ArcStart {
-    const Packing<Dim>& packing;
-    const IsostaticStructure<Dim>& structure;
-    const Factorisation& factorisation;
-    ContactId opened;
-    int direction;
-};
-
 /// Predictor and corrector, step by step, until a gap closes or the power vanishes.
 template <int Dim> class Follower {
   public:
-    Follower(const ArcStart<Dim>& start, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
+    Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& power, CandidateList<Dim>& candidates,
              const ArcOptions& options, std::vector<Contact> open);
 
     /// Tangent, curvature and the first event that they predict, at the start.

@@ -42,14 +42,13 @@ template <int Dim> struct GapWatch<Dim>::Motion {
         double rate_open = 0;
         double rate_spread = 0; ///< how much it may change within the stretch
     };
-    View view(double from, double to) const {
+    [[nodiscard]] View view(double from, double to) const {
         const double s = 0.5 * (from + to);
         const double half = std::max(to - s, s - from) * (1 + 4 * u);
         const Course course = at(s, std::max(std::abs(from), std::abs(to)));
         return wall ? view_of_wall(course, half) : view_of_disks(course, half);
     }
 
-  private:
     /// Relative position and velocity at s, and for |s| <= h: bounds of two derivatives and of roundings.
     struct Course {
         std::array<double, Dim> x{};
@@ -59,7 +58,7 @@ template <int Dim> struct GapWatch<Dim>::Motion {
         double rounding = 0;
         double slope_rounding = 0;
     };
-    Course at(double s, double h) const {
+    [[nodiscard]] Course at(double s, double h) const {
         Course course;
         for (std::size_t k = a.size(); k-- > 0;) {
             for (std::size_t c = 0; c < static_cast<std::size_t>(components); ++c) {
@@ -86,7 +85,7 @@ template <int Dim> struct GapWatch<Dim>::Motion {
         course.slope_rounding = (2 * static_cast<double>(a.size()) + 8) * u * course.first;
         return course;
     }
-    View view_of_wall(const Course& c, double half) const {
+    [[nodiscard]] View view_of_wall(const Course& c, double half) const {
         View view;
         view.gap = c.x[0] - target;
         view.gap_open = (apart + c.rounding) * up;
@@ -97,7 +96,7 @@ template <int Dim> struct GapWatch<Dim>::Motion {
         view.rate_spread = half * c.second * up;
         return view;
     }
-    View view_of_disks(const Course& c, double half) const {
+    [[nodiscard]] View view_of_disks(const Course& c, double half) const {
         View view;
         const double product = dot(c.x, c.v);
         const double distance = std::sqrt(dot(c.x, c.x));

@@ -28,7 +28,7 @@ template <int Dim> struct PowerWatch<Dim>::Power {
     double residual = 0;        ///< |F - H f| times the speed
 
     /// P lies above this for s in [from, to].
-    double low(double from, double to) const {
+    [[nodiscard]] double low(double from, double to) const {
         const double s = 0.5 * (from + to);
         const double half = std::max(to - s, s - from) * (1 + 4 * u);
         const double h = std::max(std::abs(from), std::abs(to));

@@ -56,6 +56,7 @@ void pair_forces(const PairStretch& pairs, const double* q, const double* length
             scale[k] = depth[k] / distance[k];
         }
         for (std::size_t k = 0; k < count; ++k) {
+            // Without a branch. NOLINTNEXTLINE(clang-diagnostic-bitwise-instead-of-logical)
             const bool touching = (square[k] < range[k] * range[k]) & (square[k] > 0);
             f[k] = touching ? depth[k] : 0.0;
             scale[k] = touching ? scale[k] : 0.0;

@@ -63,7 +63,8 @@ void require_positive(const char* field, double value) {
 
 /// Random positions in a box of the wanted solid fraction and aspect, never narrower than the largest disk.
 template <int Dim>
-Packing<Dim> scatter(std::vector<double> radius, const PreparationOptions& options, std::uint64_t seed) {
+Packing<Dim> scatter(std::vector<double> radius, // NOLINT(performance-unnecessary-value-param): it is moved
+                     const PreparationOptions& options, std::uint64_t seed) {
     static_assert(Dim == 2);
     const double fraction = options.loose_fraction;
     const double aspect = options.aspect;

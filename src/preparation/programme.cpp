@@ -228,7 +228,7 @@ template <int Dim> void ContactProgramme<Dim>::start_from_last(ClpSimplex& simpl
 /// The optimum into the step, and its basis into this.
 template <int Dim>
 void ContactProgramme<Dim>::take_solution(const ClpSimplex& simplex, Rows& rows, ProgrammeStep& step) {
-    const std::size_t columns = static_cast<std::size_t>(simplex.numberColumns());
+    const auto columns = static_cast<std::size_t>(simplex.numberColumns());
     const double* const solution = simplex.primalColumnSolution();
     step.displacement = rows.on_coordinates(solution);
     for (std::size_t k = 0; k < infinitesimal_->size(); ++k) {

@@ -30,7 +30,7 @@ template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions opti
 }
 
 std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<double, double> diameters,
-                                       double jitter, std::optional<std::vector<double>> radii) {
+                                       double jitter, const std::optional<std::vector<double>>& radii) {
     PreparationOptions options;
     options.disks = disks;
     options.seed = seed;

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 class Writer {
   public:
-    Writer(fs::path output, const ReportOptions& options) : output_(std::move(output)), options_(options) {
+    Writer(fs::path output, ReportOptions options) : output_(std::move(output)), options_(std::move(options)) {
         make_directory(output_);
     }
 

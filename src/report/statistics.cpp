@@ -26,15 +26,15 @@ const EquilibriumRow* find(const Index& index, int number) {
 
 } // namespace
 
-std::vector<Rearrangement> rearrangements(const std::vector<EquilibriumRow>& rows) {
+std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& rows) {
     const Index index = by_number(rows);
-    std::vector<Rearrangement> list;
+    std::vector<RearrangementRow> list;
     for (const EquilibriumRow& row : rows) {
         const EquilibriumRow* before = find(index, row.previous);
         if (before == nullptr || row.arcs == 0) {
             continue;
         }
-        Rearrangement& one = list.emplace_back();
+        RearrangementRow& one = list.emplace_back();
         one.segment = row.segment;
         one.number = row.number;
         one.direction = row.ratio > before->ratio ? 1 : -1;
@@ -52,9 +52,9 @@ std::vector<Rearrangement> rearrangements(const std::vector<EquilibriumRow>& row
 
 namespace {
 
-Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> Rearrangement::*which) {
+Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double> RearrangementRow::*which) {
     Increments increments;
-    for (const Rearrangement& one : rearrangements(rows)) {
+    for (const RearrangementRow& one : rearrangements(rows)) {
         if (const auto& value = one.*which) {
             (one.direction > 0 ? increments.loading : increments.unloading).push_back(*value);
         }
@@ -65,11 +65,11 @@ Increments collect(const std::vector<EquilibriumRow>& rows, std::optional<double
 } // namespace
 
 Increments stress_increments(const std::vector<EquilibriumRow>& rows) {
-    return collect(rows, &Rearrangement::stress_increment);
+    return collect(rows, &RearrangementRow::stress_increment);
 }
 
 Increments strain_increments(const std::vector<EquilibriumRow>& rows) {
-    return collect(rows, &Rearrangement::strain_increment);
+    return collect(rows, &RearrangementRow::strain_increment);
 }
 
 std::vector<std::pair<double, double>> complementary_distribution(std::vector<double> values) {

@@ -11,7 +11,7 @@
 namespace isostat {
 
 /// What led from one equilibrium to the next: a change of sigma_2 at constant structure, then a rearrangement.
-struct Rearrangement {
+struct RearrangementRow {
     int segment = 0;
     int number = 0;    ///< of the equilibrium reached
     int direction = 1; ///< +1: sigma_2 increased, -1: decreased
@@ -25,7 +25,7 @@ struct Rearrangement {
 };
 
 /// The rearrangements of a run in the order of the rows. A stress reached inside a supported interval is none.
-std::vector<Rearrangement> rearrangements(const std::vector<EquilibriumRow>& rows);
+std::vector<RearrangementRow> rearrangements(const std::vector<EquilibriumRow>& rows);
 
 /// Increments between equilibria, loading and unloading apart. All values are positive.
 struct Increments {

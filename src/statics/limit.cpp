@@ -48,13 +48,13 @@ template <int Dim> class LimitContest final : public Contest {
   private:
     /// Proved sign of the rate of a force in the direction: from the enclosure, or from the ladder.
     Order rate_sign(ContactId l);
-    bool carried_by_others(const Enclosure& slope) const;
-    Failure open_rate(ContactId l, const Order& order) const;
+    [[nodiscard]] bool carried_by_others(const Enclosure& slope) const;
+    [[nodiscard]] Failure open_rate(ContactId l, const Order& order) const;
     [[nodiscard]] Named<Dim> name_of(ContactId l) const { return name(statics_, l); }
     /// Largest slope: what a zero slope is compared with.
-    double slope_size() const;
+    [[nodiscard]] double slope_size() const;
     /// The force at the limit, wherever within its error that is.
-    Enclosure at_limit(ContactId l) const;
+    [[nodiscard]] Enclosure at_limit(ContactId l) const;
     Result<Comparison> with_a_rate_of_order_eps(ContactId l, const Order& rate);
     Result<Comparison> at_first_order(ContactId l, ContactId first, const Order& order);
 

@@ -17,17 +17,16 @@ using roundoff::u;
 
 template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-                      const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options,
-                      const VertexEnclosure* vertex, const Statics* near, std::vector<double> forces)
+                      const Factorisation& factorisation, const InverseBound& inverse, StaticsHints<Dim> hints)
     : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
       sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
-      ladder_(packing, structure, factorisation, inverse, options, vertex), pattern_(packing, structure) {
+      ladder_(packing, structure, factorisation, inverse, hints.ladder, hints.vertex), pattern_(packing, structure) {
     const DofMap<Dim>& dofs = structure.dofs();
     // Under true stresses a wall's force follows the length of the other wall.
     const bool follows = load.kind == LoadKind::true_stress;
     const double stress = std::abs(*std::max_element(load.stress.begin(), load.stress.end(),
                                                      [](double a, double b) { return std::abs(a) < std::abs(b); }));
-    const auto known = [near](Part part) {
+    const auto known = [near = hints.near](Part part) {
         const std::span<const double> x = near != nullptr ? near->ladder_.known(part) : std::span<const double>();
         return std::vector<double>(x.begin(), x.end());
     };
@@ -36,7 +35,7 @@ Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const 
         now.products.push_back({dofs.dof_of(static_cast<std::size_t>(wall.coordinate)), wall.stress, wall.length});
     }
     ladder_.add(on_dofs(load.external_force(packing), dofs), std::move(now),
-                forces.empty() && near != nullptr ? near->guess(sigma_) : std::move(forces));
+                hints.forces.empty() && hints.near != nullptr ? hints.near->guess(sigma_) : std::move(hints.forces));
     ladder_.add(on_dofs(load.unit_force(packing), dofs), {{}, follows ? 1.0 : 0.0}, known(unit));
     ladder_.add(on_dofs(load.infinitesimal, dofs), {}, known(infinitesimal_part));
     loaded_rows_ = load.loaded_rows(packing, dofs);

@@ -16,6 +16,19 @@
 
 namespace isostat {
 
+template <int Dim> class Statics;
+
+/// What the statics of a vertex may be told besides.
+template <int Dim> struct StaticsHints {
+    LadderOptions ladder{};
+    /// Every answer is about the true vertex that it encloses; null: about the stored configuration (ForceLadder).
+    const VertexEnclosure* vertex = nullptr;
+    /// Of a neighbouring vertex with the contacts in the same places: its forces are where the solves start. Not used
+    /// afterwards.
+    const Statics<Dim>* near = nullptr;
+    std::vector<double> forces{}; ///< empty, or a better guess of the finite parts
+};
+
 /// f_l(sigma) = f_l(sigma_0) + (sigma - sigma_0) * unit_l, plus eps * infinitesimal_l, sigma_0 the present loaded
 /// stress (paper: alpha_l sigma_1 + beta_l (sigma_2 - sigma_1), unit_l = beta_l), for the exact matrix of the stored
 /// configuration and eps > 0 infinitesimal. sigma is the loaded stress (sigma_2). Forces: stress x length; positive in
@@ -25,14 +38,10 @@ template <int Dim> class Statics {
 
   public:
     /// Solves for the present load; the slopes and the infinitesimal parts are solved when they are first asked for
-    /// (most vertices of a rearrangement need neither). The arguments must outlive the object. With `vertex` every
-    /// answer is about the true vertex that it encloses, without it about the stored configuration (ForceLadder). Cost:
-    /// 2 solves, and 2 for each part asked for.
-    /// `near`: the statics of a neighbouring vertex with the contacts in the same places, whose forces are where the
-    /// solves start; not used afterwards. `forces`: empty, or a better guess of the finite parts.
+    /// (most vertices of a rearrangement need neither). The arguments must outlive the object. Cost: 2 solves, and 2
+    /// for each part asked for.
     Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
-            const Factorisation& factorisation, const InverseBound& inverse, LadderOptions options = {},
-            const VertexEnclosure* vertex = nullptr, const Statics* near = nullptr, std::vector<double> forces = {});
+            const Factorisation& factorisation, const InverseBound& inverse, StaticsHints<Dim> hints = {});
 
     /// Finite part at the loaded stress sigma (taken as exact).
     [[nodiscard]] Enclosure force(ContactId contact, double sigma) const;

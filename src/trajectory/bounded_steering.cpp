@@ -58,9 +58,10 @@ template <int Dim> Result<Arc<Dim>> BoundedSteering<Dim>::attempt() {
         return none;
     }
     const Opening& opening = start_.opening;
-    return follow_arc(from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
-                      opening.direction, PowerLoad<Dim>{start_.load, opening.infinitesimal, start_.kind == "limit"},
-                      candidates_, arc_options_);
+    const ArcOrigin<Dim> origin{from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
+                                opening.direction};
+    return follow_arc(origin, PowerLoad<Dim>{start_.load, opening.infinitesimal, start_.kind == "limit"}, candidates_,
+                      arc_options_);
 }
 
 template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {

@@ -28,7 +28,7 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
   private:
     void refresh();
     Result<Arc<Dim>> attempt();
-    ArcProposal<Dim> proposal(Arc<Dim> path) const;
+    [[nodiscard]] ArcProposal<Dim> proposal(Arc<Dim> path) const;
     void improve_end(Arc<Dim>& path) const;
     [[nodiscard]] bool went_too_far(const ArcProof<Dim>& refused) const;
     [[nodiscard]] bool may_graze(const ArcProof<Dim>& refused) const;

@@ -104,8 +104,8 @@ template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& pr
         block = Factorisation::of_moving_block(*structure_, static_cast<int>(opening.contact.index()));
     }
     const auto attempt = [&](const Factorisation& factors) {
-        return follow_arc(*packing_, *structure_, factors, opening.contact, opening.direction, power, candidates_,
-                          arc_options_);
+        return follow_arc(ArcOrigin<Dim>{*packing_, *structure_, factors, opening.contact, opening.direction}, power,
+                          candidates_, arc_options_);
     };
     auto* departure = here_ ? here_->departure(opening) : nullptr;
     if (departure != nullptr) {

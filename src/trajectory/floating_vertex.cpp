@@ -85,9 +85,9 @@ template <int Dim> void FloatingVertex<Dim>::depart(const Arrival& arrival, std:
 
 template <int Dim> void FloatingVertex<Dim>::begin_arc(const Arrival& arrival) {
     departure_->arc = Future<std::unique_ptr<ArcDeparture<Dim>>>([this, &there = *departure_, open = arrival.open] {
-        return std::make_unique<ArcDeparture<Dim>>(packing, structure, there.factorisation, there.opened, +1,
-                                                   PowerLoad<Dim>{&context_.load, false, false}, context_.candidates,
-                                                   context_.arc, open);
+        return std::make_unique<ArcDeparture<Dim>>(
+            ArcOrigin<Dim>{packing, structure, there.factorisation, there.opened},
+            PowerLoad<Dim>{&context_.load, false, false}, context_.candidates, context_.arc, open);
     });
 }
 

@@ -18,16 +18,16 @@ Vertex<Dim>::Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors
     : packing(std::move(p)), structure(proof.unproved()), factorisation(std::move(factors)),
       inverse(bound_inverse(structure, factorisation, cache, [&] { return proof.is_regular(); })),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, options, &enclosure), ladder(options) {}
+      statics(packing, load, structure, factorisation, inverse, {options, &enclosure}), ladder(options) {}
 
 template <int Dim>
 Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate,
-                    const InverseBound& bound, const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near,
-                    std::vector<double> forces)
+                    const InverseBound& bound, const Load<Dim>& load, StaticsHints<Dim> hints)
     : packing(std::move(p)), structure(std::move(s)), factorisation(structure, std::move(approximate)), inverse(bound),
       enclosure(enclose_vertex(packing, structure, factorisation, inverse)),
-      statics(packing, load, structure, factorisation, inverse, options, &enclosure, &near, std::move(forces)),
-      ladder(options) {}
+      statics(packing, load, structure, factorisation, inverse,
+              {hints.ladder, &enclosure, hints.near, std::move(hints.forces)}),
+      ladder(hints.ladder) {}
 
 namespace {
 
@@ -155,9 +155,9 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::prove(const Vertex& from, ArcP
     if (!bound) {
         return std::unique_ptr<Vertex>();
     }
-    std::unique_ptr<Vertex> vertex(
-        new Vertex(arc.end, IsostaticStructure<Dim>::exchanged(std::move(*arc.contacts), bound->proof),
-                   std::move(*arc.approximate), bound->bound, load, options, from.statics, std::move(arc.forces)));
+    std::unique_ptr<Vertex> vertex(new Vertex(
+        arc.end, IsostaticStructure<Dim>::exchanged(std::move(*arc.contacts), bound->proof),
+        std::move(*arc.approximate), bound->bound, load, {options, nullptr, &from.statics, std::move(arc.forces)}));
     vertex->cost_before = arc.cost_before;
     if (auto failure = vertex->lacking()) {
         return *failure;

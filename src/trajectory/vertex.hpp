@@ -102,7 +102,7 @@ template <int Dim> class Vertex {
     Vertex(Packing<Dim> p, RankProof<Dim>& proof, Factorisation factors, const Load<Dim>& load,
            InverseBoundCache& cache, LadderOptions options);
     Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInverse approximate, const InverseBound& bound,
-           const Load<Dim>& load, LadderOptions options, const Statics<Dim>& near, std::vector<double> forces);
+           const Load<Dim>& load, StaticsHints<Dim> hints);
     static Result<std::unique_ptr<Vertex>> prove(const Vertex& from, ArcProposal<Dim>& arc, const Load<Dim>& load,
                                                  InverseBoundCache& cache, LadderOptions options);
     /// Signs of the gaps that double-double left open, with as many bits as the ladder has, put into `gaps`; or the

@@ -41,7 +41,7 @@ class BlockCholesky {
     };
 
     struct Arrays;
-    std::size_t load_column(const Arrays& at, std::size_t j, double shift) const;
+    [[nodiscard]] std::size_t load_column(const Arrays& at, std::size_t j, double shift) const;
     static void subtract_columns(const Arrays& at, std::size_t begin, std::size_t end);
     void arrange(const std::vector<int>& order);
     void analyse();

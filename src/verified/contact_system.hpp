@@ -60,11 +60,11 @@ template <int Dim, class T> class ContactSystem {
         Bound norm = 0; ///< of the exact one, from above
         double largest = 0;
     };
-    Residual residual(const std::vector<T>& load, const std::vector<T>& x, bool transposed) const;
+    [[nodiscard]] Residual residual(const std::vector<T>& load, const std::vector<T>& x, bool transposed) const;
     /// Bound of |(H* - A) x|: what the distance to the true vertex does to forces.
-    Bound turned(const std::vector<T>& x, bool transposed) const;
-    BoundedVector<T> refine(const std::vector<T>& load, const Bound& load_error, std::vector<T> x,
-                            bool transposed) const;
+    [[nodiscard]] Bound turned(const std::vector<T>& x, bool transposed) const;
+    [[nodiscard]] BoundedVector<T> refine(const std::vector<T>& load, const Bound& load_error, std::vector<T> x,
+                                          bool transposed) const;
 
     A arithmetic_;
     const Packing<Dim>& packing_;

@@ -11,7 +11,7 @@ template <> struct Eigen::NumTraits<dd_real> : Eigen::GenericNumTraits<dd_real> 
     using Real = dd_real;
     using NonInteger = dd_real;
     using Nested = dd_real;
-    enum {
+    enum { // NOLINTBEGIN(readability-identifier-naming): as Eigen names them
         IsComplex = 0,
         IsInteger = 0,
         IsSigned = 1,
@@ -19,7 +19,7 @@ template <> struct Eigen::NumTraits<dd_real> : Eigen::GenericNumTraits<dd_real> 
         ReadCost = 2,
         AddCost = 20,
         MulCost = 30
-    };
+    }; // NOLINTEND(readability-identifier-naming)
 };
 
 namespace isostat {

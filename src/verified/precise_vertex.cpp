@@ -10,7 +10,7 @@ template <int Dim> bool PreciseVertex<Dim>::enclose(int bits) {
 
 template <int Dim> PreciseInterval PreciseVertex<Dim>::operator[](std::size_t k) const {
     const int bits = vertex_->at().arithmetic().bits();
-    const PreciseInterval stored = difference(packing_.q[k], 0, bits);
+    PreciseInterval stored = difference(packing_.q[k], 0, bits);
     if (structure_.dofs().dof_of(k) < 0) {
         return stored;
     }

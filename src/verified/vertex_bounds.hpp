@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <vector>
@@ -49,7 +50,7 @@ inline double separation_weight(const Contact& contact) {
 inline double largest_multiple(const std::vector<Contact>& contacts) {
     int most = 1;
     for (const Contact& contact : contacts) {
-        for (const int m : contact.image.m) {
+        for (const std::int8_t m : contact.image.m) {
             most = std::max(most, std::abs(m));
         }
     }

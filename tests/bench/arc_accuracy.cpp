@@ -200,11 +200,11 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
         if (power.infinitesimal) {
             block = Factorisation::of_moving_block(*structure, static_cast<int>(slot));
         }
-        auto arc =
-            follow_arc(packing, *structure, block ? *block : factors, ContactId(slot), +1, power, candidates, options);
+        auto arc = follow_arc(ArcOrigin<2>{packing, *structure, block ? *block : factors, ContactId(slot)}, power,
+                              candidates, options);
         if (!arc.ok() || arc.value().closed != record.closed) {
-            arc = follow_arc(packing, *structure, Factorisation(*structure), ContactId(slot), +1, power, candidates,
-                             options);
+            arc = follow_arc(ArcOrigin<2>{packing, *structure, Factorisation(*structure), ContactId(slot)}, power,
+                             candidates, options);
         }
         if (!arc.ok() || arc.value().closed != record.closed) {
             ++out.elsewhere;

@@ -58,7 +58,7 @@ struct Rolling {
         CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
         ArcOptions options;
         options.step_fraction = step_fraction;
-        return follow_arc(state.packing, structure.value(), factorisation, ContactId(1), +1,
+        return follow_arc(ArcOrigin<2>{state.packing, structure.value(), factorisation, ContactId(1)},
                           PowerLoad<2>{&state.load, false, false}, candidates, options);
     }
     static double angle(const Arc<2>& arc) { return std::atan2(arc.end.q[5], arc.end.q[4]); }
@@ -185,7 +185,7 @@ BOOST_AUTO_TEST_CASE(a_motion_without_end_is_reported) {
     CandidateList<2> candidates = find_candidates(rolling.state.packing, candidate_fraction);
     ArcOptions options;
     options.max_steps = 500;
-    const auto arc = follow_arc(rolling.state.packing, structure.value(), factorisation, ContactId(1), +1,
+    const auto arc = follow_arc(ArcOrigin<2>{rolling.state.packing, structure.value(), factorisation, ContactId(1)},
                                 PowerLoad<2>{&rolling.state.load, false, false}, candidates, options);
     BOOST_TEST_REQUIRE(!arc.ok());
     BOOST_TEST((arc.failure().kind == FailureKind::unbounded));

@@ -20,8 +20,11 @@ struct Start {
     CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
 
     [[nodiscard]] ArcDeparture<2> depart(std::size_t slot, std::vector<Contact> open = {}) {
-        return {state.packing, structure,    factorisation,  ContactId(slot), +1, {&state.load, false, false},
-                candidates,    ArcOptions{}, std::move(open)};
+        return {{state.packing, structure, factorisation, ContactId(slot)},
+                {&state.load, false, false},
+                candidates,
+                ArcOptions{},
+                std::move(open)};
     }
 };
 

@@ -130,8 +130,8 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         ArcOptions arc_options;
         arc_options.closes = record.closed;
         const PowerLoad<2> power{&arc.load, arc.infinitesimal, arc.at_limit};
-        auto followed =
-            follow_arc(here, structure.value(), factorisation, arc.opened, +1, power, candidates, arc_options);
+        auto followed = follow_arc(ArcOrigin<2>{here, structure.value(), factorisation, arc.opened}, power, candidates,
+                                   arc_options);
         if (!followed.ok() || followed.value().closed != record.closed) {
             path.stopped = "arc " + std::to_string(a + 1) + " was not followed again";
             break;

@@ -53,7 +53,7 @@ struct Statement {
         : structure(std::move(IsostaticStructure<2>::prove(state.packing, state.contacts).value())),
           factorisation(structure), inverse(bound_inverse(structure, factorisation, cache)),
           vertex(enclose_vertex(state.packing, structure, inverse)),
-          statics(state.packing, state.load, structure, factorisation, inverse, {}, truth ? &vertex : nullptr) {}
+          statics(state.packing, state.load, structure, factorisation, inverse, {{}, truth ? &vertex : nullptr}) {}
 };
 
 /// Unit disks 0 and 1 on the bottom, 2 on top of 0; forces in y on the disks.

@@ -26,7 +26,7 @@ struct AtVertex {
         : state(std::move(s)), structure(proved(state)), factorisation(structure),
           inverse(isostat::bound_inverse(structure, factorisation, cache)),
           vertex(isostat::enclose_vertex(state.packing, structure, inverse)),
-          statics(state.packing, state.load, structure, factorisation, inverse, options, truth ? &vertex : nullptr) {}
+          statics(state.packing, state.load, structure, factorisation, inverse, {options, truth ? &vertex : nullptr}) {}
     static isostat::IsostaticStructure<2> proved(const isostat::State<2>& s) {
         auto result = isostat::IsostaticStructure<2>::prove(s.packing, s.contacts);
         BOOST_TEST_REQUIRE(result.ok());

@@ -64,7 +64,7 @@ struct Exchange {
     Result<Arc<2>> open(int contact) {
         CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
         const PowerLoad<2> power{&state.load, false, true};
-        return follow_arc<2>(state.packing, structure, factorisation, ContactId(contact), +1, power, candidates, {});
+        return follow_arc<2>({state.packing, structure, factorisation, ContactId(contact)}, power, candidates, {});
     }
     [[nodiscard]] std::vector<double> on_dofs(const std::vector<double>& tangent) const {
         return tangent; // box, nothing fixed: the numbering is the identity
@@ -351,7 +351,7 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
         (void)near.force(ContactId(0), sigma);
         LadderOptions options;
         options.first_accuracy = 1e-8; // rougher is refused: records hold to 1e-7
-        Statics<2> rough(packing, from.state.load, structure, stale, proved->bound, options, nullptr, &near);
+        Statics<2> rough(packing, from.state.load, structure, stale, proved->bound, {options, nullptr, &near});
         Statics<2> exact(packing, from.state.load, structure, fresh, proved->bound);
         BOOST_TEST_REQUIRE(exact.climb()); // double-double
         const auto differ = [&] {

@@ -163,8 +163,8 @@ bool predictor_steps(const ReferencePath& path, int n, Table& table) {
             const PowerLoad<2> power{&arc.load, arc.infinitesimal, arc.at_limit};
             const double begin = cpu_seconds();
             const Factorisation factorisation(structure.value());
-            const auto followed =
-                follow_arc(arc.start, structure.value(), factorisation, arc.opened, +1, power, candidates, options);
+            const auto followed = follow_arc(ArcOrigin<2>{arc.start, structure.value(), factorisation, arc.opened},
+                                             power, candidates, options);
             time += cpu_seconds() - begin;
             if (!followed.ok()) {
                 ++failed;

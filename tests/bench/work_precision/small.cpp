@@ -106,8 +106,9 @@ bool small_displacements(const Settings& settings) {
                 options.closes = record.closed;
                 const PowerLoad<2> power{&load, record.kind == "rattler", record.kind == "limit"};
                 begin = cpu_seconds();
-                const auto followed = follow_arc(here, structure.value(), factorisation, ContactId(opened), +1, power,
-                                                 candidates, options);
+                const auto followed =
+                    follow_arc(ArcOrigin<2>{here, structure.value(), factorisation, ContactId(opened)}, power,
+                               candidates, options);
                 const double exactly = cpu_seconds() - begin;
                 if (!followed.ok() || !event.ok() || followed.value().closed != record.closed) {
                     skip = true;

@@ -52,7 +52,8 @@ struct ZeroHolds {
 /// Applies the rule at the loaded stress `sigma`. The two ends of a strut that a power turn (`zero.fresh`) leaves
 /// straight carry exactly the same force there (S4): by the rules that compare forces they are ordered by the
 /// infinitesimal loads.
-/// Contacts that carry nothing at such a turn (S4 (c)) do not compete; `undecided` when nothing else is negative.
+/// Contacts that carry nothing at such a turn (S4 (c)) do not compete; `undecided` when nothing else is negative, and
+/// when every force is positive at a turn that carries some (S3).
 /// `random_bits` is used by the rule `random` only. May climb `statics` to double-double. Failure: `undecided` (a
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 /// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that

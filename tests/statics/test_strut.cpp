@@ -193,6 +193,23 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_straight_strut_that_its_own_load_pulls_at_open
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_turn_at_which_every_force_is_positive_is_no_equilibrium) {
+    // One disk upright on another: a maximum of the potential, which no arc that lowers it reaches (S3).
+    const auto on_top = [](double x) {
+        return in_box({{1, 1, 1}, {1, x, 3}}, 2, 4, 1, 1, {left(0), bottom(0), right(0), pair(0, 1), top(1), held(2)});
+    };
+    State<2> state = on_top(1 + 1e-9);
+    AtVertex v(state);
+    const auto fresh = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, find(state, held(2)), 0);
+    BOOST_TEST_REQUIRE(!fresh.ok());
+    BOOST_TEST((fresh.failure().kind == FailureKind::undecided), fresh.failure().message());
+    // Held earlier it has a force, and is let go.
+    const auto later = decide_opening(v.statics, v.sigma(), OpeningRule::most_negative, ContactId(), 0);
+    BOOST_TEST_REQUIRE(later.ok(), why(later));
+    BOOST_TEST_REQUIRE(later.value().opening.has_value());
+    BOOST_TEST((v.contact(later.value().opening->contact) == held(2)));
+}
+
 BOOST_AUTO_TEST_CASE(a_straight_strut_without_a_load_of_its_own_is_a_tie) {
     State<2> state = row_under_traction(1);
     state.load.infinitesimal[0] = 0;

@@ -120,11 +120,11 @@ template <int Dim> void read_cell(const Field& field, Packing<Dim>& packing) {
         axes.fail("a periodic axis; a box has no \"cell\"");
     }
     read_moves(field.at("moves"), cell);
-    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
-        packing.q.push_back(field.has("tilt") ? field.at("tilt").at(t).number() : 0);
-    }
     if (field.has("tilt")) {
         field.at("tilt").require_size(Cell<Dim>::tilts, "one tilt per pair of axes");
+    }
+    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+        packing.q.push_back(field.has("tilt") ? field.at("tilt").at(t).number() : 0);
     }
     if (field.has("pin")) {
         cell.pin = field.at("pin").integer(0, packing.disk_count() - 1);

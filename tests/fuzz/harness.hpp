@@ -87,7 +87,8 @@ inline Count fuzz(const std::string& name, const std::string& text, int samples,
 inline std::string unsound(const Packing<2>& packing) {
     const auto finite = [](double x) { return std::isfinite(x); };
     const auto positive = [](double r) { return r > 0 && std::isfinite(r); };
-    if (packing.radius.empty() || packing.q.size() != 2 * packing.radius.size() + 2 ||
+    const std::size_t lengths = packing.cell.any() ? 3 : 2; // with a tilt
+    if (packing.radius.empty() || packing.q.size() != 2 * packing.radius.size() + lengths ||
         !(packing.fixed.empty() || packing.fixed.size() == packing.radius.size())) {
         return "sizes do not fit";
     }
@@ -109,8 +110,9 @@ inline std::string unsound(const State<2>& state) {
     }
     for (const Contact& c : state.contacts) {
         const bool pair = c.kind == ContactKind::disk_disk;
-        if (c.i < 0 || c.j < 0 || c.i >= (c.kind == ContactKind::held ? 2 * n + 2 : n) ||
-            !(pair ? c.i < c.j && c.j < n : c.j < 2)) {
+        const bool ordered = c.i < c.j || (c.i == c.j && c.image != Image());
+        if (c.i < 0 || c.j < 0 || c.i >= (c.kind == ContactKind::held ? static_cast<int>(state.packing.q.size()) : n) ||
+            !(pair ? ordered && c.j < n : c.j < 2)) {
             return "a contact is out of range";
         }
     }

@@ -5,6 +5,7 @@
 #include "io/vertex_text.hpp"
 #include "scene/radii_file.hpp"
 #include "scene/seed.hpp"
+#include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
@@ -71,6 +72,27 @@ BOOST_AUTO_TEST_CASE(mutated_states_and_vertices_are_refused_by_name_or_are_soun
             .refused > 500);
 }
 
+BOOST_AUTO_TEST_CASE(mutated_states_of_cells_are_refused_by_name_or_are_sound_and_can_be_certified) {
+    const auto check = [](const std::string& changed) {
+        const StateFile<2> file = parse_any_state<2>(changed, "FILE");
+        const std::string written = state_text(file.state, file.forces);
+        const StateFile<2> again = parse_any_state<2>(written, "FILE");
+        if (state_text(again.state, again.forces) != written) {
+            return std::string("it is not what is read again");
+        }
+        Certificate certificate;
+        certificate.state = file.state;
+        certificate.claims = certify(file.state).claims;
+        return verify(certificate).verdict == Verdict::refuted ? std::string("proved and refuted")
+                                                               : unsound(file.state);
+    };
+    const std::vector<double> forces(3, 1.0);
+    BOOST_TEST(
+        fuzz::fuzz("tilted cell", state_text<2>(cells::one_tilted_disk(2, 1, 0.25), forces), 3000, check).refused >
+        500);
+    BOOST_TEST(fuzz::fuzz("rectangular cell", state_text<2>(cells::two_disks(false, 1, 1)), 3000, check).refused > 500);
+}
+
 BOOST_AUTO_TEST_CASE(states_are_refused_wherever_they_are_cut) {
     const std::string state = state_text<2>(small());
     for (std::size_t size = 0; size + 2 < state.size(); ++size) {
@@ -134,6 +156,9 @@ BOOST_AUTO_TEST_CASE(mutated_scenes_are_refused_by_name_or_can_be_read) {
     const std::string radii = "[packing]\nradii = [1.0, 1.5, 0x10, 2e-1]\nseed = 3\n[load]\nsigma1 = 2.0\n"
                               "[[programme]]\ndo = \"up\"\nequilibria = 3\n[run]\nties = \"perturb\"\n";
     BOOST_TEST(fuzz::fuzz("scene with radii", radii, 3000, read).refused > 200);
+    const std::string cell = "[packing]\ndisks = 60\ndiameters = [1.0, 2.0]\n[cell]\nkind = \"tilted\"\n"
+                             "[[programme]]\ndo = \"down\"\nequilibria = 2\n";
+    BOOST_TEST(fuzz::fuzz("scene with a cell", cell, 3000, read).refused > 200);
 }
 
 BOOST_AUTO_TEST_CASE(mutated_crafted_packings_are_refused_by_name_or_can_be_read) {

@@ -10,6 +10,7 @@ namespace {
 constexpr double slow = 0.25;
 
 #ifdef __SIZEOF_FLOAT128__
+// __extension__ has no form with `using`: NOLINTNEXTLINE(modernize-use-using)
 __extension__ typedef __float128 Quadruple;
 #else
 using Quadruple = long double;

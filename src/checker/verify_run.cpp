@@ -10,6 +10,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace isostat {
 
 namespace {
@@ -217,6 +220,17 @@ class Replay {
         return static_cast<std::size_t>(&event - records_.events.data());
     }
 
+    /// In a cell a run puts the pinned disk on its grid too, which becomes coarser as coordinates grow; here it stays.
+    bool pin_may_have_moved() {
+        const Packing<2>& packing = here_.state->packing;
+        coarsest_ = std::max(coarsest_, grid_step(packing));
+        const auto off = [&](std::size_t a) {
+            return packing.cell.periodic[a] &&
+                   std::fmod(packing.q[2 * static_cast<std::size_t>(packing.cell.pin) + a], coarsest_) != 0;
+        };
+        return off(0) || off(1);
+    }
+
     /// What a record says opens and closes at `here_`.
     struct Change {
         std::size_t position; ///< of what opens among the contacts
@@ -230,6 +244,7 @@ class Replay {
 
     /// One arc from `here_`, which becomes its end. False: undecided, or wrong.
     bool arc(const EventRecord& event) {
+        const bool pin_moved = pin_may_have_moved();
         if (!records_.certified_arcs) { // arcs with a witness are proved from it
             lookahead_.look_ahead(here_, index_of(event));
         }
@@ -239,6 +254,11 @@ class Replay {
         }
         if (event.power_turn && !event.held_at) {
             return judged(Objection{false, "the record does not say where the coordinate is held"}, event.where);
+        }
+        if (event.power_turn && pin_moved) {
+            return judged(Objection{false, "where the coordinate is held is said from the pinned disk, which a coarser "
+                                           "grid may have moved by a rounding"},
+                          event.where);
         }
         const bool opening = judged(asked([&] { return check_opening(event, *change); }), event.where);
         if (stopped()) {
@@ -500,6 +520,7 @@ class Replay {
         std::size_t first_event = 0; ///< of the rearrangement towards it
     };
     std::vector<Reached> reached_; ///< by number
+    double coarsest_ = 0;          ///< largest step of the grids of the configurations so far
     bool certain_ = false;         ///< ends of arcs that steps in double lead to are proved to be on the way
 };
 

@@ -73,6 +73,26 @@ template <int Dim> bool overlaps_at_first_order(const Vertex<Dim>& vertex) {
                                            [](const auto& pair) { return pair.second.negative(); });
 }
 
+/// A grid that became coarser rounds what a held coordinate is counted from, or the coordinate: then it is held
+/// elsewhere at the end of the arc, and the end belongs to another curve.
+template <int Dim> bool holds_elsewhere(const Vertex<Dim>& from, const ArcProposal<Dim>& arc) {
+    const std::vector<Contact>& contacts = from.structure.contacts();
+    const std::vector<double>& before = from.packing.q;
+    bool holds = arc.record.closed.kind == ContactKind::held;
+    bool moved = false;
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        if (contacts[l].kind == ContactKind::held && ContactId(l) != arc.opening.contact) {
+            const auto k = static_cast<std::size_t>(contacts[l].i);
+            holds = true;
+            moved = moved || arc.end.q[k] != before[k];
+        }
+    }
+    for (std::size_t k = 0; holds && k < before.size(); ++k) {
+        moved = moved || (from.structure.dofs().dof_of(k) < 0 && arc.end.q[k] != before[k]);
+    }
+    return moved;
+}
+
 } // namespace
 
 template <int Dim> void ArcProof<Dim>::count(const Decision& decision) {
@@ -158,6 +178,10 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         return located(failure, words("at the end of the arc that opens {} and closes {}",
                                       named<Dim>(proof.record.opened), named<Dim>(proof.record.closed)));
     };
+    if (holds_elsewhere(from, arc)) {
+        return at_end(Failure{FailureKind::undecided, "coordinates are held, and the grid became coarser: where they "
+                                                      "are held would change by a rounding"});
+    }
     LadderOptions options = ladder();
     options.first_accuracy =
         first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy

@@ -76,7 +76,7 @@ std::string event_line(const ArcRecord<2>& arc) {
     line["step"] = arc.step;
     line["equilibrium"] = arc.equilibrium;
     line["arc"] = arc.arc;
-    line["kind"] = arc.kind;
+    line["kind"] = to_string(arc.kind);
     line["opened"] = to_string<2>(arc.opened);
     line["closed"] = to_string<2>(arc.closed);
     line["power_turn"] = arc.power_turn;

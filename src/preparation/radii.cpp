@@ -1,9 +1,9 @@
 #include "preparation/random.hpp"
-#include "verified/real.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/preparation/preparation.hpp>
 
+#include <boost/multiprecision/mpfr.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,24 +16,21 @@ namespace {
 
 using preparation::Uniform;
 
-constexpr mpfr_prec_t as_double = 53;
-/// Of the inverse of a power law: 1 - exponent may be as small as 2^-53 and is divided by.
-constexpr mpfr_prec_t ample = 200;
+/// Enough for the inverse of a power law: 1 - exponent may be as small as 2^-53 and is divided by. Logarithms and
+/// exponentials are those of the digits, rounded once: the same bits on every machine.
+using Precise =
+    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<60>, boost::multiprecision::et_off>;
 
 bool positive(double value) {
     return value > 0 && std::isfinite(value);
 }
 
 double logarithm(double x) {
-    Real value(x, as_double);
-    mpfr_log(value.get(), value.get(), MPFR_RNDN);
-    return value.nearest();
+    return log(Precise(x)).convert_to<double>();
 }
 
 double exponential(double x) {
-    Real value(x, as_double);
-    mpfr_exp(value.get(), value.get(), MPFR_RNDN);
-    return value.nearest();
+    return exp(Precise(x)).convert_to<double>();
 }
 
 /// Standard normal: Marsaglia's polar method (SIAM Review 6, 1964), the second number of a pair left out.
@@ -51,23 +48,10 @@ double normal(Uniform& uniform) {
 /// smallest x exp(t), t = ln(1 + u (exp(m ln r) - 1)) / m with r = largest / smallest, m = 1 - exponent; t = u ln r for
 /// m = 0.
 double power_law(const DiameterLaw& law, double u) {
-    Real t(law.largest, ample);
-    mpfr_div_d(t.get(), t.get(), law.smallest, MPFR_RNDN);
-    mpfr_log(t.get(), t.get(), MPFR_RNDN);
-    Real m(1, ample);
-    mpfr_sub_d(m.get(), m.get(), law.exponent, MPFR_RNDN);
-    if (m.sign() == 0) {
-        mpfr_mul_d(t.get(), t.get(), u, MPFR_RNDN);
-    } else {
-        mpfr_mul(t.get(), t.get(), m.get(), MPFR_RNDN);
-        mpfr_expm1(t.get(), t.get(), MPFR_RNDN);
-        mpfr_mul_d(t.get(), t.get(), u, MPFR_RNDN);
-        mpfr_log1p(t.get(), t.get(), MPFR_RNDN);
-        mpfr_div(t.get(), t.get(), m.get(), MPFR_RNDN);
-    }
-    mpfr_exp(t.get(), t.get(), MPFR_RNDN);
-    mpfr_mul_d(t.get(), t.get(), law.smallest, MPFR_RNDN);
-    return t.nearest();
+    const Precise range = log(Precise(law.largest) / law.smallest);
+    const Precise m = Precise(1) - law.exponent;
+    const Precise t = m == 0 ? Precise(u * range) : Precise(log1p(u * expm1(m * range)) / m);
+    return Precise(law.smallest * exp(t)).convert_to<double>();
 }
 
 double draw(const DiameterLaw& law, Uniform& uniform) {

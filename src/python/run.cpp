@@ -165,7 +165,9 @@ void bind_arc(py::module_& module) {
         .def_readonly("step", &Arc::step, "Number of the arc in the run, from 1.")
         .def_readonly("equilibrium", &Arc::equilibrium, "Number of the equilibrium that it leads to.")
         .def_readonly("arc", &Arc::arc, "Number within the rearrangement, from 1.")
-        .def_readonly("kind", &Arc::kind, "\"limit\", \"tension\", \"rattler\" or \"release\".")
+        .def_property_readonly(
+            "kind", [](const Arc& self) { return to_string(self.kind); },
+            "\"limit\", \"tension\", \"rattler\" or \"release\".")
         .def_property_readonly("opened", contact(&Arc::opened), "Contact opened, (i, j).")
         .def_property_readonly("closed", contact(&Arc::closed), "Contact met, or the coordinate held, (i, -9).")
         .def_readonly("power_turn", &Arc::power_turn, "It ended where the power of the load vanished.")

@@ -60,8 +60,8 @@ template <int Dim> Result<Arc<Dim>> BoundedSteering<Dim>::attempt() {
     const Opening& opening = start_.opening;
     const ArcOrigin<Dim> origin{from_.packing, from_.structure, fresh_ ? *fresh_ : from_.factorisation, opening.contact,
                                 opening.direction};
-    return follow_arc(origin, PowerLoad<Dim>{start_.load, opening.infinitesimal, start_.kind == "limit"}, candidates_,
-                      arc_options_);
+    return follow_arc(origin, PowerLoad<Dim>{start_.load, opening.infinitesimal, start_.kind == ArcKind::limit},
+                      candidates_, arc_options_);
 }
 
 template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {

@@ -30,8 +30,8 @@ std::uint64_t bits_for(std::uint64_t seed, long step) { // splitmix64 finaliser
     return z ^ (z >> 31);
 }
 
-std::string kind_of(const Contact& opened, bool infinitesimal) {
-    return opened.kind == ContactKind::held ? "release" : infinitesimal ? "rattler" : "tension";
+ArcKind kind_of(const Contact& opened, bool infinitesimal) {
+    return opened.kind == ContactKind::held ? ArcKind::release : infinitesimal ? ArcKind::rattler : ArcKind::tension;
 }
 
 template <int Dim>
@@ -97,7 +97,7 @@ template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
 /// With the arc that was begun beside the choice of what opens, if it was.
 template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& prediction) {
     const Opening& opening = start_.opening;
-    const PowerLoad<Dim> power{&load_, opening.infinitesimal, start_.kind == "limit"};
+    const PowerLoad<Dim> power{&load_, opening.infinitesimal, start_.kind == ArcKind::limit};
     // Rattlers turn far from arc to arc: factors taken over predict their curvature badly.
     std::optional<Factorisation> block;
     if (opening.infinitesimal) {

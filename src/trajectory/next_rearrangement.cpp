@@ -27,7 +27,7 @@ bool NextRearrangement<Dim>::begin(const Load<Dim>& load, const Segment& segment
     at_.set_stress(limit);
     ArcStart<Dim> start;
     start.opening.contact = opens_;
-    start.kind = "limit";
+    start.kind = ArcKind::limit;
     start.step = step;
     start.load = &at_.load;
     steering_ = std::make_unique<FloatingSteering<Dim>>(

@@ -145,7 +145,8 @@ ArcProof<Dim> Prover<Dim>::prove(const Vertex<Dim>& from, ArcProposal<Dim> arc, 
     ArcRecord<Dim>& record = proof.record;
     record = arc.record;
     record.force = opening.force.value;
-    record.force_bound = record.kind == "limit" ? 0 : opening.force.radius; // the load is the one where it vanishes
+    record.force_bound =
+        record.kind == ArcKind::limit ? 0 : opening.force.radius; // the load is the one where it vanishes
     record.margin = std::numeric_limits<double>::infinity();
     record.decided_by = Rung::combinatorial;
     proof.count({DecisionKind::opening, opening.margin, opening.rung, opening.perturbed});
@@ -347,7 +348,7 @@ void Prover<Dim>::certify(ArcProof<Dim>& proof, const Vertex<Dim>& from, const O
     };
     proof.record.certificate =
         certify_arc(vertex(from, first), opening.contact, opening.direction, vertex(to, last),
-                    PowerLoad<Dim>{&load, opening.infinitesimal, proof.record.kind == "limit"}, candidates_);
+                    PowerLoad<Dim>{&load, opening.infinitesimal, proof.record.kind == ArcKind::limit}, candidates_);
     proof.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 

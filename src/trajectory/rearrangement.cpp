@@ -13,7 +13,7 @@ namespace isostat {
 template <int Dim>
 Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following)
     : prover_(prover), recorder_(recorder), following_(following), at_(std::move(start.at)),
-      here_(std::move(start.vertex)), opening_(start.opening), kind_(std::move(start.kind)),
+      here_(std::move(start.vertex)), opening_(start.opening), kind_(start.kind),
       tilts_at_start_(here_->packing.q.begin() + static_cast<std::ptrdiff_t>(here_->packing.length_at(Dim)),
                       here_->packing.q.end()) {}
 
@@ -26,7 +26,7 @@ template <int Dim> std::string Rearrangement<Dim>::at_equilibrium() const {
 }
 
 template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<NextRearrangement<Dim>> begun) {
-    if (begun && kind_ == "limit" && begun->starts_with(opening_.contact, at_)) {
+    if (begun && kind_ == ArcKind::limit && begun->starts_with(opening_.contact, at_)) {
         begun->count_work();
         steering_ = std::move(begun);
     }
@@ -299,7 +299,7 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
         return located(refused->next->failure(), where(arcs_));
     }
     recorder_.count(*refused);
-    if (refused->reached && kind_ == "release" && !refused->descends) {
+    if (refused->reached && kind_ == ArcKind::release && !refused->descends) {
         return set_aside(refused->record);
     }
     ++recorder_.counters.steps;

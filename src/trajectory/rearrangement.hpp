@@ -36,7 +36,7 @@ template <int Dim> class Rearrangement {
     struct Start {
         std::shared_ptr<Vertex<Dim>> vertex;
         Opening opening;
-        std::string kind; ///< of the first arc, as records call it
+        ArcKind kind = ArcKind::limit; ///< of the first arc
         LimitLoad<Dim> at;
     };
     /// `following`: what follows the next equilibrium; null: nothing. All must outlive the rearrangement.
@@ -77,7 +77,7 @@ template <int Dim> class Rearrangement {
     LimitLoad<Dim> at_;
     std::shared_ptr<Vertex<Dim>> here_; ///< the last vertex that was proved
     Opening opening_;                   ///< what opens there
-    std::string kind_;
+    ArcKind kind_;
     std::vector<TieDecision> relisted_; ///< lists exchanged at `here_` since it was reached
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;

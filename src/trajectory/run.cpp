@@ -50,7 +50,7 @@ template <int Dim> class Run {
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
     std::optional<double> beyond(double limit);
-    std::optional<Failure> rearrange(const Opening& opening, const std::string& kind, LimitLoad<Dim> at);
+    std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
     [[nodiscard]] std::optional<Failure> check(const EquilibriumRecord<Dim>& record);
 
@@ -186,7 +186,8 @@ std::optional<Failure> Run<Dim>::first_equilibrium(const typename Vertex<Dim>::G
     }
     const OpeningDecision& decision = decided.value();
     if (decision.opening) {
-        return rearrange(*decision.opening, decision.opening->infinitesimal ? "rattler" : "tension", load());
+        return rearrange(*decision.opening, decision.opening->infinitesimal ? ArcKind::rattler : ArcKind::tension,
+                         load());
     }
     if (vertex_->perturbed) {
         vertex_->perturbed->zeros = decision.zeros;
@@ -260,7 +261,7 @@ template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
         at.stress_rate = vertex_->perturbed->statics.limit_rate(limit.opens, limit.stress, limit.stress_error);
     }
     ++counters_.equilibria;
-    if (auto failure = rearrange(opening, "limit", std::move(at))) {
+    if (auto failure = rearrange(opening, ArcKind::limit, std::move(at))) {
         --counters_.equilibria; // the steps stay counted: their records are written
         counters_.seconds = elapsed();
         return *failure;
@@ -328,8 +329,7 @@ template <int Dim> std::optional<double> Run<Dim>::beyond(double limit) {
                           segment_.direction * infinity);
 }
 
-template <int Dim>
-std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, const std::string& kind, LimitLoad<Dim> at) {
+template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
     const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
     const Segment* const following = last ? nullptr : &segment_;
     const RunCounters before = counters_;
@@ -342,7 +342,8 @@ std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, const std::st
     };
     bool begun = false;
     auto reached = attempt(begun);
-    if (!reached.ok() && reached.failure().kind == FailureKind::undecided && kind == "limit" && !begun && !perturbs()) {
+    if (!reached.ok() && reached.failure().kind == FailureKind::undecided && kind == ArcKind::limit && !begun &&
+        !perturbs()) {
         if (const auto stress = beyond(at.stress())) {
             counters_ = before;
             at.set_stress(*stress);

@@ -21,14 +21,14 @@ namespace isostat {
 /// What an arc starts with.
 template <int Dim> struct ArcStart {
     Opening opening;
-    std::string kind; ///< as records call it
-    long step = 0;    ///< number of the arc in the run
+    ArcKind kind = ArcKind::limit;
+    long step = 0; ///< number of the arc in the run
     const Load<Dim>* load = nullptr;
     std::vector<TieDecision> settled; ///< ties on the way to its opening
 };
 
-/// How records call an arc that starts with an opening of a contact, but for the first one at a limit load.
-std::string kind_of(const Contact& opened, bool infinitesimal);
+/// Of an arc that starts with an opening of a contact, but for the first one at a limit load.
+ArcKind kind_of(const Contact& opened, bool infinitesimal);
 
 /// Where steering found no negative force, or at level `plain` not clearly one. Nothing is proved of it.
 template <int Dim> struct SteeredEnd {

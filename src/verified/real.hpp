@@ -11,7 +11,9 @@
 namespace isostat {
 
 /// An MPFR number of a precision of its own. Assignment takes value and precision. MPFR's exponents have 63 bits:
-/// nothing over- or underflows here.
+/// nothing over- or underflows here. Not Boost's mpfr_float, which is as fast: its precision is one of decimal digits,
+/// kept for the whole process and changed by every operation (two threads at two precisions would race), and its
+/// functions do not round down or up.
 class Real {
   public:
     explicit Real(mpfr_prec_t bits = 53) {

@@ -165,7 +165,7 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
     double spent = 0;
     for (std::size_t a = 0; a < run.arcs.size(); ++a) {
         const ArcRecord<2>& record = run.arcs[a];
-        if (record.kind == "limit") {
+        if (record.kind == ArcKind::limit) {
             const State<2>& state = equilibria[equilibrium++];
             packing = state.packing;
             load = state.load;
@@ -192,7 +192,7 @@ Followed follow_again(const bench::Stretch& run, const std::vector<State<2>>& eq
         const auto slot = static_cast<std::size_t>(place - contacts.begin());
         const Packing<2> start = packing;
         const std::vector<Contact> at_start = contacts;
-        const PowerLoad<2> power{&load, record.kind == "rattler", record.kind == "limit"};
+        const PowerLoad<2> power{&load, record.kind == ArcKind::rattler, record.kind == ArcKind::limit};
         ArcOptions options;
         const double begin = bench::cpu_milliseconds();
         const Factorisation factors(*structure, *inverse);
@@ -253,12 +253,12 @@ Errors recorded(const bench::Stretch& run, const std::vector<State<2>>& equilibr
     const True* before = nullptr;
     for (std::size_t a = 0; a < std::min(run.arcs.size(), truth.size()); ++a) {
         const ArcRecord<2>& record = run.arcs[a];
-        if (record.kind == "limit") {
+        if (record.kind == ArcKind::limit) {
             if (before != nullptr && before->known) {
                 out.equilibria.add(position_error(equilibria[equilibrium].packing, *before));
             }
             ++equilibrium;
-        } else if (record.kind == "tension" && before != nullptr && before->known) {
+        } else if (record.kind == ArcKind::tension && before != nullptr && before->known) {
             double error = std::numeric_limits<double>::infinity();
             for (std::size_t l = 0; l < before->fixed.size(); ++l) { // the slot is not recorded: its force tells
                 error = std::min(error, length_of(before->fixed[l] + record.stress * before->unit[l] - record.force));

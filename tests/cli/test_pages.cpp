@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -102,21 +103,35 @@ std::set<std::string> anchors(const std::string& page) {
     return names;
 }
 
-/// The keys that a section of a scene knows: what the message about an unknown one lists.
-std::set<std::string> known_keys(const std::string& name, const std::string& scene) {
-    const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene);
-    const Outcome outcome = run({"plan", (folder / "s.toml").string()});
-    expect(outcome, 65, {"unknown key 'no_such_key' in [" + name + "]"});
+/// What a message about the unknown `no_such_key` lists behind "expected one of".
+std::set<std::string> expected_names(const Outcome& outcome, const std::string& where) {
+    expect(outcome, 65, {"'no_such_key'" + where});
     const std::string marker = "expected one of ";
     std::string list = outcome.err.substr(outcome.err.find(marker) + marker.size());
     list = list.substr(0, list.find('\n'));
-    std::set<std::string> keys;
+    std::set<std::string> names;
     const std::regex word("[a-z0-9_]+");
     for (auto it = std::sregex_iterator(list.begin(), list.end(), word); it != std::sregex_iterator(); ++it) {
-        keys.insert(it->str());
+        names.insert(it->str());
     }
-    return keys;
+    return names;
+}
+
+/// The keys that a section of a scene knows.
+std::set<std::string> known_keys(const std::string& name, const std::string& scene) {
+    const scratch::Folder folder;
+    scratch::write(folder / "s.toml", scene);
+    return expected_names(run({"plan", (folder / "s.toml").string()}), " in [" + name + "]");
+}
+
+/// Words in backticks of one text.
+std::set<std::string> words_of(const std::string& text) {
+    std::set<std::string> words;
+    const std::regex word("`([^`]+)`");
+    for (auto it = std::sregex_iterator(text.begin(), text.end(), word); it != std::sregex_iterator(); ++it) {
+        words.insert((*it)[1]);
+    }
+    return words;
 }
 
 /// What a page has between a line "```LANGUAGE" and the next "```"; from the first such line after `after`.
@@ -159,6 +174,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_scenes_has_every_key) {
         {"preparation", "## `[preparation]`", disks + "[preparation]\nno_such_key = 1\n"},
         {"load", "## `[load]`", disks + "[load]\nno_such_key = 1\n"},
         {"programme", "## `[[programme]]`", disks + "[[programme]]\ndo = \"up\"\nno_such_key = 1\n"},
+        {"cell", "## `[cell]`", disks + "[cell]\nno_such_key = 1\n"},
         {"run", "## `[run]`", disks + perturb},
         {"output", "## `[output]`", disks + "[output]\nno_such_key = 1\n"}};
     for (const auto& [name, heading, scene] : sections) {
@@ -235,6 +251,61 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_an_arc) {
     const std::string page = scratch::read(project / "src/io/README.md");
     const std::set<std::string> told = as_set(first_column(section(page, "### Fields of `events.jsonl`")));
     BOOST_TEST((written == told), "fields written:" << joined(written) << "; of the page:" << joined(told));
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_kind_of_an_arc) {
+    const std::string fields = section(scratch::read(project / "src/io/README.md"), "### Fields of `events.jsonl`");
+    const std::string row = "| `kind` |";
+    const std::size_t begin = fields.find(row) + row.size();
+    std::set<std::string> kinds;
+    for (const isostat::ArcKind kind : isostat::all_arc_kinds) {
+        kinds.emplace(to_string(kind));
+    }
+    const std::set<std::string> told = words_of(fields.substr(begin, fields.find('\n', begin) - begin));
+    BOOST_TEST((kinds == told), "kinds:" << joined(kinds) << "; of the page:" << joined(told));
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_field_of_a_state) {
+    const std::string page = scratch::read(project / "src/io/README.md");
+    const scratch::Folder folder;
+    scratch::write(folder / "s.json", R"({"format": "isostat-state", "version": 2, "no_such_key": 1})");
+    const std::set<std::string> known = expected_names(run({"inspect", (folder / "s.json").string()}), "");
+    const std::set<std::string> told = as_set(first_column(section(page, "## States")));
+    BOOST_TEST((known == told), "fields of the program:" << joined(known) << "; of the page:" << joined(told));
+}
+
+BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {
+    const fs::path series = project / "tests/data/series";
+    const std::string manifest = scratch::read(series / "series.toml");
+    std::map<std::string, std::set<std::string>>
+        told; // by section, in the order of the page: `[files] disks`, `select`
+    std::string name = "manifest";
+    for (const std::string& key :
+         first_column(table(scratch::read(project / "src/io/README.md"), "key | needed | content"))) {
+        const bool begins = key.starts_with("[");
+        name = begins ? key.substr(1, key.find(']') - 1) : name;
+        told[name].insert(begins ? key.substr(key.find(']') + 2) : key);
+    }
+    for (const char* other : {"files", "columns", "law", "load", "rest", "units"}) {
+        told["manifest"].insert(other);
+    }
+    for (const auto& [section, keys] : told) {
+        const scratch::Folder folder;
+        fs::copy(series, folder.path(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+        std::string text = manifest;
+        const std::size_t at = text.find("[" + section + "]\n");
+        if (section == "manifest") {
+            text.insert(0, "no_such_key = 1\n");
+        } else if (at == std::string::npos) {
+            text += "\n[" + section + "]\nno_such_key = 1\n";
+        } else {
+            text.insert(text.find('\n', at) + 1, "no_such_key = 1\n");
+        }
+        scratch::write(folder / "series.toml", text);
+        const auto known = expected_names(run({"compare", (folder / "series.toml").string()}), " in [" + section + "]");
+        BOOST_TEST((known == keys),
+                   section << ": keys of the program:" << joined(known) << "; of the page:" << joined(keys));
+    }
 }
 
 BOOST_AUTO_TEST_CASE(the_pages_and_the_help_have_the_same_exit_statuses) {

@@ -95,7 +95,7 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
     bool skip = false;
     for (std::size_t a = 0; a < records.arcs.size(); ++a) {
         const ArcRecord<2>& record = records.arcs[a];
-        if (record.kind == "limit") {
+        if (record.kind == isostat::ArcKind::limit) {
             ++equilibrium;
             const auto number = static_cast<std::size_t>(equilibrium);
             here = records.states[number].packing;
@@ -112,8 +112,8 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         arc.contacts = contacts;
         arc.opened = ContactId(
             static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), record.opened) - contacts.begin()));
-        arc.infinitesimal = record.kind == "rattler";
-        arc.at_limit = record.kind == "limit";
+        arc.infinitesimal = record.kind == isostat::ArcKind::rattler;
+        arc.at_limit = record.kind == isostat::ArcKind::limit;
         arc.load = start.load;
         arc.load.stress[1] = record.stress;
         arc.closed = record.closed;
@@ -148,7 +148,8 @@ inline ReferencePath reference_path(const State<2>& start, int equilibria) {
         path.worst_bound = std::max(path.worst_bound, arc.bound);
         path.lowest_gap = std::min(path.lowest_gap, path_parts::lowest_gap(here, arc.end, contacts));
         path.certified += arc.proved ? 1 : 0;
-        const bool last_of_rearrangement = a + 1 < records.arcs.size() && records.arcs[a + 1].kind == "limit";
+        const bool last_of_rearrangement =
+            a + 1 < records.arcs.size() && records.arcs[a + 1].kind == isostat::ArcKind::limit;
         if (last_of_rearrangement) {
             Load<2> load = arc.load;
             const auto unit = load.unit_force(here);

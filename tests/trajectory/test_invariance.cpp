@@ -175,8 +175,8 @@ BOOST_AUTO_TEST_CASE(dead_loads_make_the_potential_decrease_along_every_arc) {
     const Played run = play(prepared(80, 4), +1, 10);
     BOOST_REQUIRE_MESSAGE(run.outcome.completed, run.why());
     for (const auto& arc : run.records.arcs) {
-        BOOST_TEST((arc.work > 0 || arc.kind == "rattler"),
-                   "arc " << arc.step << " " << arc.kind << " work " << arc.work);
+        BOOST_TEST((arc.work > 0 || arc.kind == ArcKind::rattler),
+                   "arc " << arc.step << " " << to_string(arc.kind) << " work " << arc.work);
     }
 }
 

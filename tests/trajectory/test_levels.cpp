@@ -209,7 +209,7 @@ BOOST_AUTO_TEST_CASE(rattlers_are_certified_in_their_own_degrees_of_freedom) {
     for (const std::uint64_t seed : {1U, 4U, 6U}) {
         const Played run = play(prepared(60, seed), +1, 12, {}, with_arcs());
         for (const auto& arc : run.records.arcs) {
-            if (arc.kind == "rattler") {
+            if (arc.kind == ArcKind::rattler) {
                 ++rattlers;
                 BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
                 BOOST_TEST((arc.certificate->power == Verdict::proved), arc.certificate->power_reason);
@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_leave_the_power_undecided_and_the_contacts_pr
     BOOST_TEST(!run.records.arcs.empty());
     for (const auto& arc : run.records.arcs) {
         BOOST_TEST((arc.certificate->verdict == Verdict::proved), arc.certificate->reason);
-        BOOST_TEST((arc.certificate->power == Verdict::proved) == (arc.kind == "rattler"));
+        BOOST_TEST((arc.certificate->power == Verdict::proved) == (arc.kind == ArcKind::rattler));
     }
 }
 

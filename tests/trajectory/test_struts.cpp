@@ -20,7 +20,7 @@ std::size_t strut_opening(const std::vector<ArcRecord<2>>& arcs) {
         const int disk = arcs[k - 1].closed.i / 2;
         const Contact& opened = arcs[k].opened;
         const bool touches = opened.i == disk || (opened.kind == ContactKind::disk_disk && opened.j == disk);
-        if (arcs[k - 1].power_turn && arcs[k].kind == "tension" && touches) {
+        if (arcs[k - 1].power_turn && arcs[k].kind == ArcKind::tension && touches) {
             return k;
         }
     }
@@ -84,7 +84,7 @@ BOOST_AUTO_TEST_CASE(the_weakest_traction_is_never_that_of_a_grain_that_carries_
         const Played run = play(prepared(36, seed), +1, 4, {}, options);
         const auto& arcs = run.records.arcs;
         for (std::size_t k = 1; k < arcs.size(); ++k) {
-            if (arcs[k - 1].power_turn && arcs[k].kind == "tension") {
+            if (arcs[k - 1].power_turn && arcs[k].kind == ArcKind::tension) {
                 BOOST_TEST(arcs[k].force < -1e-9, "seed " << seed << ", arc " << k + 1);
                 ++after_turns;
             }

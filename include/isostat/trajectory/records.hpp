@@ -17,16 +17,30 @@
 
 namespace isostat {
 
+/// What an arc begins with: the first one of a rearrangement, at the limit load; a contact with a negative force; one
+/// with a negative force under the infinitesimal loads alone (only rattlers move); a held coordinate.
+enum class ArcKind { limit, tension, rattler, release };
+inline constexpr std::array all_arc_kinds{ArcKind::limit, ArcKind::tension, ArcKind::rattler, ArcKind::release};
+constexpr std::string_view to_string(ArcKind kind) {
+    switch (kind) {
+    case ArcKind::limit: return "limit";
+    case ArcKind::tension: return "tension";
+    case ArcKind::rattler: return "rattler";
+    case ArcKind::release: break;
+    }
+    return "release";
+}
+
 /// One arc: a contact opened, the mechanism followed, a contact (or a power turn) met.
 template <int Dim> struct ArcRecord {
     static_assert(has_dimension<Dim>());
     long step = 0;       ///< number of the arc in the run, from 1
     int equilibrium = 0; ///< number of the equilibrium that its rearrangement leads to, if it leads to one
     int arc = 0;         ///< number within the rearrangement, from 1
-    std::string kind;    ///< "limit" (first arc, at the limit load), "tension", "rattler", "release" (held coordinate)
-    Contact opened;      ///< contact opened (or held coordinate released)
-    Contact closed;      ///< contact met, or the coordinate held at a power turn
-    double held_at = 0;  ///< power turns: the value of the coordinate held
+    ArcKind kind = ArcKind::limit;
+    Contact opened;          ///< contact opened (or held coordinate released)
+    Contact closed;          ///< contact met, or the coordinate held at a power turn
+    double held_at = 0;      ///< power turns: the value of the coordinate held
     bool power_turn = false; ///< true: the arc ended where the power of the load vanished
     double stress = 0;       ///< sigma_2
     double strain = 0;       ///< eps_2 at the end of the arc

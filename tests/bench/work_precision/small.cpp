@@ -77,7 +77,7 @@ bool small_displacements(const Settings& settings) {
             bool skip = false;
             for (const ArcRecord<2>& record : exact.arcs) {
                 ends.emplace_back(); // stays empty after a power turn, up to the next equilibrium
-                if (record.kind == "limit") {
+                if (record.kind == ArcKind::limit) {
                     here = exact.states[equilibrium].packing;
                     contacts = exact.states[equilibrium].contacts;
                     ++equilibrium;
@@ -104,7 +104,7 @@ bool small_displacements(const Settings& settings) {
                 load.stress[1] = record.stress;
                 ArcOptions options;
                 options.closes = record.closed;
-                const PowerLoad<2> power{&load, record.kind == "rattler", record.kind == "limit"};
+                const PowerLoad<2> power{&load, record.kind == ArcKind::rattler, record.kind == ArcKind::limit};
                 begin = cpu_seconds();
                 const auto followed =
                     follow_arc(ArcOrigin<2>{here, structure.value(), factorisation, ContactId(opened)}, power,

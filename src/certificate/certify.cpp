@@ -1,6 +1,7 @@
 #include "certificate/exact_counting.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
+#include "contact/images.hpp"
 #include "contact/other_pairs.hpp"
 #include "core/roundoff.hpp"
 
@@ -64,10 +65,7 @@ template <int Dim> double largest_length(const Packing<Dim>& packing) {
 
 /// Some image is farther away than the grid allows for (proofs/cells.md, C2).
 bool any_far(const std::vector<Contact>& pairs) {
-    constexpr int farthest = 3;
-    return std::any_of(pairs.begin(), pairs.end(), [](const Contact& pair) {
-        return std::any_of(pair.image.m.begin(), pair.image.m.end(), [](int m) { return std::abs(m) > farthest; });
-    });
+    return std::any_of(pairs.begin(), pairs.end(), [](const Contact& pair) { return is_beyond(pair, farthest_image); });
 }
 
 /// A cell on the grid, where every r is exact, with `moved` bound of what that changes of a coordinate. Nothing where a
@@ -282,8 +280,9 @@ template <int Dim> bool Prover<Dim>::put_on_grid() {
     auto snapped = on_grid(state_.packing, state_.contacts, moved);
     if (!snapped) {
         absent_from_vertex_on(
-            "a period or tilt that cannot move is not on the grid of the packing, or an image is more "
-            "than 3 periods away");
+            fmt::format("a period or tilt that cannot move is not on the grid of the packing, or an image is more "
+                        "than {} periods away",
+                        farthest_image));
         return false;
     }
     auto made = Centre<Dim>::make(std::move(*snapped), state_.contacts);
@@ -426,7 +425,8 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
     }
     const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
     if (any_far(pairs.near)) {
-        absent("gaps", "a disk may touch an image more than 3 periods away: put the disks into the cell");
+        absent("gaps", fmt::format("a disk may touch an image more than {} periods away: put the disks into the cell",
+                                   farthest_image));
         return false;
     }
     std::string doubtful;

@@ -160,7 +160,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
     }
     describe(state, inspection);
     record.number = state.equilibrium;
-    record.stress = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    record.stress = state.load.loaded_stress();
     record.dof_count = counting.dof_count;
     record.contact_count = counting.contact_count;
     record.rank = counting.rank;
@@ -170,7 +170,7 @@ template <int Dim> Result<Inspection<Dim>> inspect_vertex(const State<Dim>& stat
 }
 
 template <int Dim> Result<std::vector<Interval>> forces_at(State<Dim> state, double sigma) {
-    state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = sigma;
+    state.load.loaded_stress() = sigma;
     Certification truth = certify(state);
     if (!truth.claims.vertex) {
         return Failure{truth.claims.counting ? FailureKind::undecided : FailureKind::not_isostatic,

@@ -12,7 +12,7 @@ namespace {
 /// N = N_f of full strain, h = k = 0: the forces under an isotropic pressure are unique, and say whether it is jammed
 /// strictly (C7). They are those of the load at one value of the loaded stress, where the tilt bears no shear.
 JammingAnswer strictly(const State<2>& state, const CertificateClaims& claims) {
-    if (state.load.shear[0] != 0 || !claims.load_interval) {
+    if (state.load.shear[0] != 0 || state.load.loads_tilt() || !claims.load_interval) {
         return {Verdict::undecided,
                 "k = 0 for full strain; its forces under an isotropic pressure are not those of its "
                 "load at any stress that was looked at"};

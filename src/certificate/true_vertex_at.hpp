@@ -332,7 +332,7 @@ template <int Dim, class T> LoadEndAnswer TrueVertexAt<Dim, T>::load_end(int dir
         return {{}, std::move(open)};
     }
     LoadEndClaim claim;
-    const double sigma = subject_.state.load.stress[static_cast<std::size_t>(subject_.state.load.loaded_axis)];
+    const double sigma = subject_.state.load.loaded_stress();
     claim.stress = around(number(sigma) - t, error + 2 * unit() * (std::abs(sigma) + size));
     claim.opens = subject_.state.contacts[index(opens(first, members, direction))];
     return {claim, {}};

@@ -20,6 +20,11 @@ Range wall_force(const Problem& problem, const State<2>& state, const TrueVertex
     return Range::around(-length, moves ? vertex.radius : Rational(0));
 }
 
+/// On the tilt per unit of shear stress: minus the reference length that it acts on.
+Range tilt_force(const State<2>& state) {
+    return Range(-Rational(state.load.reference_length[0]));
+}
+
 Forces disk_loads(const Problem& problem, const std::vector<double>& per_coordinate) {
     Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
     for (std::size_t j = 0; j < load.size(); ++j) {
@@ -44,8 +49,7 @@ Forces finite_load(const Problem& problem, const State<2>& state, const TrueVert
     }
     if (state.packing.cell.any()) { // on the tilt: the shear stress times the reference length that it acts on
         if (const int dof = problem.dof_of[state.packing.tilt_at(0, 1)]; dof >= 0) {
-            load[static_cast<std::size_t>(dof)] =
-                Range(-Rational(state.load.shear[0]) * Rational(state.load.reference_length[0]));
+            load[static_cast<std::size_t>(dof)] = Range(Rational(state.load.shear[0])) * tilt_force(state);
         }
     }
     return load;
@@ -53,10 +57,10 @@ Forces finite_load(const Problem& problem, const State<2>& state, const TrueVert
 
 Forces unit_load(const Problem& problem, const State<2>& state, const TrueVertex& vertex) {
     Forces load(static_cast<std::size_t>(problem.dofs()), Range(Rational(0)));
-    const auto axis = static_cast<std::size_t>(state.load.loaded_axis);
+    const auto axis = static_cast<std::size_t>(state.load.loaded_axis); // 2: the tilt, whose coordinate follows
     const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.disks) + axis];
     if (dof >= 0) {
-        load[static_cast<std::size_t>(dof)] = wall_force(problem, state, vertex, axis);
+        load[static_cast<std::size_t>(dof)] = axis == 2 ? tilt_force(state) : wall_force(problem, state, vertex, axis);
     }
     return load;
 }

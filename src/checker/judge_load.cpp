@@ -53,9 +53,8 @@ struct End {
             text = fmt::format("{}, whose force changes by {} per unit of stress", evidence.name(opens), shown(slope));
             return never_closing(slope) ? Verdict::refuted : Verdict::undecided;
         }
-        const auto axis = static_cast<std::size_t>(evidence.state.load.loaded_axis);
         const Range step = Range(Rational(0)) - evidence.forces[opens] / slope;
-        stress = Range(Rational(evidence.state.load.stress[axis])) + step;
+        stress = Range(Rational(evidence.state.load.loaded_stress())) + step;
         text = fmt::format("{} (opens {})", shown(*stress), evidence.name(opens));
         const Verdict place = lies_in(*stress, claim.stress);
         if (place != Verdict::proved) {

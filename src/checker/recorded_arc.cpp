@@ -85,7 +85,7 @@ Followed follow(const ArcStart& from, const EventRecord& event, const Opening& o
     motion.solver = from.solver;
     motion.touching = from.touching;
     Load<2> load = from.state.load;
-    load.stress[static_cast<std::size_t>(load.loaded_axis)] = event.stress;
+    load.loaded_stress() = event.stress;
     motion.power_load = [&, at = from.state.packing](const std::vector<double>& q) mutable {
         at.q = q;
         return load_at(load, at, opening.rattles);

@@ -72,9 +72,7 @@ struct Place {
 
     [[nodiscard]] bool is_held(std::size_t contact) const { return state->contacts[contact].kind == ContactKind::held; }
 
-    [[nodiscard]] double stress() const {
-        return state->load.stress[static_cast<std::size_t>(state->load.loaded_axis)];
-    }
+    [[nodiscard]] double stress() const { return state->load.loaded_stress(); }
     /// The nearest pairs (K9); swept for when first asked for, by one thread.
     [[nodiscard]] const std::vector<Gap>& gaps() const;
     [[nodiscard]] Range coordinate(std::size_t k) const;

@@ -35,9 +35,13 @@ Objections compare(const char* name, int recorded, int found) {
     return Objection{true, fmt::format("{} is {}, found {}", name, recorded, found)};
 }
 
-/// 0 without a length of reference.
+/// 0 without a length of reference. Axis 2: the tilt.
 Range strain_of(const Place& place, int axis) {
-    const Range reference{Rational(place.state->load.reference_length[static_cast<std::size_t>(axis)])};
+    const std::array<double, 2>& lengths = place.state->load.reference_length;
+    if (axis == 2) { // the tilt, over the height
+        return Range(Rational(0)) - place.length(axis) / Range(Rational(lengths[1]));
+    }
+    const Range reference{Rational(lengths[static_cast<std::size_t>(axis)])};
     return reference.positive() ? (reference - place.length(axis)) / reference : Range(Rational(0));
 }
 
@@ -319,23 +323,23 @@ Range potential_of(const Place& place, double& size) {
 /// Stresses, strains, lengths, potential and solid fraction.
 Objections check_measures(const Place& place, const EquilibriumLine& line) {
     const Load<2>& load = place.state->load;
-    const auto loaded = static_cast<std::size_t>(load.loaded_axis);
-    const std::size_t other = 1 - loaded;
+    const bool shears = load.loaded_axis == 2;
+    const int other = shears ? 1 : 1 - load.loaded_axis;
+    const double sigma = shears ? load.shear[0] : load.stress[static_cast<std::size_t>(load.loaded_axis)];
+    const double across = load.stress[static_cast<std::size_t>(other)];
     const double box = std::max(place.state->packing.length(0), place.state->packing.length(1));
-    const Range stress{Rational(load.stress[loaded])};
     const std::vector<std::tuple<const char*, Range, double>> without_bound{
-        {"sigma2", stress, std::abs(load.stress[loaded])},
-        {"ratio", stress / Range(Rational(load.stress[other])), std::abs(load.stress[loaded] / load.stress[other])}};
+        {"sigma2", Range(Rational(sigma)), std::abs(sigma)},
+        {"ratio", Range(Rational(sigma)) / Range(Rational(across)), std::abs(sigma / across)}};
     for (const auto& [name, found, scale] : without_bound) {
         if (Objections wrong = compare(name, line.at(name), found, scale)) {
             return wrong;
         }
     }
-    std::vector<std::tuple<const char*, Range, double>> with_bound{
-        {"eps1", strain_of(place, static_cast<int>(other)), 1},
-        {"eps2", strain_of(place, load.loaded_axis), 1},
-        {"L1", place.length(static_cast<int>(other)), box},
-        {"L2", place.length(static_cast<int>(loaded)), box}};
+    std::vector<std::tuple<const char*, Range, double>> with_bound{{"eps1", strain_of(place, other), 1},
+                                                                   {"eps2", strain_of(place, load.loaded_axis), 1},
+                                                                   {"L1", place.length(other), box},
+                                                                   {"L2", place.length(load.loaded_axis), box}};
     if (load.kind == LoadKind::nominal) {
         double size = 0;
         const Range potential = potential_of(place, size);

@@ -334,7 +334,7 @@ class Replay {
             State<2> state = *here_.state;
             std::replace(state.contacts.begin(), state.contacts.end(), *contact_named(tie.against, state.packing),
                          *contact_named(tie.contact, state.packing));
-            state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
+            state.load.loaded_stress() = event.stress;
             Place next;
             next.chooses = records_.chooses;
             if (!judged(make_place(std::move(state), next, change.load), event.where)) {
@@ -394,7 +394,7 @@ class Replay {
     Objections stay(Place& next, const EventRecord& event, const Change& change) {
         State<2> state = *here_.state;
         state.contacts[change.position] = change.closed;
-        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = event.stress;
+        state.load.loaded_stress() = event.stress;
         return make_place(std::move(state), next, change.load, fresh(event, change));
     }
 
@@ -449,7 +449,7 @@ class Replay {
     /// A row without arcs: the same vertex under another load.
     void reload(const EquilibriumLine& line) {
         State<2> state = *here_.state;
-        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = line.at("sigma2");
+        state.load.loaded_stress() = line.at("sigma2");
         go_to(std::move(state), line.where, {});
     }
 

@@ -153,7 +153,8 @@ void Follower::load() {
         }
     }
     if (from_.state->packing.cell.any() && !way_.rattles) { // on the tilt
-        pushing_.fixed[walls + 2] = Bounds(0) - Bounds(load.shear[0]) * load.reference_length[0];
+        pushing_.fixed[walls + 2] =
+            Bounds(0) - Bounds(load.loads_tilt() ? way_.stress : load.shear[0]) * load.reference_length[0];
     }
 }
 
@@ -338,7 +339,7 @@ Objections end_of(const Place& from, const Contact& closed, const Way& way, Stat
     const std::vector<bool> moves = moving_coordinates(*from.state, from.evidence->problem, way.witness);
     end = *from.state;
     end.contacts[way.opened] = closed;
-    end.load.stress[static_cast<std::size_t>(end.load.loaded_axis)] = way.stress;
+    end.load.loaded_stress() = way.stress;
     std::size_t next = 0;
     const auto count = static_cast<std::size_t>(std::count(moves.begin(), moves.end(), true));
     for (const Witness::Centre& centre : way.witness.centres) {

@@ -214,7 +214,7 @@ int inspect(const InspectArguments& arguments) {
     StateFile<2> file = read_any_state<2>(arguments.file);
     State<2>& state = file.state;
     if (arguments.at) {
-        state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)] = *arguments.at;
+        state.load.loaded_stress() = *arguments.at;
         file.forces.clear(); // of another load
     }
     const Result<Inspection<2>> result = inspect_vertex(state);

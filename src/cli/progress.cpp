@@ -47,16 +47,16 @@ void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const S
     segment_ = number;
     made_ = made;
     start_equilibrium_ = from.equilibrium;
-    const auto loaded = static_cast<std::size_t>(from.load.loaded_axis);
-    start_ratio_ = from.load.stress[loaded] / from.load.stress[1 - loaded];
+    start_ratio_ = from.load.ratio();
     if (quiet_) {
         return;
     }
     line_.clear();
     if (!header_shown_) {
         header_shown_ = true;
-        fmt::print("{:>7} {:>13} {:>12} {:>6} {:>2} {:>8} {:<13} {:>8} {:>8}\n", "equil", "sigma2/sigma1", "eps2",
-                   "arcs", "h", "margin", "precision", "elapsed", "rest");
+        fmt::print("{:>7} {:>13} {:>12} {:>6} {:>2} {:>8} {:<13} {:>8} {:>8}\n", "equil", from.load.ratio_name(),
+                   from.load.loads_tilt() ? "shear strain" : "eps2", "arcs", "h", "margin", "precision", "elapsed",
+                   "rest");
     }
     fmt::print("segment {} of {}: {}\n", number + 1, programme_.size(),
                programme_[static_cast<std::size_t>(number)].name);

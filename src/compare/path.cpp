@@ -17,7 +17,7 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr int further = 3; ///< equilibria after the last load: frames may be early
 
 double& loaded(State<2>& state) {
-    return state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    return state.load.loaded_stress();
 }
 
 /// Keeps the equilibria with their lists; those that only another load made are the same one.

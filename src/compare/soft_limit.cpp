@@ -28,7 +28,7 @@ class SoftGrains {
             return false;
         }
         factors_.emplace(structure.value());
-        load_.stress[static_cast<std::size_t>(load_.loaded_axis)] = sigma;
+        load_.loaded_stress() = sigma;
         forces = on_dofs(load_.external_force(packing), dofs_);
         slopes = on_dofs(load_.unit_force(packing), dofs_);
         factors_->solve_forces(forces);

@@ -3,11 +3,23 @@
 
 #include "contact/separation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <vector>
 
 namespace isostat {
+
+/// So many periods along each axis lie between a disk and an image at most: differences are exact (proofs/cells.md,
+/// C2).
+inline constexpr int farthest_image = 3;
+/// The same of the contacts of a vertex on the way of a run, whose matrix has exact multiples of normals (C10).
+inline constexpr int farthest_contact = 2;
+
+/// An offset of more than `most` periods along some axis.
+inline bool is_beyond(const Contact& pair, int most) {
+    return std::any_of(pair.image.m.begin(), pair.image.m.end(), [most](int m) { return std::abs(m) > most; });
+}
 
 /// Finitely many images of the disks of a cell: without a cell, as a packing of their own. Every pair of a disk and an
 /// image with a gap below `reach` is, moved by some period, a pair of these (proofs/cells.md, C3).

@@ -1,5 +1,7 @@
 #include "io/contact_json.hpp"
 
+#include "contact/images.hpp"
+
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
@@ -24,7 +26,6 @@ int disk_index(const Field& field, int disks) {
 
 /// The third element of [i, j, [mx, my]].
 template <int Dim> Image image_of(const Field& field, const Packing<Dim>& packing) {
-    constexpr int farthest = 3;
     if (!packing.cell.any()) {
         field.fail("[disk, disk]: images are of a periodic \"cell\"");
     }
@@ -35,9 +36,9 @@ template <int Dim> Image image_of(const Field& field, const Packing<Dim>& packin
         if (m != 0 && !packing.cell.periodic[a]) {
             field.at(a).fail("0, as that axis has walls");
         }
-        if (m < -farthest || m > farthest) {
-            field.at(a).fail(
-                fmt::format("from {} to {} periods: put the disks into the cell first", -farthest, farthest));
+        if (m < -farthest_image || m > farthest_image) {
+            field.at(a).fail(fmt::format("from {} to {} periods: put the disks into the cell first", -farthest_image,
+                                         farthest_image));
         }
         image.m[a] = static_cast<std::int8_t>(m);
     }

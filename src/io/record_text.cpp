@@ -185,7 +185,7 @@ std::string equilibria_header() {
 
 std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous) {
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-    const std::size_t other = 1 - loaded;
+    const auto other = static_cast<std::size_t>(state.load.other_axis());
     std::string row = fmt::format("{},{},{},{},{}", record.number, previous, record.segment, record.stress,
                                   record.stress / record.sigma1);
     row += fmt::format(",{},{},{},{},{}", record.strain[other], record.strain[loaded], record.length[other],

@@ -333,8 +333,8 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     if (!last_.packing.radius.empty()) {
         const auto loaded = static_cast<std::size_t>(last_.load.loaded_axis);
         object["disks"] = last_.packing.disk_count();
-        object["ratio"] = json::or_null(last_.load.stress[loaded] / last_.load.stress[1 - loaded]);
-        object["eps1"] = json::or_null(last_strain_[1 - loaded]);
+        object["ratio"] = json::or_null(last_.load.ratio());
+        object["eps1"] = json::or_null(last_strain_[static_cast<std::size_t>(last_.load.other_axis())]);
         object["eps2"] = json::or_null(last_strain_[loaded]);
         object["solid_fraction"] = json::or_null(last_.packing.solid_fraction());
     }

@@ -234,8 +234,10 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
         }
         if (field.has("loaded_axis")) {
             const long axis = field.at("loaded_axis").integer();
-            if (axis < 0 || axis >= Dim) {
-                field.at("loaded_axis").fail(fmt::format("an axis from 0 to {}", Dim - 1));
+            const bool tilts = packing.cell.any() && packing.cell.tilt_moves[0];
+            if (axis < 0 || axis >= Dim + (tilts ? 1 : 0)) {
+                field.at("loaded_axis")
+                    .fail(fmt::format("an axis from 0 to {}{}", Dim - 1, tilts ? ", or the tilt, 2" : ""));
             }
             load.loaded_axis = static_cast<int>(axis);
         }

@@ -22,7 +22,7 @@ template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<D
         }
     }
     if (packing.cell.any() && packing.cell.tilt_moves[0]) {
-        forces.push_back({Dim * packing.disk_count() + Dim, 0, shear[0], reference_length[0], -1, false});
+        forces.push_back({Dim * packing.disk_count() + Dim, 0, shear[0], reference_length[0], -1, loads_tilt()});
     }
     return forces;
 }

@@ -38,7 +38,7 @@ template <int Dim> class Basis {
                 gaps_.push_back(gap_at_vertex(packing, vertex_, candidate).value);
             }
         }
-        const double sigma = load_.stress[static_cast<std::size_t>(load_.loaded_axis)];
+        const double sigma = load_.loaded_stress();
         for (std::size_t l = 0; l < contacts().size(); ++l) {
             const ContactId id(l);
             forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : statics_.force(id, sigma).value,

@@ -217,7 +217,7 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
         load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
     }
     Statics<Dim> statics(packing, load, structure, factorisation, inverse);
-    const double sigma = load.stress[static_cast<std::size_t>(load.loaded_axis)];
+    const double sigma = load.loaded_stress();
     const Result<double> force = smallest_force(statics, sigma);
     if (!force.ok()) {
         return force.failure();

@@ -122,6 +122,9 @@ void check(const PreparationOptions& options) {
     if (periodic && options.load != LoadKind::nominal) {
         bad("true stresses in a periodic cell: expected nominal ones");
     }
+    if (options.loads_tilt && options.cell != PreparedCell::tilted) {
+        bad("the shear stress is to be changed and no tilt moves: expected a tilted cell");
+    }
     if (!(options.jitter >= 0 && options.jitter < 1)) {
         bad(fmt::format("jitter is {}: expected a number from 0 to below 1", options.jitter));
     }
@@ -229,7 +232,11 @@ template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options,
         const PreparationStage& stage = report.stages.back();
         return failed(FailureKind::interrupted, "stopped during {} after {} steps", stage.name, stage.iterations);
     }
-    return find_vertex(scale.to_user(packing, radius), options, report);
+    auto state = find_vertex(scale.to_user(packing, radius), options, report);
+    if (state.ok() && options.loads_tilt) {
+        state.value().load.loaded_axis = Dim;
+    }
+    return state;
 }
 
 template Result<State<2>> prepare<2>(const PreparationOptions&, PreparationReport<2>&);

@@ -76,20 +76,23 @@ struct Curve {
     std::vector<EquilibriumRow> path;
 };
 
-Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, bool pdf) {
+Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, bool pdf, bool shear) {
     Chart chart;
     chart.name = name;
     std::string plot;
     for (std::size_t k = 0; k < curves.size(); ++k) {
-        append_points(chart.data, "eps2 sigma2/sigma1: " + curves[k].title, stairs(curves[k].path));
+        append_points(chart.data, (shear ? "shear_strain shear/sigma2: " : "eps2 sigma2/sigma1: ") + curves[k].title,
+                      stairs(curves[k].path));
         plot += fmt::format("{} {} index {} with lines lw 1.5 dt {} lc rgb {} title {} noenhanced",
                             k == 0 ? "plot" : ",\\\n    ", quoted(name + ".dat"), k, dash(k),
                             quoted(colours[k % colours.size()]), quoted(curves[k].title));
     }
     chart.script = chart_script(
         name, 800, 560,
-        "set xlabel \"axial strain ε_2\"\nset ylabel \"stress ratio σ_2/σ_1\"\nset key top left reverse Left\n"
-        "set format x \"%g\"\nset autoscale xfixmin\nset grid back lt 1 lw 0.5 lc rgb \"#cccccc\"\n" +
+        std::string(shear ? "set xlabel \"shear strain γ\"\nset ylabel \"shear stress over normal stress τ/σ_2\"\n"
+                          : "set xlabel \"axial strain ε_2\"\nset ylabel \"stress ratio σ_2/σ_1\"\n") +
+            "set key top left reverse Left\nset format x \"%g\"\nset autoscale xfixmin\nset grid back lt 1 lw 0.5 lc "
+            "rgb \"#cccccc\"\n" +
             plot + "\n",
         pdf);
     return chart;
@@ -103,7 +106,7 @@ bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<Equilib
 }
 
 void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& rows,
-                const std::vector<std::string>& names, bool pdf) {
+                const std::vector<std::string>& names, bool pdf, bool shear) {
     std::vector<Curve> main_path;
     std::vector<Curve> cycles;
     int highest_branch = -1;
@@ -123,12 +126,12 @@ void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& r
         (branch ? cycles : main_path).push_back({title, std::move(path)});
     }
     if (!main_path.empty()) {
-        charts.push_back(stairs_chart("staircase", main_path, pdf));
+        charts.push_back(stairs_chart("staircase", main_path, pdf, shear));
     }
     if (!cycles.empty()) {
         cycles.insert(cycles.begin(),
                       Curve{fmt::format("path to equilibrium {}", highest_branch), path_to(rows, highest_branch)});
-        charts.push_back(stairs_chart("cycles", cycles, pdf));
+        charts.push_back(stairs_chart("cycles", cycles, pdf, shear));
     }
 }
 
@@ -216,13 +219,15 @@ std::string chart_script(const std::string& name, int width, int height, const s
     return script;
 }
 
-std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                               bool pdf) {
+std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names, bool pdf,
+                               bool shear) {
     std::vector<Chart> charts;
-    add_stairs(charts, rows, names, pdf);
-    add_distribution(charts, "stress_increments", "increment of the stress ratio Δσ_2/σ_1", stress_increments(rows),
-                     false, pdf);
-    add_distribution(charts, "strain_increments", "strain increment Δε_2", strain_increments(rows), true, pdf);
+    add_stairs(charts, rows, names, pdf, shear);
+    add_distribution(charts, "stress_increments",
+                     shear ? "increment of the shear stress Δτ/σ_2" : "increment of the stress ratio Δσ_2/σ_1",
+                     stress_increments(rows), false, pdf);
+    add_distribution(charts, "strain_increments", shear ? "increment of the shear strain Δγ" : "strain increment Δε_2",
+                     strain_increments(rows), true, pdf);
     return charts;
 }
 

@@ -17,8 +17,9 @@ struct Chart {
 /// The gnuplot script that draws `body` to NAME.svg and NAME.png, of that size in pixels; with `pdf` to NAME.pdf too.
 std::string chart_script(const std::string& name, int width, int height, const std::string& body, bool pdf = false);
 
-/// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments.
+/// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments. `shear`: the
+/// tilt is loaded.
 std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                               bool pdf = false);
+                               bool pdf = false, bool shear = false);
 
 } // namespace isostat

@@ -48,10 +48,9 @@ class Writer {
             file.forces = solve_forces(file.state, path);
         }
         const State<2>& state = file.state;
-        const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-        const std::string caption =
-            fmt::format("equilibrium {}, {} disks, \u03c3\u2082/\u03c3\u2081 = {:.6g}", state.equilibrium,
-                        state.packing.disk_count(), state.load.stress[loaded] / state.load.stress[1 - loaded]);
+        const std::string caption = fmt::format(
+            "equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
+            state.load.loads_tilt() ? "shear/\u03c3\u2082" : "\u03c3\u2082/\u03c3\u2081", state.load.ratio());
         if (options_.pictures) {
             count_work(Work::pictures);
             write(name + ".svg", force_picture(state, file.forces, caption));
@@ -182,11 +181,6 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     }
     const std::vector<EquilibriumRow> rows = read_equilibria(directory / "equilibria.csv");
     Writer writer(output, options);
-    if (options.pictures) {
-        for (const Chart& chart : make_charts(rows, names, options.pdf)) {
-            writer.chart(chart);
-        }
-    }
     if (options.pictures || options.vtk) {
         std::vector<fs::path> states;
         if (fs::exists(directory / "states")) {
@@ -197,6 +191,11 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
             }
         }
         std::sort(states.begin(), states.end());
+        const bool shear = !states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt();
+        for (const Chart& chart :
+             options.pictures ? make_charts(rows, names, options.pdf, shear) : std::vector<Chart>()) {
+            writer.chart(chart);
+        }
         for (const fs::path& path : states) {
             writer.picture(path, "forces_" + path.stem().string());
         }

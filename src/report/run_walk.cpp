@@ -126,7 +126,7 @@ class Walk {
 
     void arrive(const EquilibriumLine& line) {
         here_->equilibrium = line.integer("number");
-        here_->load.stress[static_cast<std::size_t>(here_->load.loaded_axis)] = line.at("sigma2");
+        here_->load.loaded_stress() = line.at("sigma2");
         if (branches_.contains(here_->equilibrium)) {
             kept_[here_->equilibrium] = *here_;
         }
@@ -144,7 +144,7 @@ class Walk {
         if (!solver_) {
             solver_ = std::make_shared<Solver>(Structure(here_->packing, here_->contacts), here_->packing.q);
         }
-        here_->load.stress[static_cast<std::size_t>(here_->load.loaded_axis)] = event.stress;
+        here_->load.loaded_stress() = event.stress;
         const ArcStart start{*here_, solver_};
         const std::optional<Opening> opening = opening_of(start, event);
         if (!opening) {

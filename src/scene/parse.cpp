@@ -128,6 +128,22 @@ void read_preparation(Section& section, Scene& scene) {
     options.max_programmes = static_cast<int>(section.integer("max_programmes", options.max_programmes, 1, 100'000));
 }
 
+/// What the programme changes.
+void read_loaded(Section& section, Scene& scene) {
+    if (!section.has("loaded")) {
+        return;
+    }
+    scene.loads_tilt = section.word("loaded", 0, {"y", "tilt"}) == 1;
+    if (!scene.start.empty()) {
+        return; // the state of the file tells whether it has a tilt
+    }
+    if (*scene.loads_tilt && scene.preparation.cell != PreparedCell::tilted) {
+        section.refuse("loaded",
+                       "'loaded' in [load] is \"tilt\" and no tilt moves: expected kind = \"tilted\" in [cell]");
+    }
+    scene.preparation.loads_tilt = *scene.loads_tilt;
+}
+
 void read_load(Section& section, Scene& scene) {
     const bool has_file = !scene.start.empty();
     const auto infinitesimal = section.integer("infinitesimal_seed");
@@ -158,6 +174,7 @@ void read_load(Section& section, Scene& scene) {
         }
         scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
     }
+    read_loaded(section, scene);
     if (infinitesimal) {
         if (*infinitesimal < 0) {
             section.fail("infinitesimal_seed", "a seed that is not negative");
@@ -167,8 +184,9 @@ void read_load(Section& section, Scene& scene) {
     }
 }
 
-ProgrammeStep read_step(Section& section) {
+ProgrammeStep read_step(Section& section, bool of_shear) {
     ProgrammeStep step;
+    step.of_shear = of_shear;
     step.line = section.line_of("");
     if (!section.has("do")) {
         section.refuse("", "a [[programme]] segment has no 'do': expected \"up\", \"down\" or \"to\"");
@@ -178,7 +196,8 @@ ProgrammeStep read_step(Section& section) {
         step.equilibria = static_cast<int>(section.integer("equilibria", 0, 1, 1'000'000'000));
     }
     if (const auto to = section.number("to")) {
-        step.to = section.number("to", 0, 0, largest_number, "a ratio sigma2/sigma1 that is not negative");
+        step.to = of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio shear/sigma2")
+                           : section.number("to", 0, 0, largest_number, "a ratio sigma2/sigma1 that is not negative");
     }
     if (const auto from = section.integer("from")) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
@@ -290,7 +309,7 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
         }
         for (const toml::node& step : *steps) {
             Section one(step.as_table(), "[programme]", source, scene.settings);
-            scene.programme.push_back(read_step(one));
+            scene.programme.push_back(read_step(one, scene.loads_tilt.value_or(false)));
         }
     }
     Section run = section("run");
@@ -299,7 +318,8 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     Section output = section("output");
     read_output(output, scene);
     output.finish();
-    check_programme(scene, scene.start.empty() ? std::optional<double>(1.0) : std::nullopt);
+    const double prepared = scene.preparation.loads_tilt ? 0 : 1; // isotropic
+    check_programme(scene, scene.start.empty() ? std::optional<double>(prepared) : std::nullopt);
     return scene;
 }
 

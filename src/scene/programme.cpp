@@ -24,6 +24,15 @@ const char* word(Action action) {
     return "to";
 }
 
+/// Of a stress ratio; a shear has either sign.
+double lowest(const ProgrammeStep& step) {
+    return step.of_shear ? -infinity : 0;
+}
+
+const char* ratio_name(const ProgrammeStep& step) {
+    return step.of_shear ? "shear/sigma2" : "sigma2/sigma1";
+}
+
 /// Ratios at which the run can be, and whether both ends are reached for sure.
 struct Range {
     double low = 0;
@@ -53,7 +62,8 @@ Range range_at(const Scene& scene, const ProgrammeStep& step, const std::vector<
     const int from = *step.from;
     for (const Made& m : made) {
         if (!m.last) {
-            return {}; // its number of equilibria is not known: `from` may be of this segment or of a later one
+            return {lowest(step),
+                    infinity}; // its number of equilibria is not known: `from` may be of this segment or of a later one
         }
         if (from <= *m.last) {
             return m.ratio;
@@ -78,14 +88,15 @@ Range after(const Scene& scene, const ProgrammeStep& step, const Range& start) {
         const bool behind = up ? *step.to <= start.low : *step.to >= start.high;
         if (behind) {
             refuse(scene, step,
-                   fmt::format("{} to a ratio sigma2/sigma1 of {}, but the ratio at its start is {}: expected a {} one",
-                               word(step.action), *step.to, range_text(start), up ? "larger" : "smaller"));
+                   fmt::format("{} to a ratio {} of {}, but the ratio at its start is {}: expected a {} one",
+                               word(step.action), ratio_name(step), *step.to, range_text(start),
+                               up ? "larger" : "smaller"));
         }
         if (!step.equilibria) {
             return {*step.to, *step.to};
         }
     }
-    return up ? Range{start.low, step.to.value_or(infinity)} : Range{step.to.value_or(0), start.high};
+    return up ? Range{start.low, step.to.value_or(infinity)} : Range{step.to.value_or(lowest(step)), start.high};
 }
 
 } // namespace
@@ -99,17 +110,18 @@ std::string describe(const ProgrammeStep& step) {
         text += fmt::format(": {} equilibria", *step.equilibria);
     }
     if (step.to) {
-        text += fmt::format("{} sigma2/sigma1 = {}",
+        text += fmt::format("{} {} = {}",
                             step.equilibria             ? " or to"
                             : step.action == Action::to ? ""
                                                         : ": to",
-                            *step.to);
+                            ratio_name(step), *step.to);
     }
     return text;
 }
 
 void check_programme(const Scene& scene, std::optional<double> ratio) {
-    const Range start = ratio ? Range{*ratio, *ratio} : Range{};
+    const double least = scene.programme.empty() ? 0 : lowest(scene.programme.front());
+    const Range start = ratio ? Range{*ratio, *ratio} : Range{least, infinity};
     std::vector<Made> made{{0, start}};
     Range now = start;
     for (const ProgrammeStep& step : scene.programme) {

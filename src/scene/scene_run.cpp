@@ -53,6 +53,16 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
     if (scene.load_kind) {
         state.load.kind = *scene.load_kind;
     }
+    if (scene.loads_tilt) {
+        const Cell<2>& cell = state.packing.cell;
+        if (*scene.loads_tilt && !(cell.any() && cell.tilt_moves[0])) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: no tilt moves, and 'loaded' in [load] of {} is \"tilt\": "
+                                    "expected \"y\", or a cell whose tilt moves",
+                                    source, scene.file));
+        }
+        state.load.loaded_axis = *scene.loads_tilt ? 2 : 1;
+    }
     if (scene.infinitesimal_seed) {
         state.load.infinitesimal = generic_infinitesimal<2>(state.packing.radius, *scene.infinitesimal_seed);
         balance(state.load.infinitesimal, state.packing.cell);
@@ -67,8 +77,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
     }
     require_followed(state, scene.run, source);
     check_start(state, source, scene.run.ties != TiePolicy::stop);
-    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-    check_programme(scene, state.load.stress[loaded] / state.load.stress[1 - loaded]);
+    check_programme(scene, state.load.ratio());
     if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
         Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
         provenance["moved_to_grid"] = moved;

@@ -215,7 +215,7 @@ template <int Dim> class LinearLoading {
         run_.coordinates.push_back(at_.grains.q);
     }
 
-    double& stress() { return load_.stress[static_cast<std::size_t>(load_.loaded_axis)]; }
+    double& stress() { return load_.loaded_stress(); }
 
     LinearTrajectory<Dim> run_;
     Approximation<Dim> at_;

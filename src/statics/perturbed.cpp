@@ -43,13 +43,13 @@ template <int Dim> std::vector<Enclosure> PerturbedStatics<Dim>::terms(double si
         }
     }
     Load<Dim> load = load_;
-    load.stress[static_cast<std::size_t>(load.loaded_axis)] = sigma;
+    load.loaded_stress() = sigma;
     return first_->forces(f0, zero, load, sigma_error);
 }
 
 template <int Dim> Enclosure PerturbedStatics<Dim>::force(ContactId contact) {
     if (present_rung_ != statics_->rung()) { // better forces
-        present_ = terms(load_.stress[static_cast<std::size_t>(load_.loaded_axis)], 0);
+        present_ = terms(load_.loaded_stress(), 0);
         present_rung_ = statics_->rung();
         if (stress_rate_.value != 0 || stress_rate_.radius != 0) {
             for (std::size_t l = 0; l < present_.size(); ++l) {
@@ -84,7 +84,7 @@ template <int Dim> Enclosure PerturbedStatics<Dim>::limit_rate(ContactId contact
 
 template <int Dim> double PerturbedStatics<Dim>::size() {
     if (size_ == 0) {
-        const double sigma = load_.stress[static_cast<std::size_t>(load_.loaded_axis)];
+        const double sigma = load_.loaded_stress();
         for (int l = 0; l < statics_->structure().size(); ++l) {
             size_ = std::max(size_, std::abs(statics_->force(ContactId(l), sigma).value));
         }

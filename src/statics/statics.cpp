@@ -19,8 +19,8 @@ template <int Dim>
 Statics<Dim>::Statics(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure,
                       const Factorisation& factorisation, const InverseBound& inverse, StaticsHints<Dim> hints)
     : packing_(&packing), structure_(&structure), factorisation_(&factorisation), inverse_(&inverse),
-      sigma_(load.stress[static_cast<std::size_t>(load.loaded_axis)]),
-      ladder_(packing, structure, factorisation, inverse, hints.ladder, hints.vertex), pattern_(packing, structure) {
+      sigma_(load.loaded_stress()), ladder_(packing, structure, factorisation, inverse, hints.ladder, hints.vertex),
+      pattern_(packing, structure) {
     const DofMap<Dim>& dofs = structure.dofs();
     // Under true stresses a wall's force follows the length of the other wall.
     const bool follows = load.kind == LoadKind::true_stress;

@@ -22,8 +22,8 @@ template <int Dim> struct LimitLoad {
     double error = 0;                       ///< bound of that
     Enclosure stress_rate{0, 0};            ///< first-order term of the stress
 
-    [[nodiscard]] double stress() const { return load.stress[static_cast<std::size_t>(load.loaded_axis)]; }
-    void set_stress(double stress) { load.stress[static_cast<std::size_t>(load.loaded_axis)] = stress; }
+    [[nodiscard]] double stress() const { return load.loaded_stress(); }
+    void set_stress(double stress) { load.loaded_stress() = stress; }
 };
 
 /// The first-order side of a run. What of it outlives a vertex is in the state: rho, and what its load means.

@@ -17,8 +17,8 @@ template <int Dim> Words names(const ArcRecord<Dim>& record) {
 
 /// eps_2, in double.
 template <int Dim> double strain(const Load<Dim>& load, const Packing<Dim>& packing) {
-    const double reference = load.reference_length[static_cast<std::size_t>(load.loaded_axis)];
-    return reference > 0 ? (reference - packing.length(load.loaded_axis)) / reference : 0;
+    const double reference = load.strain_length(load.loaded_axis);
+    return reference > 0 ? (load.at_rest(load.loaded_axis) - packing.length(load.loaded_axis)) / reference : 0;
 }
 
 } // namespace

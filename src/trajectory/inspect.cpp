@@ -115,7 +115,7 @@ template <int Dim> bool falls_with_work(const Load<Dim>& load) {
 /// Signs of the forces, multipliers of what is held, and what the potential does along one mechanism.
 template <int Dim>
 void judge_forces(MechanismInspection<Dim>& inspection, Vertex<Dim>& vertex, const State<Dim>& state) {
-    const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    const double sigma = state.load.loaded_stress();
     EquilibriumRecord<Dim>& record = inspection.record;
     record.verdict = Verdict::refuted; // not isostatic
     vertex.statics.climb();
@@ -176,7 +176,7 @@ Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, cons
         return made.failure();
     }
     Vertex<Dim>& vertex = *made.value();
-    const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    const double sigma = state.load.loaded_stress();
     inspection.rattlers = rattlers(vertex);
     CandidateList<Dim> candidates = find_candidates(state.packing, candidate_fraction);
     KeptCandidates kept;

@@ -5,22 +5,22 @@
 
 namespace isostat {
 
-Segment segment_of(const ProgrammeStep& step, double sigma1, double sigma2, const std::string& source) {
+Segment segment_of(const ProgrammeStep& step, const Load<2>& load, const std::string& source) {
     Segment segment;
     segment.name = step.name;
     segment.equilibria = step.equilibria;
     segment.from = step.from;
     if (step.to) {
-        segment.to_stress = *step.to * sigma1;
+        segment.to_stress = *step.to * load.other_stress();
     }
-    segment.direction = step.action == Action::up     ? +1
-                        : step.action == Action::down ? -1
-                        : *segment.to_stress > sigma2 ? +1
-                                                      : -1;
-    if (step.to && !(segment.direction * (*segment.to_stress - sigma2) > 0)) {
+    segment.direction = step.action == Action::up                   ? +1
+                        : step.action == Action::down               ? -1
+                        : *segment.to_stress > load.loaded_stress() ? +1
+                                                                    : -1;
+    if (step.to && !(segment.direction * (*segment.to_stress - load.loaded_stress()) > 0)) {
         throw Error(ErrorKind::bad_input,
-                    fmt::format("{}:{}: segment \"{}\": sigma2/sigma1 is {} at its start: expected a {} ratio than {}",
-                                source, step.line, step.name, sigma2 / sigma1,
+                    fmt::format("{}:{}: segment \"{}\": {} is {} at its start: expected a {} ratio than {}", source,
+                                step.line, step.name, load.ratio_name(), load.ratio(),
                                 segment.direction > 0 ? "larger" : "smaller", *step.to));
     }
     return segment;
@@ -40,10 +40,9 @@ ProgrammeOutcome play(const Programme<Dim>& programme, State<Dim>& state, const 
             }
             state = programme.stored(*step.from);
         }
-        const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
         Segment segment;
         try {
-            segment = segment_of(step, state.load.stress[1 - loaded], state.load.stress[loaded], programme.source);
+            segment = segment_of(step, state.load, programme.source);
         } catch (const Error& error) {
             return {std::nullopt, step.name, error.what()};
         }

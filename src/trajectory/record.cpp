@@ -14,10 +14,6 @@ namespace isostat {
 
 namespace {
 
-template <int Dim> double loaded_stress(const Load<Dim>& load) {
-    return load.stress[static_cast<std::size_t>(load.loaded_axis)];
-}
-
 /// |f . (G v) - F . v| / sum |F_i v_i| for a fixed pseudo-random v: both sides of the theorem of virtual power.
 template <int Dim> double virtual_power_error(const Vertex<Dim>& vertex, double sigma) {
     const sparse::Matrix<double>& h = vertex.structure.matrix();
@@ -89,12 +85,13 @@ template <int Dim> Enclosure length_of(const TrueCoordinates<Dim>& q, std::size_
 
 template <int Dim> Enclosure strain_of(const TrueCoordinates<Dim>& q, const Load<Dim>& load, std::size_t axis) {
     const std::size_t k = Dim * q.vertex.packing.radius.size() + axis;
-    const double reference = load.reference_length[axis];
+    const double at_rest = load.at_rest(static_cast<int>(axis));
+    const double reference = load.strain_length(static_cast<int>(axis));
     if (!(reference > 0)) {
         return {0, 0};
     }
     const double rounding = dd_rounding * (std::abs(q.vertex.packing.q[k]) + reference);
-    return shown((reference - q[k]) / reference, (q.error(k) + rounding) / reference);
+    return shown((at_rest - q[k]) / reference, (q.error(k) + rounding) / reference);
 }
 
 /// Of dead loads on the degrees of freedom; true stresses have none: an infinite bound.
@@ -147,7 +144,7 @@ template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex) {
 template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load) {
     std::vector<double> forces(static_cast<std::size_t>(vertex.structure.size()));
     for (std::size_t l = 0; l < forces.size(); ++l) {
-        forces[l] = vertex.statics.force(ContactId(l), loaded_stress(load)).value;
+        forces[l] = vertex.statics.force(ContactId(l), load.loaded_stress()).value;
     }
     return forces;
 }
@@ -159,7 +156,7 @@ constexpr double vague = 1e-6;
 constexpr double sharp = 1e-10;
 
 template <int Dim> Result<LoadLimit> well_known_limit(Vertex<Dim>& vertex, const Load<Dim>& load, int direction) {
-    const double sigma = loaded_stress(load);
+    const double sigma = load.loaded_stress();
     double largest = 0;
     for (const double stress : load.stress) {
         largest = std::max(largest, std::abs(stress));
@@ -197,7 +194,7 @@ std::optional<Failure> describe_limits(Description<Dim>& description, Vertex<Dim
         double& stress = direction > 0 ? record.stress_high : record.stress_low;
         Contact& opens = direction > 0 ? record.opens_high : record.opens_low;
         if (record.held > 0) { // at this load only: the multiplier of the held coordinate vanishes just here
-            stress = loaded_stress(load);
+            stress = load.loaded_stress();
             opens = none;
             continue;
         }
@@ -222,12 +219,12 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     EquilibriumRecord<Dim>& record = description.record;
     record.margin = std::numeric_limits<double>::infinity();
     record.decided_by = Rung::combinatorial;
-    const double sigma = loaded_stress(load);
+    const double sigma = load.loaded_stress();
     record.stress = sigma;
-    record.sigma1 = load.stress[load.loaded_axis == 0 && Dim > 1 ? 1 : 0];
+    record.sigma1 = load.other_stress();
     description.vertex = at_true_vertex(vertex);
     const TrueCoordinates<Dim> q{vertex, description.vertex};
-    for (std::size_t a = 0; a < Dim; ++a) {
+    for (std::size_t a = 0; a < Dim + (load.loads_tilt() ? 1 : 0); ++a) {
         const Enclosure length = length_of(q, a);
         const Enclosure strain = strain_of(q, load, a);
         record.length.push_back(length.value);

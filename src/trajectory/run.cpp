@@ -454,7 +454,7 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
                            RunCounters& counters, RunObserver<Dim>& observer) {
     require_floating_point();
     require_followed(state, options, "state");
-    const double stress = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    const double stress = state.load.loaded_stress();
     if (segment.to_stress && segment.direction * (*segment.to_stress - stress) < 0) {
         return {false, failed(FailureKind::no_limit,
                               "the stress {:.17g} to reach lies behind the load, "

@@ -1,5 +1,6 @@
 #include "trajectory/vertex.hpp"
 
+#include "contact/images.hpp"
 #include "contact/words.hpp"
 #include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
@@ -31,22 +32,17 @@ Vertex<Dim>::Vertex(Packing<Dim> p, IsostaticStructure<Dim> s, ApproximateInvers
 
 namespace {
 
-/// An offset of more than `most` periods along some axis.
-bool is_beyond(const Contact& pair, int most) {
-    return std::any_of(pair.image.m.begin(), pair.image.m.end(), [most](int m) { return std::abs(m) > most; });
-}
-
 /// Bounds of a vertex ask for exact differences (proofs/cells.md, C2), and for entries of the contact matrix that are
 /// multiples by a power of two.
 template <int Dim>
 std::optional<Failure> is_not_exact(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
-    constexpr int farthest = 2;
     const auto far =
-        std::find_if(contacts.begin(), contacts.end(), [](const Contact& c) { return is_beyond(c, farthest); });
+        std::find_if(contacts.begin(), contacts.end(), [](const Contact& c) { return is_beyond(c, farthest_contact); });
     if (far != contacts.end()) {
         return failed(FailureKind::undecided,
-                      "the contact {} is more than {} periods away: write the state with its disks put into the cell",
-                      named<Dim>(*far), farthest);
+                      "a run takes contacts with images up to {} periods away, and {} is farther: write the state with "
+                      "its disks put into the cell",
+                      farthest_contact, named<Dim>(*far));
     }
     if (!is_on_grid(packing)) {
         return failed(FailureKind::undecided, "a part of the cell that does not move is not on the grid of the "
@@ -175,16 +171,15 @@ const ZeroGaps::value_type* find(const ZeroGaps& pairs, const Contact& contact) 
 
 /// A candidate with an image that is farther away than the grid allows for (C2).
 template <int Dim> std::optional<Failure> too_far(const Packing<Dim>& packing, const std::vector<Contact>& candidates) {
-    constexpr int farthest = 3;
     const auto far = packing.cell.any() ? std::find_if(candidates.begin(), candidates.end(),
-                                                       [](const Contact& c) { return is_beyond(c, farthest); })
+                                                       [](const Contact& c) { return is_beyond(c, farthest_image); })
                                         : candidates.end();
     if (far == candidates.end()) {
         return std::nullopt;
     }
     return failed(FailureKind::undecided,
                   "{} may touch, more than {} periods away: write the state with its disks put into the cell",
-                  named<Dim>(*far), farthest);
+                  named<Dim>(*far), farthest_image);
 }
 
 } // namespace

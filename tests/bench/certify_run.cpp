@@ -118,7 +118,7 @@ bool play(const std::string& file, int first, int repeats, bench::Table& costs, 
             }
             state = start->second;
         }
-        Segment segment = segment_of(step, state.load.stress[0], state.load.stress[1], file);
+        Segment segment = segment_of(step, state.load, file);
         if (first > 0) {
             segment.equilibria = std::min(first, segment.equilibria.value_or(first));
         }

@@ -64,7 +64,7 @@ struct Reference {
         inverse = bound_inverse(structure, factorisation, cache);
         Statics<2> statics(state.packing, state.load, structure, factorisation, inverse);
         (void)statics.climb();
-        const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+        const double sigma = state.load.loaded_stress();
         load = statics.external_force(sigma);
         for (std::size_t l = 0; l < load.size(); ++l) {
             force.push_back(statics.force(ContactId(l), sigma).value);

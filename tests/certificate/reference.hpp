@@ -102,9 +102,7 @@ class Vertex {
         }
         return solve(contact_matrix(), load);
     }
-    [[nodiscard]] Vector forces() const {
-        return forces(Real(state_.load.stress[static_cast<std::size_t>(state_.load.loaded_axis)]));
-    }
+    [[nodiscard]] Vector forces() const { return forces(Real(state_.load.loaded_stress())); }
     [[nodiscard]] Vector infinitesimal() const {
         Vector load(state_.contacts.size(), Real(0));
         for (std::size_t k = 0; k < state_.load.infinitesimal.size(); ++k) {
@@ -116,7 +114,7 @@ class Vertex {
     /// Where the first force that decreases with direction * sigma vanishes, and which; -1: none decreases by more
     /// than rounding to 80 digits.
     [[nodiscard]] std::pair<int, Real> limit(int direction) const {
-        const Real sigma(state_.load.stress[static_cast<std::size_t>(state_.load.loaded_axis)]);
+        const Real sigma(state_.load.loaded_stress());
         const Real change = abs(Real(state_.load.stress[0])) + abs(Real(state_.load.stress[1]));
         const Vector f = forces();
         const Vector g = forces(sigma + change);

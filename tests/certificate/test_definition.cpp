@@ -35,7 +35,7 @@ Result<OpeningDecision> decided(const State<2>& state, std::optional<LoadLimit>*
     const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
     const VertexEnclosure vertex = enclose_vertex(state.packing, structure.value(), factorisation, inverse);
     Statics<2> statics(state.packing, state.load, structure.value(), factorisation, inverse, {{}, &vertex});
-    const double sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    const double sigma = state.load.loaded_stress();
     auto decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
     if (low != nullptr) {
         auto limit = find_limit(statics, sigma, -1);

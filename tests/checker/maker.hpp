@@ -170,7 +170,7 @@ inline std::vector<Contact> all_pairs(const State<2>& state, int far = 4) {
 inline isostat::LoadEndClaim load_end(const State<2>& state, const Vector& f, const Vector& u, int direction) {
     isostat::LoadEndClaim end{true, {}, {}};
     Real best = std::numeric_limits<Real>::infinity();
-    const Real sigma = state.load.stress[static_cast<std::size_t>(state.load.loaded_axis)];
+    const Real sigma = state.load.loaded_stress();
     const Real tiny = 1e-13L * u.lpNorm<Eigen::Infinity>();
     for (Eigen::Index l = 0; l < f.size(); ++l) {
         if (direction * u(l) < -tiny && -f(l) / (direction * u(l)) < best * (1 - 1e-12L)) {

@@ -141,6 +141,34 @@ BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified) {
     BOOST_TEST(run({"verify", (folder / "arcs").string()}).status != 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replayed) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "cell.toml").string();
+    const auto play = [&](const std::string& load, const std::string& start) {
+        scratch::write(scene, fmt::format("[packing]\nfile = \"{}\"\n[load]\n{}\n[run]\ncertify = "
+                                          "\"arcs\"\n[[programme]]\ndo = \"up\"\nequilibria = 3\n[[programme]]\ndo = "
+                                          "\"to\"\nto = -0.01\n",
+                                          start, load));
+        return run({"run", scene, "-o", (folder / "out").string(), "--force"});
+    };
+    const std::string tilted = scratch::data("cells/tilt_16.json");
+    BOOST_TEST(play("", tilted).status == 65); // of sigma2 no ratio is negative
+    BOOST_TEST(contains(play("loaded = \"tilt\"", rectangle).err, "no tilt moves"));
+    const auto ran = play("loaded = \"tilt\"", tilted);
+    expect(ran, 0);
+    BOOST_TEST(contains(ran.out, "shear/sigma2"), ran.out);
+    const auto verified = run({"verify", (folder / "out").string()});
+    expect(verified, 0);
+    BOOST_TEST(contains(verified.out, "verdict        proved"), verified.out);
+    const auto last = folder / "out" / "states" / "last.json";
+    const auto state = isostat::read_any_state<2>(last).state;
+    BOOST_TEST(state.load.loaded_axis == 2);
+    BOOST_TEST(state.load.shear[0] == -0.01 * state.load.stress[1]);
+    BOOST_TEST(contains(scratch::read(folder / "out" / "figures" / "staircase.gp"), "shear strain"));
+    expect(run({"certify", last.string(), "-o", (folder / "last.cert.json").string()}), 0);
+    expect(run({"verify", (folder / "last.cert.json").string()}), 0);
+}
+
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
     const scratch::Folder folder;
     isostat::State<2> state = cells::one_tilted_disk(1, 1, 0.5);

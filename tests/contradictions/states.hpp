@@ -203,7 +203,7 @@ inline std::optional<State<2>> at_the_end(Random& random) {
     if (!truth.known || end.unbounded || abs(end.stress) < 1e-30) { // the truth has 200 digits, not 300
         return {};
     }
-    auto& stress = state->load.stress[static_cast<std::size_t>(state->load.loaded_axis)];
+    auto& stress = state->load.loaded_stress();
     stress = ulps(static_cast<double>(end.stress), few(random));
     return state;
 }

@@ -517,7 +517,7 @@ inline int Truth::at_rest() const {
 }
 
 inline void Truth::find_interval() {
-    const Real sigma = state_->load.stress[static_cast<std::size_t>(state_->load.loaded_axis)];
+    const Real sigma = state_->load.loaded_stress();
     Real rates = 0;
     for (const Real& r : rate) {
         rates = std::max(rates, Real(abs(r)));

@@ -82,22 +82,32 @@ BOOST_AUTO_TEST_CASE(the_ratio_of_a_start_file_is_checked_when_it_is_known) {
     expect_bad_input([&] { check_programme(scene, 1.0); }, {"s.toml:3:", "start is 1", "smaller"});
 }
 
+namespace {
+
+Load<2> stresses(double sigma1, double sigma2) {
+    Load<2> load;
+    load.stress = {sigma1, sigma2};
+    return load;
+}
+
+} // namespace
+
 BOOST_AUTO_TEST_CASE(segments_get_a_direction_and_a_stress) {
     ProgrammeStep to;
     to.action = Action::to;
     to.to = 1.5;
-    BOOST_TEST(segment_of(to, 2, 4, "s").direction == -1);
-    BOOST_TEST(segment_of(to, 2, 2, "s").direction == +1);
-    BOOST_TEST(*segment_of(to, 2, 2, "s").to_stress == 3.0);
-    expect_bad_input([&] { (void)segment_of(to, 2, 3, "s"); }, {"1.5"});
+    BOOST_TEST(segment_of(to, stresses(2, 4), "s").direction == -1);
+    BOOST_TEST(segment_of(to, stresses(2, 2), "s").direction == +1);
+    BOOST_TEST(*segment_of(to, stresses(2, 2), "s").to_stress == 3.0);
+    expect_bad_input([&] { (void)segment_of(to, stresses(2, 3), "s"); }, {"1.5"});
     ProgrammeStep down;
     down.action = Action::down;
     down.equilibria = 3;
-    BOOST_TEST(segment_of(down, 2, 4, "s").direction == -1);
-    BOOST_TEST(!segment_of(down, 2, 4, "s").to_stress.has_value());
+    BOOST_TEST(segment_of(down, stresses(2, 4), "s").direction == -1);
+    BOOST_TEST(!segment_of(down, stresses(2, 4), "s").to_stress.has_value());
     down.to = 1.0;
-    BOOST_TEST(*segment_of(down, 2, 4, "s").to_stress == 2.0);
-    expect_bad_input([&] { (void)segment_of(down, 2, 1, "s"); }, {"smaller ratio than 1"});
+    BOOST_TEST(*segment_of(down, stresses(2, 4), "s").to_stress == 2.0);
+    expect_bad_input([&] { (void)segment_of(down, stresses(2, 1), "s"); }, {"smaller ratio than 1"});
 }
 
 BOOST_AUTO_TEST_CASE(the_plan_follows_the_scene) {

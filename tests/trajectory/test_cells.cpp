@@ -315,6 +315,70 @@ BOOST_AUTO_TEST_CASE(forces_on_disks_do_not_depend_on_the_pin) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_shear_that_grows_opens_one_diagonal_and_a_shear_that_falls_the_other) {
+    // f(1,-1) = F2 / sqrt 3 - T and f(0,1) = F2 / sqrt 3 + T (A2), F1 large enough.
+    State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    state.load.loaded_axis = 2;
+    snap_to_grid(state.packing);
+    const Played here = play(state, +1, {}, 0.375);
+    BOOST_TEST_REQUIRE(here.outcome.completed, here.why());
+    const EquilibriumRecord<2>& record = here.records.equilibria.back();
+    BOOST_TEST(record.stress == 0.375);
+    BOOST_TEST(record.sigma1 == 1); // F2: what the shear is measured in
+    BOOST_TEST(record.stress_high == 1 / std::sqrt(3.0), boost::test_tools::tolerance(1e-12));
+    BOOST_TEST(record.stress_low == -1 / std::sqrt(3.0), boost::test_tools::tolerance(1e-12));
+    BOOST_TEST((record.opens_high == cells::across(0, 0, 1, -1)));
+    BOOST_TEST((record.opens_low == cells::across(0, 0, 0, 1)));
+    BOOST_TEST_REQUIRE(record.strain.size() == 3U);
+    BOOST_TEST(record.strain[2] == -1, boost::test_tools::tolerance(1e-12)); // tilt 1 over the reference height 1
+    BOOST_TEST(record.length[2] == 1, boost::test_tools::tolerance(1e-12));
+    for (const int direction : {-1, +1}) {
+        const Played beyond = play(here.state, direction, 1);
+        BOOST_TEST(!beyond.outcome.completed); // no other structure carries more
+        BOOST_TEST(beyond.records.arcs.front().stress == direction / std::sqrt(3.0),
+                   boost::test_tools::tolerance(1e-12));
+    }
+}
+
+/// x -> -x: the tilt and the shear change sign, and contacts are named by other images.
+Disguised sheared_the_other_way(const State<2>& start) {
+    State<2> state = start;
+    for (std::size_t i = 0; i < start.packing.radius.size(); ++i) {
+        state.packing.q[2 * i] *= -1;
+        state.load.infinitesimal[2 * i] *= -1;
+    }
+    state.packing.q[state.packing.tilt_at(0, 1)] *= -1;
+    state.load.shear[0] *= -1;
+    const auto mirror = [](const Contact& c) {
+        return c.kind == ContactKind::disk_disk ? cells::across(c.i, c.j, -c.image.m[0], c.image.m[1]) : c;
+    };
+    return crafted::disguised(std::move(state), mirror, mirror);
+}
+
+BOOST_AUTO_TEST_CASE(simple_shear_to_one_side_is_that_to_the_other_of_the_mirror_image) {
+    State<2> start = start_of("tilt_16");
+    start.load.loaded_axis = 2;
+    const Played up = play(start, +1, 4);
+    BOOST_TEST_REQUIRE(up.outcome.completed, up.why());
+    const Disguised other = sheared_the_other_way(start);
+    const Played down = play(other.state, -1, 4);
+    BOOST_TEST_REQUIRE(down.outcome.completed, down.why());
+    BOOST_TEST((crafted::events(up.records, crafted::same) == crafted::events(down.records, other.back)));
+    for (std::size_t e = 0; e < up.records.equilibria.size(); ++e) {
+        const EquilibriumRecord<2>& a = up.records.equilibria[e];
+        const EquilibriumRecord<2>& b = down.records.equilibria[e];
+        BOOST_TEST(std::abs(a.stress + b.stress) < 1e-9);
+        BOOST_TEST(std::abs(a.strain[2] + b.strain[2]) < 1e-9);
+        BOOST_TEST(a.potential == b.potential, boost::test_tools::tolerance(1e-9));
+        BOOST_TEST((e == 0 || a.stress > up.records.equilibria[e - 1].stress));
+        BOOST_TEST((e == 0 || a.strain[2] > up.records.equilibria[e - 1].strain[2])); // the shear does work
+    }
+    const Played back = play(up.state, -1, {}, 0);
+    BOOST_TEST_REQUIRE(back.outcome.completed, back.why());
+    BOOST_TEST(back.state.load.shear[0] == 0);
+    BOOST_TEST((back.state.load.stress == start.load.stress));
+}
+
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
     // One disk: f(1,-1) = F2 / sqrt 3 - T vanishes at F2 = sqrt 3 T, and the disk rolls over its own image.
     State<2> state = cells::one_tilted_disk(1, 1, 0.5);

@@ -36,9 +36,34 @@ template <int Dim> struct Load {
     std::array<double, Dim> reference_length{}; ///< L_a at which nominal stress and strain are defined
     /// Nominal shear stresses on the tilts of a cell that move: the dead force on A_ab is - shear L_a,ref.
     std::array<double, Cell<Dim>::tilts> shear{};
-    int loaded_axis = 1;               ///< the axis whose stress the programme changes (sigma_2)
+    /// The axis whose stress the programme changes (sigma_2). Dim: that is the shear stress on the tilt, which moves.
+    int loaded_axis = 1;
     std::vector<double> disk_force;    ///< empty, or Dim*n external forces on the disks
     std::vector<double> infinitesimal; ///< empty, or Dim*n infinitesimal loads g (the eps part)
+
+    [[nodiscard]] bool loads_tilt() const { return loaded_axis >= Dim; }
+    /// The stress that the programme changes.
+    [[nodiscard]] double loaded_stress() const {
+        return loads_tilt() ? shear[0] : stress[static_cast<std::size_t>(loaded_axis)];
+    }
+    [[nodiscard]] double& loaded_stress() {
+        return loads_tilt() ? shear[0] : stress[static_cast<std::size_t>(loaded_axis)];
+    }
+    /// The axis whose stress the ratio of a programme is taken over: of a shear, the last one, whose force is F_2:
+    /// both act over the same reference length, and their ratio is that of the stresses.
+    [[nodiscard]] int other_axis() const { return loads_tilt() || loaded_axis == 0 ? Dim - 1 : 0; }
+    [[nodiscard]] double other_stress() const { return stress[static_cast<std::size_t>(other_axis())]; }
+    [[nodiscard]] double ratio() const { return loaded_stress() / other_stress(); }
+    /// "sigma2/sigma1", "shear/sigma2": for messages and tables.
+    [[nodiscard]] const char* ratio_name() const { return loads_tilt() ? "shear/sigma2" : "sigma2/sigma1"; }
+    /// Strain of an axis, or of the tilt (axis Dim): (`at_rest` - coordinate) / `strain_length`. That of the tilt is
+    /// minus A_xy over the reference height: 0 in a rectangle, and growing as a positive shear stress does work.
+    [[nodiscard]] double at_rest(int axis) const {
+        return axis >= Dim ? 0 : reference_length[static_cast<std::size_t>(axis)];
+    }
+    [[nodiscard]] double strain_length(int axis) const {
+        return reference_length[static_cast<std::size_t>(axis >= Dim ? Dim - 1 : axis)];
+    }
 
     /// What presses on the walls and on the coordinates of the cell that can move. With `disk_force` this is the load,
     /// exactly. A period takes the force of the wall that would stand there: dead forces, so W is linear in the cell.

@@ -78,6 +78,7 @@ struct PreparationOptions {
     LoadKind load = LoadKind::nominal;
     /// A cell instead of walls: at most `large_above` disks, and enough for periods of four diameters.
     PreparedCell cell = PreparedCell::none;
+    bool loads_tilt = false; ///< tilted cells: the programme will change the shear stress, not sigma_2
 
     const std::atomic<bool>* stop = nullptr;                       ///< set by Ctrl-C
     std::function<void(const PreparationProgress&)> progress = {}; ///< called now and then; not copied, not kept

@@ -31,6 +31,7 @@ struct Scene {
     std::filesystem::path start; ///< [packing] file: a state or vertex text to start from; empty: prepare
     PreparationOptions
         preparation; ///< [packing], [preparation] and sigma1, kind of [load]; unused when `start` is given
+    std::optional<bool> loads_tilt;    ///< [load] loaded, when given: overrides that of a start file
     std::optional<LoadKind> load_kind; ///< [load] kind, when given: overrides that of a start file
     std::optional<std::uint64_t>
         infinitesimal_seed; ///< [load] infinitesimal_seed: new infinitesimal loads for a start file

@@ -12,7 +12,8 @@
 
 namespace isostat {
 
-/// What a segment of the programme does to the stress ratio sigma_2 / sigma_1.
+/// What a segment of the programme does to the stress ratio sigma_2 / sigma_1 (shear / sigma_2 where the tilt is
+/// loaded).
 enum class Action { up, down, to };
 
 /// One segment as a scene names it ([[programme]] entry): its goal is a ratio, not a stress.
@@ -21,13 +22,14 @@ struct ProgrammeStep {
     std::optional<int> equilibria; ///< `equilibria`: stop after this many new ones
     std::optional<double> to;      ///< `to`: stop at this ratio sigma_2 / sigma_1, inside a supported interval
     std::optional<int> from;       ///< `from`: start from this equilibrium of the run instead of the last one
+    bool of_shear = false;         ///< the tilt is loaded: `to` is a ratio shear / sigma_2, of either sign
     std::string name;              ///< `name`, or made from the rest
     int line = 0;                  ///< in the scene file
 };
 
-/// The programme's segment for a state at `sigma1`, `sigma2`: direction and stress of the goal.
+/// The programme's segment for a state under `load`: direction and stress of the goal.
 /// Throws `Error(bad_input)`, starting with `source`, when the ratio to reach lies behind.
-Segment segment_of(const ProgrammeStep& step, double sigma1, double sigma2, const std::string& source);
+Segment segment_of(const ProgrammeStep& step, const Load<2>& load, const std::string& source);
 
 /// What is to be done, and from where on.
 template <int Dim> struct Programme {

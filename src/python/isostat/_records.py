@@ -187,6 +187,8 @@ class Records:
         """(m, 2) lengths (Lx, Ly) of the box at every equilibrium."""
         # L1 is along the axis that is not loaded.
         axis = self.states[0].loaded_axis if 0 in self.states else 1
+        if axis == 2:
+            raise ValueError("the tilt is loaded: the lengths of the cell are in the states")
         columns = ("L1", "L2") if axis == 1 else ("L2", "L1")
         return np.column_stack([self.equilibria[name] for name in columns])
 
@@ -210,6 +212,8 @@ class Records:
         for number in rows["number"][holds]:
             if int(number) in self.states:
                 state = self.states[int(number)]
+                if state.loaded_axis == 2:
+                    raise ValueError("the tilt is loaded: ask forces_at for the stored states")
                 stress = [float(value) for value in state.stress]
                 stress[state.loaded_axis] = sigma2
                 return state.with_stress(stress), forces_at(state, sigma2)

@@ -45,17 +45,21 @@ struct Range {
     int last = 0;
 };
 
-Range range_of(double s, double margin, const std::string& disk) {
-    constexpr double farthest = 30; // offsets and their differences fit into a byte
-    const Range range{static_cast<int>(std::ceil(std::clamp(-margin - s, -200.0, 200.0))),
-                      static_cast<int>(std::floor(std::clamp(1 + margin - s, -200.0, 200.0)))};
-    if (!(std::abs(s) < farthest && margin < farthest - 1)) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{} is {:.3g} periods from the origin and pairs up to {:.3g} periods apart may touch: "
-                                "expected less than {} (put it into the cell, or take a basis of short periods)",
-                                disk, s, margin, farthest));
+/// \pre |s| and the margin are below `farthest_disk`
+Range range_of(double s, double margin) {
+    return {static_cast<int>(std::ceil(-margin - s)), static_cast<int>(std::floor(1 + margin - s))};
+}
+
+/// So many periods apart may disks be whose gap is below `reach`. The rounding of s and of the heights moves an image
+/// by far less than a hundredth of it.
+std::array<double, 2> margin_of(const Packing<2>& packing, double reach) {
+    const double near = 1.01 * (2 * packing.max_radius() + reach);
+    const std::array<double, 2> height = heights(packing);
+    std::array<double, 2> margin{};
+    for (std::size_t a = 0; a < 2; ++a) {
+        margin[a] = packing.cell.periodic[a] ? near / height[a] + 1e-9 : 0;
     }
-    return range;
+    return margin;
 }
 
 /// Largest size of a coordinate of the images, and of the cell.
@@ -71,6 +75,23 @@ double largest_length(const Packing<2>& packing, const Images<2>& images) {
 
 } // namespace
 
+std::optional<std::string> disk_beyond(const Packing<2>& packing, double reach, double most) {
+    const std::array<double, 2> margin = margin_of(packing, reach);
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const std::array<double, 2> s = fractional(packing, packing.q[2 * k], packing.q[2 * k + 1]);
+        for (std::size_t a = 0; a < 2; ++a) {
+            if (packing.cell.periodic[a] && !(std::abs(s[a]) < most && margin[a] < most - 1)) {
+                return fmt::format("disk {} is {:.3g} periods from the origin and pairs up to {:.3g} periods apart may "
+                                   "touch: expected less than {} (put it into the cell, or take a basis of short "
+                                   "periods)",
+                                   i, s[a], margin[a], most);
+            }
+        }
+    }
+    return std::nullopt;
+}
+
 template <int Dim> Contact Images<Dim>::contact(int a, int b) const {
     const auto from = static_cast<std::size_t>(a);
     const auto to = static_cast<std::size_t>(b);
@@ -85,12 +106,10 @@ Images<2> images_near_cell(const Packing<2>& packing, double reach) {
     constexpr double most = 1e8;
     Images<2> images;
     images.packing.walls = Walls<2>::none();
-    // The rounding of s and of the heights moves an image by far less than a hundredth of the margin.
-    const double near = 1.01 * (2 * packing.max_radius() + reach);
     const std::array<double, 2> height = heights(packing);
-    std::array<double, 2> margin{};
-    for (std::size_t a = 0; a < 2; ++a) {
-        margin[a] = packing.cell.periodic[a] ? near / height[a] + 1e-9 : 0;
+    const std::array<double, 2> margin = margin_of(packing, reach);
+    if (const auto beyond = disk_beyond(packing, reach, farthest_disk)) {
+        throw Error(ErrorKind::bad_input, *beyond);
     }
     if (!((1 + 2 * margin[0]) * (1 + 2 * margin[1]) * packing.disk_count() < most)) {
         throw Error(ErrorKind::bad_input,
@@ -105,7 +124,7 @@ Images<2> images_near_cell(const Packing<2>& packing, double reach) {
         const std::array<double, 2> s = fractional(packing, x, y);
         std::array<Range, 2> range;
         for (std::size_t a = 0; a < 2; ++a) {
-            range[a] = packing.cell.periodic[a] ? range_of(s[a], margin[a], fmt::format("disk {}", i)) : Range{};
+            range[a] = packing.cell.periodic[a] ? range_of(s[a], margin[a]) : Range{};
         }
         for (int m = range[0].first; m <= range[0].last; ++m) {
             for (int p = range[1].first; p <= range[1].last; ++p) {

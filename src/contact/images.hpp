@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace isostat {
@@ -33,8 +35,16 @@ template <int Dim> struct Images {
     [[nodiscard]] Contact contact(int a, int b) const;
 };
 
-/// \pre there are periodic axes. Throws `Error(bad_input)` when a representative lies more than 30 periods away, or
-/// when more than 10^8 images would be needed: a cell that flat has another basis.
+/// So many periods from the origin a disk may be: offsets and their differences fit into a byte. A run ends earlier.
+inline constexpr double farthest_disk = 30;
+inline constexpr double farthest_disk_of_a_run = 25;
+
+/// Words for the first disk that is `most` periods or more from the origin, or whose images that many periods apart may
+/// have a gap below `reach` (then `most` - 1); nothing: there is none. Cost O(n).
+std::optional<std::string> disk_beyond(const Packing<2>& packing, double reach, double most);
+
+/// \pre there are periodic axes. Throws `Error(bad_input)` when a disk is beyond `farthest_disk`, or when more than
+/// 10^8 images would be needed: a cell that flat has another basis.
 Images<2> images_near_cell(const Packing<2>& packing, double reach);
 
 /// Sum of the lengths that r of an image is made of, which the rounding of r goes with; 0 without an image.

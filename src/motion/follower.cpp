@@ -1,5 +1,6 @@
 #include "motion/follower.hpp"
 
+#include "contact/images.hpp"
 #include "contact/words.hpp"
 #include "core/dot.hpp"
 #include "motion/geometry.hpp"
@@ -344,6 +345,11 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
         if (std::abs(here_.at.q[k] - start_.q[k]) > options_.max_length_change * start_.length(0)) {
             return failed(FailureKind::flows, "the motion has no end: the tilt went from {} to {}", start_.q[k],
                           here_.at.q[k]);
+        }
+    }
+    if (here_.at.cell.any()) { // before the list of candidates would refuse it
+        if (const auto beyond = disk_beyond(here_.at, here_.at.min_radius(), farthest_disk_of_a_run)) {
+            return Failure{FailureKind::undecided, "rolled too far: " + *beyond};
         }
     }
     return std::nullopt;

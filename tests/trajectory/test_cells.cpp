@@ -238,6 +238,21 @@ BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_disk_that_rolled_many_periods_away_ends_the_run_with_words) {
+    for (const CertifyLevel level : {CertifyLevel::plain, CertifyLevel::decisions}) {
+        const State<2> start = start_of("rect_16");
+        RunOptions options;
+        options.certify = level;
+        const State<2> near = shifted(start, std::vector<std::array<int, 2>>(16, {23, 0})).state;
+        BOOST_TEST(play(near, +1, 1, {}, options).outcome.completed);
+        const State<2> far = shifted(start, std::vector<std::array<int, 2>>(16, {28, 0})).state;
+        const Played played = play(far, +1, 1, {}, options);
+        BOOST_TEST(!played.outcome.completed);
+        BOOST_TEST((played.why().find("periods from the origin") != std::string::npos), played.why());
+        BOOST_TEST(played.records.equilibria.size() == 1U); // the start
+    }
+}
+
 BOOST_AUTO_TEST_CASE(in_whichever_order_place_and_basis) {
     for (const std::string& name : names) {
         BOOST_TEST_CONTEXT(name) {

@@ -350,6 +350,7 @@ BOOST_AUTO_TEST_CASE(a_shear_that_grows_opens_one_diagonal_and_a_shear_that_fall
     for (const int direction : {-1, +1}) {
         const Played beyond = play(here.state, direction, 1);
         BOOST_TEST(!beyond.outcome.completed); // no other structure carries more
+        BOOST_TEST_REQUIRE(!beyond.records.arcs.empty());
         BOOST_TEST(beyond.records.arcs.front().stress == direction / std::sqrt(3.0),
                    boost::test_tools::tolerance(1e-12));
     }

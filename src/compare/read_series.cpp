@@ -17,6 +17,7 @@ namespace isostat::compare {
 
 namespace {
 
+using foreign::Boundary;
 using foreign::DumpFile;
 using foreign::DumpFrame;
 using foreign::Line;
@@ -55,7 +56,12 @@ class FrameTable {
         Frame frame;
         frame.number = count_++;
         frame.row = fmt::format("{}:{}", manifest_.frames, line.number());
-        frame.timestep = line.integer(required("timestep"), "timestep", 0, 1L << 62);
+        const std::size_t step = required("timestep");
+        frame.timestep = line.integer(step, "timestep", 0, 1L << 62);
+        if (frame.timestep <= last_) {
+            line.fail(line.field(step), "timestep", fmt::format("a number above {}, that of the frame before", last_));
+        }
+        last_ = frame.timestep;
         for (std::size_t w = 0; w < 4; ++w) {
             walls[w] = line.number(required(wall_names[w]), wall_names[w]) * manifest_.length_factor;
         }
@@ -119,6 +125,7 @@ class FrameTable {
     std::vector<std::string> names_;
     std::string where_;
     int count_ = 0;
+    long last_ = -1; ///< time step
 };
 
 /// Disks of the frames: those of the first one, by id.
@@ -143,10 +150,24 @@ class Disks {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.header.line)));
         }
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+            if (rows.header.boundary[axis] == Boundary::periodic) {
+                throw Error(
+                    ErrorKind::bad_input,
+                    fmt::format("{}: the box is periodic along {}: expected walls, series of periodic cells are "
+                                "not read",
+                                dump_.where(rows.header.line), axis == 0 ? 'x' : 'y'));
+            }
+        }
         frame.packing.walls = Walls<2>::box();
         const double f = manifest_.length_factor;
         for (const auto& [number, row] : by_id) {
             const auto disk = frame.ids.size();
+            if (frame.number > 0 && (disk >= ids_.size() || number != ids_[disk])) {
+                row->fail(row->field(id), "id",
+                          "the ids of the first frame" +
+                              (disk < ids_.size() ? fmt::format(", {} next", ids_[disk]) : std::string()));
+            }
             frame.ids.push_back(number);
             frame.packing.radius.push_back(row->number(size, manifest_.size) * f * (manifest_.diameters ? 0.5 : 1));
             if (!(frame.packing.radius.back() > 0)) {
@@ -160,10 +181,9 @@ class Disks {
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }
         frame.packing.q.insert(frame.packing.q.end(), {walls[2] - walls[0], walls[3] - walls[1]});
-        if (frame.number > 0 && frame.ids != ids_) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: other ids than in the first frame: expected the same "
-                                                          "disks in every frame",
-                                                          dump_.where(rows.header.line)));
+        if (frame.ids.size() < ids_.size()) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: no disk {}: expected the disks of the first frame",
+                                                          dump_.where(rows.header.line), ids_[frame.ids.size()]));
         }
         if (frame.number == 0) {
             ids_ = frame.ids;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,6 +20,8 @@ namespace {
 constexpr double deepest = 0.1;
 /// Of frames in motion, 100 disks in LAMMPS: the dashpots were 0.15 to 0.25 of the largest force left.
 constexpr double a_few = 10;
+/// Of what is left on a wall, a disk has less than this: the wall is not what moves.
+constexpr double wall_alone = 1e-3;
 
 class Reader {
   public:
@@ -155,8 +158,13 @@ class Reader {
         return series_.stiffness * std::max(0.0, -gap(frame_.packing, c));
     }
 
-    /// The largest force that is left on a disk or a movable wall.
-    [[nodiscard]] double left_by(const std::map<Contact, double>& forces) const {
+    /// The largest forces that are left on a disk, and on the right and the top wall.
+    struct Left {
+        double disks = 0;
+        std::array<double, 2> walls{};
+        [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1]}); }
+    };
+    [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
         std::vector<double> left = frame_.load.external_force(frame_.packing);
         for (const auto& [c, force] : forces) {
             const GapGradient<2> g = gap_gradient(frame_.packing, c);
@@ -166,24 +174,38 @@ class Reader {
             }
         }
         const std::size_t n = frame_.packing.radius.size();
-        double largest = std::max(std::abs(left[2 * n]), std::abs(left[2 * n + 1]));
+        Left out{0, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}};
         for (std::size_t i = 0; i < n; ++i) {
-            largest = std::max(largest, std::hypot(left[2 * i], left[2 * i + 1]));
+            out.disks = std::max(out.disks, std::hypot(left[2 * i], left[2 * i + 1]));
         }
-        return largest;
+        return out;
+    }
+
+    /// A wall that moves takes disks along. Where they all balance and it does not, the load is that of another frame.
+    void check_load(const Left& left) {
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+            if (left.walls[axis] > series_.rest * out_.mean && left.disks < wall_alone * left.walls[axis]) {
+                contradict(
+                    fmt::format("{}: the forces on the {} wall and its load differ by {:.6g}, those on every disk "
+                                "balance to {:.2g} (the load of another frame?)",
+                                frame_.row, axis == 0 ? "right" : "top", left.walls[axis], left.disks));
+            }
+        }
     }
 
     void balance() {
         const bool law = series_.law == ForceLaw::linear;
         if (law || (series_.listed && series_.wall_forces)) {
-            left_ = left_by(force_);
+            const Left left = left_by(force_);
+            check_load(left);
+            left_ = left.largest();
             out_.unbalanced = out_.mean > 0 ? left_ / out_.mean : HUGE_VAL;
         }
         std::map<Contact, double> forces;
         for (const Contact& c : overlaps_) {
             forces.emplace(c, expected(c));
         }
-        left_by_law_ = law ? left_by(forces) : 0;
+        left_by_law_ = law ? left_by(forces).largest() : 0;
     }
 
     void make_list() {

@@ -166,6 +166,11 @@ template <class Row> Json objects(const std::vector<Column<Row>>& columns, const
     return out;
 }
 
+/// On the logarithmic axis.
+bool shown(double error) {
+    return error > 0 && std::isfinite(error);
+}
+
 /// Data of the figure, in blocks: staircase of the exact run; frames; for each status its frames; errors.
 std::string figure_data(const Comparison& comparison) {
     std::string text = "# exact run: eps2 sigma2\n";
@@ -190,8 +195,8 @@ std::string figure_data(const Comparison& comparison) {
     }
     text += "\n\n# errors of the forces: sigma2 law rest stiffness\n";
     for (const FrameResult& f : comparison.frames) {
-        const auto shown = [](double x) { return x > 0 && std::isfinite(x) ? fmt::format("{}", x) : "nan"; };
-        text += fmt::format("{} {} {} {}\n", f.sigma2, shown(f.law), shown(f.rest), shown(f.stiffness));
+        const auto text_of = [](double x) { return shown(x) ? fmt::format("{}", x) : "nan"; };
+        text += fmt::format("{} {} {} {}\n", f.sigma2, text_of(f.law), text_of(f.rest), text_of(f.stiffness));
     }
     text += "\n\n# bundle: eps2 sigma2_low sigma2_high members\n";
     for (const BundleNode& node : comparison.bundle.nodes) {
@@ -201,6 +206,30 @@ std::string figure_data(const Comparison& comparison) {
         }
     }
     return text;
+}
+
+/// The curves that have a point: gnuplot refuses others.
+std::string errors_panel(const Comparison& comparison) {
+    struct Curve {
+        const char* name;
+        double FrameResult::*error;
+        const char* style;
+    };
+    const std::array<Curve, 3> all{{{"law", &FrameResult::law, "pt 4 lc \"#548235\""},
+                                    {"rest", &FrameResult::rest, "pt 6 lc \"#1f4e79\""},
+                                    {"stiffness", &FrameResult::stiffness, "pt 7 lc \"#c55a11\""}}};
+    std::string curves;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (std::any_of(comparison.frames.begin(), comparison.frames.end(),
+                        [&](const FrameResult& f) { return shown(f.*all[k].error); })) {
+            curves += fmt::format("{}\"comparison.dat\" index 4 using 1:{} with points {} title \"{}\"",
+                                  curves.empty() ? "plot " : ", ", k + 2, all[k].style, all[k].name);
+        }
+    }
+    return curves.empty() ? curves
+                          : "set key below horizontal\nset yrange [*:*] noreverse\nset ytics auto\nset logscale "
+                            "y\nset format y \"10^{%L}\"\nset ylabel \"error / mean force\"\n" +
+                                curves + "\n";
 }
 
 Chart figure(const Comparison& comparison) {
@@ -232,13 +261,7 @@ Chart figure(const Comparison& comparison) {
         fmt::format("plot {0} index 3 using 1:(-0.5):(0):({1}) with vectors nohead lc \"#bbbbbb\", {0} index 2 with "
                     "points pt 7 ps 0.7 lc \"#c55a11\"\n",
                     data, frame_statuses);
-    body += "set key below horizontal\nset yrange [*:*] noreverse\nset ytics auto\nset logscale y\nset format y "
-            "\"10^{%L}\"\nset ylabel \"error / mean force\"\n";
-    body +=
-        fmt::format("plot {0} index 4 using 1:2 with points pt 4 lc \"#548235\" title \"law\", {0} index 4 using 1:3 "
-                    "with points pt 6 lc \"#1f4e79\" title \"rest\", {0} index 4 using 1:4 with points pt 7 lc "
-                    "\"#c55a11\" title \"stiffness\"\n",
-                    data);
+    body += errors_panel(comparison);
     body += "unset multiplot\nunset logscale\nset format y\nset xrange [*:*]\n";
     return {"comparison", figure_data(comparison), chart_script("comparison", 800, 1000, body)};
 }

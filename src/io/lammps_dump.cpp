@@ -171,7 +171,14 @@ std::optional<DumpFrame> DumpFile::next() {
 
 DumpFrame DumpFile::at(long timestep) {
     while (auto frame = next()) {
-        if (frame->header.timestep == timestep) {
+        const long found = frame->header.timestep;
+        if (found <= last_) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: time step {} after {}: expected each once, in their order",
+                                    where(frame->header.line), found, last_));
+        }
+        last_ = found;
+        if (found == timestep) {
             return std::move(*frame);
         }
     }

@@ -44,7 +44,8 @@ class DumpFile {
 
     /// Nothing at the end of the file.
     std::optional<DumpFrame> next();
-    /// The frame of this time step; frames before it are passed over. Throws when there is none.
+    /// The frame of this time step; frames before it are passed over. Throws when there is none, and when time steps
+    /// do not grow on the way to it.
     DumpFrame at(long timestep);
     /// The column, which must be there.
     [[nodiscard]] std::size_t column(const DumpFrame& frame, const std::string& name) const;
@@ -59,6 +60,7 @@ class DumpFile {
     std::ifstream file_;
     std::string pending_; ///< first line of the next frame
     int lines_ = 0;       ///< before it
+    long last_ = -1;      ///< time step that `at` came to
 };
 
 } // namespace isostat::foreign

@@ -290,6 +290,58 @@ BOOST_AUTO_TEST_CASE(a_missing_contact) {
         {"overlap by", "no contact in the files", "disks 6 and 19"});
 }
 
+void swap_frames(series::Lines& dump, std::size_t frame) {
+    std::vector<long> starts;
+    for (std::size_t at = 0; at < dump.size(); ++at) {
+        if (dump[at] == "ITEM: TIMESTEP") {
+            starts.push_back(static_cast<long>(at));
+        }
+    }
+    starts.push_back(static_cast<long>(dump.size()));
+    const auto begin = dump.begin();
+    std::rotate(begin + starts[frame], begin + starts[frame + 1], begin + starts[frame + 2]);
+}
+
+BOOST_AUTO_TEST_CASE(frames_twice_or_out_of_order) {
+    expect_error([](Copy& c) { c.table.push_back(c.table.back()); }, {"frames.csv:4", "timestep is '175000'", "above"});
+    expect_error(
+        [](Copy& c) {
+            const auto begin = c.disks.begin();
+            const series::Lines first(begin, begin + static_cast<long>(Copy::line(c.disks, 1, 0)) - 9);
+            c.disks.insert(begin, first.begin(), first.end());
+        },
+        {"disks.dump:118", "after", "each once"});
+    expect_error([](Copy& c) { swap_frames(c.contacts, 0); }, {"contacts.dump:", "after 175000", "in their order"});
+}
+
+BOOST_AUTO_TEST_CASE(a_disk_that_is_not_there) {
+    expect_error(
+        [](Copy& c) {
+            const std::size_t at = Copy::line(c.disks, 1, 5);
+            c.disks.erase(c.disks.begin() + static_cast<long>(at));
+            c.disks[Copy::line(c.disks, 1, 0) - 6] = "99";
+        },
+        {"disks.dump:", "id is '7'", "6 next"});
+}
+
+BOOST_AUTO_TEST_CASE(a_periodic_box_is_no_series) {
+    const auto periodic = [](Copy& c) {
+        std::string& box = c.disks[Copy::line(c.disks, 1, 0) - 5];
+        box = scratch::replaced(box, "ff ff", "ff pp");
+    };
+    expect_error(periodic, {"disks.dump:", "periodic along y"});
+}
+
+BOOST_AUTO_TEST_CASE(the_load_of_another_frame) {
+    const auto shifted = [](Copy& c) {
+        series::Lines words = series::words_of(c.table[2], ',');
+        const series::Lines before = series::words_of(c.table[1], ',');
+        std::copy(before.begin() + 5, before.end(), words.begin() + 5);
+        c.table[2] = series::joined(words, ',');
+    };
+    expect_file(shifted, {"frames.csv:3", "top wall", "load of another frame"});
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_is_named_with_file_and_row) {
     expect_error([](Copy& c) { c.table[0] = scratch::replaced(c.table[0], "right", "rihgt"); },
                  {"frames.csv:1", "no column 'right'", "bounds of a dump are not taken"});
@@ -320,6 +372,19 @@ BOOST_AUTO_TEST_CASE(the_files_of_a_comparison_are_complete) {
         BOOST_TEST(!std::filesystem::exists(folder / "out" / (std::string(name) + ".part")));
     }
     BOOST_TEST(contains(scratch::read(folder / "out" / "comparison.json"), "\"same\": 3"));
+}
+
+BOOST_AUTO_TEST_CASE(the_figure_has_no_curve_without_a_point) {
+    Copy copy(2);
+    copy.manifest = scratch::replaced(copy.manifest, "stiffness = 1e5", "stiffness = 2e5");
+    compare::SeriesReader reader(copy.write());
+    const Comparison result = compare::compare(reader);
+    BOOST_TEST((result.frames[0].status == FrameStatus::file));
+    const scratch::Folder folder;
+    (void)compare::write_comparison(folder / "out", reader.series(), result);
+    const std::string script = scratch::read(folder / "out" / "comparison.gp");
+    BOOST_TEST(contains(script, "title \"law\""));
+    BOOST_TEST(!contains(script, "title \"rest\""));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -49,7 +49,7 @@ def table(rows):
     for (stiffness, step), members in sorted(groups.items(), key=lambda item: (float(item[0][0]), -float(item[0][1]))):
         total = lambda name: sum(float(row[name]) for row in members)
         share = lambda name: f"{total(name) / total('frames'):.0%}"
-        errors = [float(row["force_error"]) for row in members if row["force_error"] != "nan"]
+        errors = [float(row["force_error"]) for row in members if str(row["force_error"]) != "nan"]
         reasons = collections.Counter(row["departure"] for row in members).most_common()
         print("| " + " | ".join([
             stiffness, step, f"{len(members)}, {total('frames'):.0f}", share("same"), share("elsewhere"), share("soft"), share("moving"),

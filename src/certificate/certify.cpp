@@ -424,9 +424,11 @@ template <int Dim> bool Prover<Dim>::prove_gaps() {
         return false;
     }
     const OtherPairs pairs = other_pairs(centre_->packing, state_.contacts);
-    if (any_far(pairs.near)) {
-        absent("gaps", fmt::format("a disk may touch an image more than {} periods away: put the disks into the cell",
-                                   farthest_image));
+    if (pairs.far() || any_far(pairs.near)) {
+        absent("gaps",
+               fmt::format("a disk may touch an image more than {} periods away: put the disks into the cell, or "
+                           "take a basis of short periods",
+                           farthest_image));
         return false;
     }
     std::string doubtful;

@@ -2,6 +2,7 @@
 
 #include "contact/candidates.hpp"
 #include "contact/contact_set.hpp"
+#include "contact/images.hpp"
 #include "contact/near_pairs.hpp"
 
 #include <cmath>
@@ -50,6 +51,9 @@ template <int Dim> OtherPairs other_pairs(const Packing<Dim>& packing, const std
     pairs = {without(all_pairs(packing), contacts, packing.disk_count()), std::numeric_limits<double>::infinity()};
     const bool any = packing.cell.any() && DofMap<Dim>(packing).dof_count() > 0; // else nothing ever comes near
     for (double reach = packing.min_radius(); any && std::isinf(pairs.reach); reach *= 2) {
+        if (disk_beyond(packing, reach, farthest_disk)) {
+            return {{}, candidates.reach};
+        }
         std::vector<Contact> images = near_pairs(packing, reach).pairs;
         std::erase_if(images, [&packing](const Contact& pair) { return !can_move(packing, pair); });
         images = without(std::move(images), contacts, packing.disk_count());

@@ -4,15 +4,19 @@
 
 #include <isostat/contact/contact.hpp>
 
+#include <cmath>
 #include <vector>
 
 namespace isostat {
 
 /// Pairs that are not contacts, and a bound for those that were left out.
 struct OtherPairs {
-    std::vector<Contact> near; ///< not empty when there is any pair at all
+    std::vector<Contact> near; ///< not empty when there is any pair at all, but where they are `far`
     double reach =
         0; ///< every pair that is not in `near` has a gap >= reach in the packing; infinity: none was left out
+
+    /// A cell so flat, or of so long a basis, that the nearest pair is more periods away than lists go (images.hpp).
+    [[nodiscard]] bool far() const { return near.empty() && std::isfinite(reach); }
 };
 
 /// Those of a list that are not contacts.

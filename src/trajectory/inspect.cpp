@@ -206,7 +206,9 @@ Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, cons
     record.gap_residual = vertex.enclosure.max_gap;
     record.sigma_min_bound = vertex.inverse.sigma_min;
     if (gaps.ok() && !gaps.value().negative) {
-        record_smallest_gap(record, vertex, vertex.enclosure, candidates);
+        if (auto failure = record_smallest_gap(record, vertex, vertex.enclosure, candidates)) {
+            return *failure;
+        }
     }
     return inspection;
 }

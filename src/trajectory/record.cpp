@@ -274,8 +274,8 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
 }
 
 template <int Dim>
-void record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex, const VertexEnclosure& at,
-                         const CandidateList<Dim>& candidates) {
+std::optional<Failure> record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
+                                           const VertexEnclosure& at, const CandidateList<Dim>& candidates) {
     const auto look = [&](const std::vector<Contact>& pairs) {
         record.min_gap_contact = {ContactKind::disk_disk, -1, -1};
         Enclosure smallest{std::numeric_limits<double>::infinity(), 0};
@@ -292,11 +292,17 @@ void record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vert
     Enclosure gap = look(without(candidates.contacts, contacts, vertex.packing.disk_count()));
     // Pairs that are not listed are further apart than that, or all are looked for.
     if (!candidates.covers(vertex.packing, 0.5 * (gap.value + gap.radius) + 1.001 * at.distance())) {
-        gap = look(other_pairs(vertex.packing, contacts).near);
+        const OtherPairs others = other_pairs(vertex.packing, contacts);
+        if (others.far()) {
+            return Failure{FailureKind::undecided, "the smallest gap is that of a disk and an image too many periods "
+                                                   "away: expected a basis of short periods"};
+        }
+        gap = look(others.near);
     }
     const bool touches = !gap.positive(); // decided by more digits, or at first order: it is not negative
     record.min_gap = touches ? 0 : gap.value;
     record.min_gap_bound = touches ? gap.value + gap.radius : gap.radius;
+    return std::nullopt;
 }
 
 template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load) {
@@ -315,8 +321,8 @@ template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path
     record.steps = path.steps;
 }
 
-template void record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
-                                     const CandidateList<2>&);
+template std::optional<Failure> record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
+                                                       const CandidateList<2>&);
 template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);

@@ -24,10 +24,11 @@ template <int Dim> struct Description {
 template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const Load<Dim>& load);
 
 /// The smallest gap of all pairs that are not contacts, at the true vertex `at`, into a record; infinity and i = -1
-/// where there is no such pair. No gap is negative there. `candidates`: saves the search where they tell.
+/// where there is no such pair. No gap is negative there. `candidates`: saves the search where they tell. Failure: in a
+/// cell the nearest pair is too many periods away to be found.
 template <int Dim>
-void record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex, const VertexEnclosure& at,
-                         const CandidateList<Dim>& candidates);
+std::optional<Failure> record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
+                                           const VertexEnclosure& at, const CandidateList<Dim>& candidates);
 
 /// eps_2 at the end of an arc, with its bound.
 template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load);
@@ -42,8 +43,8 @@ template <int Dim> std::vector<int> rattlers(const Vertex<Dim>& vertex);
 template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, const Load<Dim>& load);
 
 extern template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
-extern template void record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
-                                            const CandidateList<2>&);
+extern template std::optional<Failure> record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&,
+                                                              const VertexEnclosure&, const CandidateList<2>&);
 extern template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 extern template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 extern template std::vector<int> rattlers<2>(const Vertex<2>&);

@@ -370,7 +370,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     }
     EquilibriumRecord<Dim>& record = described.value().record;
     limits_ = described.value().limit;
-    record_smallest_gap(record, *vertex_, described.value().vertex, prover_.candidates());
+    if (auto failure = record_smallest_gap(record, *vertex_, described.value().vertex, prover_.candidates())) {
+        return located(*failure, fmt::format("equilibrium at sigma = {:.17g}", sigma()));
+    }
     if (auto failure = check(record)) {
         return failure;
     }

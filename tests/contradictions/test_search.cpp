@@ -258,6 +258,17 @@ Objections ask(const State<2>& state, const Truth& truth, bool run, Count& tally
     return wrong;
 }
 
+/// A cell that needs more images than lists of pairs take: bad input, whoever is asked.
+bool refused(const State<2>& state) {
+    try {
+        (void)inspect_vertex(state);
+        return false;
+    } catch (const Error&) {
+        BOOST_CHECK_THROW(certify(state), Error);
+        return true;
+    }
+}
+
 long states_asked() {
     if (const char* count = std::getenv("ISOSTAT_STATES")) {
         return std::atol(count);
@@ -304,7 +315,7 @@ BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
             }
             const double begun = seconds();
             const Truth truth(*state);
-            if (!truth.known) {
+            if (!truth.known || (state->packing.cell.any() && refused(*state))) {
                 continue;
             }
             ++k;

@@ -130,7 +130,7 @@ void read_preparation(Section& section, Scene& scene) {
 
 /// What the programme changes.
 void read_loaded(Section& section, Scene& scene) {
-    if (!section.has("loaded")) {
+    if (!section.string("loaded")) { // without it the state of a file says what is loaded
         return;
     }
     scene.loads_tilt = section.word("loaded", 0, {"y", "tilt"}) == 1;

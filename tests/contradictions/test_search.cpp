@@ -258,6 +258,15 @@ Objections ask(const State<2>& state, const Truth& truth, bool run, Count& tally
     return wrong;
 }
 
+/// Nothing where its making needs more images than lists of pairs take.
+std::optional<State<2>> made(const StateClass& of, oracle::Random& random) {
+    try {
+        return of.make(random);
+    } catch (const Error&) {
+        return {};
+    }
+}
+
 /// A cell that needs more images than lists of pairs take: bad input, whoever is asked.
 bool refused(const State<2>& state) {
     try {
@@ -309,7 +318,7 @@ BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
         long runs = 0;
         for (long k = 0, tries = 0; k < each && tries < 400 * each; ++tries) {
             oracle::Random random(seed + 1000 * c + 1'000'003ULL * static_cast<std::uint64_t>(tries));
-            const auto state = classes[c].make(random);
+            const auto state = made(classes[c], random);
             if (!state) {
                 continue;
             }
@@ -324,7 +333,13 @@ BOOST_AUTO_TEST_CASE(no_two_answers_differ_and_none_differs_from_the_truth) {
             tally.true_equilibria += truth.at_rest() > 0 ? 1 : 0;
             const bool run = k % 10 == 0;
             runs += run ? 1 : 0;
-            const Objections wrong = ask(*state, truth, run, tally);
+            const Objections wrong = [&]() -> Objections {
+                try {
+                    return ask(*state, truth, run, tally);
+                } catch (const Error& error) {
+                    return {"one command refuses what another takes: " + std::string(error.what())};
+                }
+            }();
             if (!wrong.empty()) {
                 ++tally.contradictions;
                 if (shown++ < 20) {

@@ -18,7 +18,8 @@ int certify(const CertifyArguments& arguments) {
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
     certificate.program = program_name();
-    certificate.state = read_any_state<2>(input).state;
+    const StateFile<2> file = read_any_state<2>(input);
+    certificate.state = file.state;
     Certification result = isostat::certify(certificate.state);
     certificate.claims = result.claims;
     write_certificate(arguments.output, certificate);
@@ -30,9 +31,11 @@ int certify(const CertifyArguments& arguments) {
         object["claims"] = claims_json(result);
         object["refuted"] = result.refuted;
         object["undecided"] = result.claims.undecided;
+        add_forces_in_file(object, file, result);
         print_json(object);
     } else {
         print_claims(result);
+        print_forces_in_file(file, result);
         fmt::print("{:<14} {}: {}\n", to_string(result.verdict),
                    result.verdict == Verdict::proved
                        ? "an isostatic, stable equilibrium without overlap at the true vertex"

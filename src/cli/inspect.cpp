@@ -166,26 +166,6 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
     object["remark"] = inspection.remark;
 }
 
-/// Forces that a state file holds against the proved ones: how far apart at most, and where.
-struct FileForces {
-    double difference = 0;
-    Contact where;
-};
-
-std::optional<FileForces> compared_forces(const StateFile<2>& file, const Certification& truth) {
-    if (file.forces.empty() || file.forces.size() != truth.finite.size()) {
-        return std::nullopt;
-    }
-    FileForces out;
-    for (std::size_t l = 0; l < file.forces.size(); ++l) {
-        const double off = std::max(file.forces[l] - truth.finite[l].lower, truth.finite[l].upper - file.forces[l]);
-        if (off > out.difference) {
-            out = {off, file.state.contacts[l]};
-        }
-    }
-    return out;
-}
-
 /// The forces one by one, when a load was asked for.
 void print_forces_at(const InspectArguments& arguments, const State<2>& state, const Certification& truth) {
     for (std::size_t l = 0; arguments.at && l < truth.finite.size(); ++l) {
@@ -235,10 +215,7 @@ int inspect(const InspectArguments& arguments) {
             object["cell"] = cell_json(state.packing, *cell);
         }
         add_face(object, state);
-        if (const auto forces = compared_forces(file, truth)) {
-            object["forces_in_file"] = {{"difference", number(forces->difference)},
-                                        {"contact", to_string<2>(forces->where)}};
-        }
+        add_forces_in_file(object, file, truth);
         print_json(object);
     } else {
         print_counting(state, truth.counting);
@@ -253,10 +230,7 @@ int inspect(const InspectArguments& arguments) {
             print_cell(*cell);
         }
         print_face(state);
-        if (const auto forces = compared_forces(file, truth)) {
-            fmt::print("forces in the file       differ from these by at most {}, in {}\n",
-                       rounded_up(forces->difference, 2), to_string<2>(forces->where));
-        }
+        print_forces_in_file(file, truth);
         print_forces_at(arguments, state, truth);
     }
     return result.ok() ? status_of(result.value().record.verdict) : status_of(result.failure().kind);

@@ -48,6 +48,26 @@ std::string signs_text(const ForceSigns& s) {
     return text + (s.undecided > 0 ? fmt::format(", {} undecided", s.undecided) : "");
 }
 
+/// Forces that a state file holds against the proved ones: how far apart at most, and where.
+struct FileForces {
+    double difference = 0;
+    Contact where;
+};
+
+std::optional<FileForces> compared_forces(const StateFile<2>& file, const Certification& truth) {
+    if (file.forces.empty() || file.forces.size() != truth.finite.size()) {
+        return std::nullopt;
+    }
+    FileForces out;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        const double off = std::max(file.forces[l] - truth.finite[l].lower, truth.finite[l].upper - file.forces[l]);
+        if (off > out.difference) {
+            out = {off, file.state.contacts[l]};
+        }
+    }
+    return out;
+}
+
 } // namespace
 
 std::string end_text(const LoadEndClaim& end) {
@@ -180,6 +200,20 @@ Json true_vertex_json(const Certification& certification) {
     }
     object["not_proved"] = c.undecided;
     return object;
+}
+
+void print_forces_in_file(const StateFile<2>& file, const Certification& truth) {
+    if (const auto forces = compared_forces(file, truth)) {
+        fmt::print("forces in the file       differ from the proved ones by at most {}, in {}\n",
+                   rounded_up(forces->difference, 2), to_string<2>(forces->where));
+    }
+}
+
+void add_forces_in_file(Json& object, const StateFile<2>& file, const Certification& truth) {
+    if (const auto forces = compared_forces(file, truth)) {
+        object["forces_in_file"] = {{"difference", number(forces->difference)},
+                                    {"contact", to_string<2>(forces->where)}};
+    }
 }
 
 } // namespace isostat::cli

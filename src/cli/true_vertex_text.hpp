@@ -5,6 +5,7 @@
 #include "cli/common.hpp"
 
 #include <isostat/certificate/certify.hpp>
+#include <isostat/io/state_file.hpp>
 
 namespace isostat::cli {
 
@@ -20,5 +21,10 @@ Json claims_json(const Certification& certification);
 /// What is proved of the true configuration near a stored one, in the words of `inspect`.
 void print_true_vertex(const Certification& certification);
 Json true_vertex_json(const Certification& certification);
+
+/// How far the forces that a state file holds are from the proved ones, and where; nothing where it holds none or none
+/// are known. They are no part of what is proved.
+void print_forces_in_file(const StateFile<2>& file, const Certification& truth);
+void add_forces_in_file(Json& object, const StateFile<2>& file, const Certification& truth);
 
 } // namespace isostat::cli

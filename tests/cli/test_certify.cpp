@@ -5,6 +5,8 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <nlohmann/json.hpp>
+
 using namespace program;
 using isostat::state_text;
 namespace fs = std::filesystem;
@@ -32,6 +34,26 @@ BOOST_AUTO_TEST_CASE(a_sample_certifies_and_its_certificate_is_verified) {
     expect(again, 0);
     BOOST_TEST(scratch::read(folder / "again.json") == scratch::read(output));
     BOOST_TEST((contains(again.out, "\"verdict\":\"proved\"") && contains(again.out, "\"refuted\":[]")));
+}
+
+BOOST_AUTO_TEST_CASE(forces_in_the_file_are_compared_and_never_used) {
+    const scratch::Folder folder;
+    const auto state = isostat::read_any_state<2>(scratch::data("vertex100.txt")).state;
+    nlohmann::json file = nlohmann::json::parse(state_text(state));
+    file["forces"] = std::vector<double>(state.contacts.size(), 2.0);
+    scratch::write(folder / "state.json", file.dump());
+    const std::string input = (folder / "state.json").string();
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"certify", input, "-o", (folder / "c.json").string()}, {"inspect", input}}) {
+        const Outcome outcome = run(command);
+        expect(outcome, 0);
+        BOOST_TEST(contains(outcome.out, "forces in the file       differ from the proved ones by at most"),
+                   outcome.out);
+    }
+    const Outcome json = run({"certify", input, "-o", (folder / "c.json").string(), "--json"});
+    BOOST_TEST(contains(json.out, "\"forces_in_file\""), json.out);
+    const Outcome without = run({"certify", scratch::data("vertex100.txt"), "-o", (folder / "d.json").string()});
+    BOOST_TEST(!contains(without.out, "forces in the file"), without.out);
 }
 
 BOOST_AUTO_TEST_CASE(certify_answers_refuted_and_undecided_with_the_reason_and_still_writes_what_is_proved) {

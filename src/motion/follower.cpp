@@ -349,7 +349,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
     }
     if (here_.at.cell.any()) { // before the list of candidates would refuse it
         if (const auto beyond = disk_beyond(here_.at, here_.at.min_radius(), farthest_disk_of_a_run)) {
-            return Failure{FailureKind::undecided, "rolled too far: " + *beyond};
+            return Failure{FailureKind::undecided, "too far for lists of pairs: " + *beyond};
         }
     }
     return std::nullopt;

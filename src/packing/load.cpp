@@ -1,6 +1,7 @@
 #include <isostat/packing/load.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <random>
 
@@ -21,6 +22,7 @@ template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<D
                               follows ? walls + other : -1, a == loaded_axis});
         }
     }
+    assert(!loads_tilt() || (packing.cell.any() && packing.cell.tilt_moves[0]));
     if (packing.cell.any() && packing.cell.tilt_moves[0]) {
         forces.push_back({Dim * packing.disk_count() + Dim, 0, shear[0], reference_length[0], -1, loads_tilt()});
     }

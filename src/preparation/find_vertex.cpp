@@ -1,3 +1,4 @@
+#include "contact/images.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "preparation/neighbours.hpp"
@@ -32,6 +33,8 @@ constexpr double trust_in_radii = 0.27;
 constexpr double attempt_below = 0.05;
 constexpr double attempt_always_below = 0.001;
 constexpr long settled_pivots = 2;
+/// In largest radii, how far apart a programme lists pairs of a cell: more than its rows need.
+constexpr double listed_within = 8;
 /// Below this step (mean radii) and without pivots the next programme would do nothing new.
 constexpr double converged_below = 1e-8;
 /// The finite weight of the infinitesimal loads may tip a weak backbone contact; then it is divided by this, once.
@@ -135,6 +138,9 @@ template <int Dim> class VertexSearch {
                 continue;
             }
             move(step);
+            if (auto failure = too_flat()) {
+                return give_up(*failure);
+            }
             if (!worth_an_attempt(step) || (step.bounds != 0 && !complete(programme, weight, step.contacts))) {
                 continue;
             }
@@ -219,6 +225,17 @@ template <int Dim> class VertexSearch {
         newton_.seconds += watch.seconds();
         newton_.cpu_seconds += watch.cpu_seconds();
         return pivoted;
+    }
+
+    /// The way down leads to a cell whose pairs the next programme could not list.
+    [[nodiscard]] std::optional<Failure> too_flat() const {
+        const auto beyond = packing_.cell.any()
+                                ? disk_beyond(packing_, listed_within * packing_.max_radius(), farthest_disk)
+                                : std::nullopt;
+        return beyond ? std::optional(failed(FailureKind::not_converged,
+                                             "after programme {} the cell is too flat, or too tilted: {}", programmes_,
+                                             *beyond))
+                      : std::nullopt;
     }
 
     std::optional<Failure> judge(const ProgrammeStep& step, const ContactProgramme<Dim>& programme) {

@@ -191,10 +191,11 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
             }
         }
         std::sort(states.begin(), states.end());
-        const bool shear = !states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt();
-        for (const Chart& chart :
-             options.pictures ? make_charts(rows, names, options.pdf, shear) : std::vector<Chart>()) {
-            writer.chart(chart);
+        if (options.pictures) {
+            const bool shear = !states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt();
+            for (const Chart& chart : make_charts(rows, names, options.pdf, shear)) {
+                writer.chart(chart);
+            }
         }
         for (const fs::path& path : states) {
             writer.picture(path, "forces_" + path.stem().string());

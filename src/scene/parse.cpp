@@ -197,7 +197,10 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
     }
     if (const auto to = section.number("to")) {
         step.to = of_shear ? section.number("to", 0, -largest_number, largest_number, "a ratio shear/sigma2")
-                           : section.number("to", 0, 0, largest_number, "a ratio sigma2/sigma1 that is not negative");
+                           : section.number("to", 0, 0, largest_number,
+                                            "a ratio sigma2/sigma1 that is not negative (one of the shear has either "
+                                            "sign: loaded = \"tilt\" in "
+                                            "[load])");
     }
     if (const auto from = section.integer("from")) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));

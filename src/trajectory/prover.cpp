@@ -269,12 +269,11 @@ std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<D
     if (proof.descends || at_once) {
         return std::nullopt;
     }
-    if (decrease.negative()) { // it fell at first, as the force is negative
-        return failed(
-            FailureKind::undecided,
-            "the potential is higher by {:.6g}, known to {:.3g}, at the end of the arc that opens {} and closes "
-            "{}: its power turned on the way, unseen",
-            -decrease.value, decrease.radius, named<Dim>(proof.record.opened), named<Dim>(proof.record.closed));
+    if (decrease.negative()) {
+        return failed(FailureKind::undecided,
+                      "the potential rises by {:.6g}, known to {:.3g}, along the arc that opens {} and closes {}",
+                      -decrease.value, decrease.radius, named<Dim>(proof.record.opened),
+                      named<Dim>(proof.record.closed));
     }
     return failed(FailureKind::undecided,
                   "the potential is not proved to decrease along the arc that opens {} and closes {}: by "

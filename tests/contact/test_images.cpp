@@ -1,6 +1,7 @@
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
 #include "contact/near_pairs.hpp"
+#include "contact/other_pairs.hpp"
 #include "support/cells.hpp"
 
 #include <isostat/core/error.hpp>
@@ -142,6 +143,25 @@ BOOST_AUTO_TEST_CASE(one_contact_has_one_name) {
     BOOST_TEST((cells::across(2, 2, -1, 1) == cells::across(2, 2, 1, -1)));
     BOOST_TEST((cells::across(1, 3, 0, 0) != cells::across(1, 3, 1, 0)));
     BOOST_TEST(isostat::to_string<2>(cells::across(3, 1, 1, -1)) == "1-3(-1,1)");
+}
+
+BOOST_AUTO_TEST_CASE(a_nearest_pair_that_no_list_reaches_is_far) {
+    // One disk that touches its image; the next image is a period further, in a cell that leans over `lean` heights.
+    const auto next_pair = [](double lean) {
+        Packing<2> packing;
+        packing.walls = isostat::Walls<2>::none();
+        packing.radius = {1};
+        packing.q = {0, 0, 2, 100, 100 * lean};
+        packing.cell = {{true, true}, {true, true}, {true}, 0};
+        return isostat::other_pairs(packing, {cells::across(0, 0, 1, 0)});
+    };
+    const isostat::OtherPairs found = next_pair(5);
+    BOOST_TEST(!found.far());
+    BOOST_TEST((found.near == std::vector<Contact>{cells::across(0, 0, 2, 0)}));
+    const isostat::OtherPairs none = next_pair(15);
+    BOOST_TEST(none.far());
+    BOOST_TEST(none.reach > 0); // complete so far
+    BOOST_TEST(none.reach <= 2);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -36,7 +36,7 @@ template <int Dim> struct Load {
     std::array<double, Dim> reference_length{}; ///< L_a at which nominal stress and strain are defined
     /// Nominal shear stresses on the tilts of a cell that move: the dead force on A_ab is - shear L_a,ref.
     std::array<double, Cell<Dim>::tilts> shear{};
-    /// The axis whose stress the programme changes (sigma_2). Dim: that is the shear stress on the tilt, which moves.
+    /// The axis whose stress the programme changes (sigma_2). Dim: that is the shear stress on the tilt. \pre it moves.
     int loaded_axis = 1;
     std::vector<double> disk_force;    ///< empty, or Dim*n external forces on the disks
     std::vector<double> infinitesimal; ///< empty, or Dim*n infinitesimal loads g (the eps part)

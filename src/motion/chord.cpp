@@ -115,6 +115,7 @@ std::optional<std::vector<double>> Chord<Dim>::refined_tangent(const Vector& gue
                                                                double accuracy, Rates rates) {
     Vector t = guess;
     double previous = infinity;
+    tangent_error_ = infinity;
     for (int k = 0; k < 40; ++k) {
         rates(t);
         approach_[slot_] = 0;
@@ -126,6 +127,7 @@ std::optional<std::vector<double>> Chord<Dim>::refined_tangent(const Vector& gue
         if (!(size < previous)) {
             break;
         }
+        tangent_error_ = size / largest(t);
         // Linear convergence: what is left is about size^2 / previous.
         if (size < accuracy * largest(t) || (k > 0 && size * size < 0.1 * accuracy * largest(t) * previous)) {
             return t;

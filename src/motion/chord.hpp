@@ -50,6 +50,8 @@ template <int Dim> class Chord {
 
     /// Tangent at a point of the curve near `guess`, scaled like it in coordinate `fastest`, to a relative accuracy.
     std::optional<Vector> tangent(const Packing<Dim>& at, const Vector& guess, std::size_t fastest, double accuracy);
+    /// Relative size of the last correction of it: what it is good to, where that is above the accuracy asked for.
+    [[nodiscard]] double tangent_error() const { return tangent_error_; }
     /// The same where the matrix was made. \pre nothing was renewed.
     std::optional<Vector> tangent(const Vector& guess, std::size_t fastest, double accuracy);
 
@@ -77,6 +79,7 @@ template <int Dim> class Chord {
     std::unique_ptr<FactorisedStructure<Dim>> own_; ///< in place of the two, once renewed
     std::size_t slot_;
     std::size_t size_;
+    double tangent_error_ = 0;
     Vector approach_; ///< per contact; overwritten by a pass
     Vector y_;        ///< on coordinates
     Vector mechanism_;

@@ -16,6 +16,8 @@ namespace {
 /// sign rests on them.
 constexpr double tangent_accuracy = 1e-7;
 constexpr double turn_tangent_accuracy = 1e-15; ///< at a power turn, which is located no better than its tangent
+/// What such a tangent must be good to: factors of a list that is nearly singular there may not bring it further.
+constexpr double turn_tangent_error = 1e-8;
 constexpr double no_power = 1e-6; ///< of the largest force of the load: what may be left of the power where it turns
 constexpr double end_tangent_accuracy = 1e-4; ///< at an event, where only dips and the sign of the power are read off
 
@@ -91,6 +93,16 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::run() {
     return failed(FailureKind::unbounded, "no new contact after {} predictor steps", steps_);
 }
 
+/// It is minus the force that opens: where that is small, only a sharper tangent tells its sign.
+template <int Dim> double Follower<Dim>::power_at_start() {
+    const double power = power_(here_.at, here_.tangent);
+    if (power > 0 || power_.starts_at_zero()) {
+        return power;
+    }
+    const auto t = chord_.tangent(here_.at, here_.tangent, here_.fastest, turn_tangent_accuracy);
+    return t ? power_(here_.at, *t) : power;
+}
+
 /// One attempt at a step. Nothing: the arc goes on, from there or from here.
 template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
     if (!predicted_ && !predict()) {
@@ -98,7 +110,7 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
     }
     predicted_ = false;
     if (!(here_power_ < infinity)) {
-        here_power_ = power_(here_.at, here_.tangent);
+        here_power_ = power_at_start();
     }
     ++steps_;
     Attempt attempt =
@@ -123,6 +135,18 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
     }
     const PowerSign sign = judge_power(there);
     if (sign == PowerSign::shorten) {
+        return Ending(std::nullopt);
+    }
+    if (sign == PowerSign::unclear) {
+        if (pace_.shrink < 1e-9) {
+            return failed(FailureKind::undecided,
+                          "the power of the load is {:.3g} where the arc starts and {:.3g} beyond: where it turns is "
+                          "not known",
+                          here_power_, there.power);
+        }
+        if (auto failure = narrow()) {
+            return *failure;
+        }
         return Ending(std::nullopt);
     }
     if (sign == PowerSign::turned) {
@@ -283,7 +307,14 @@ template <int Dim> typename Follower<Dim>::PowerSign Follower<Dim>::judge_power(
             return PowerSign::shorten;
         }
     }
-    return judged && there.power < 0 && here_power_ > 0 ? PowerSign::turned : PowerSign::positive;
+    if (!(judged && there.power < 0)) {
+        return PowerSign::positive;
+    }
+    if (here_power_ > 0) {
+        return chord_.tangent_error() <= turn_tangent_error ? PowerSign::turned : PowerSign::unclear;
+    }
+    // A hold whose multiplier is 0 may be released to see whether its arc goes down: its end tells.
+    return opened_.kind == ContactKind::held ? PowerSign::positive : PowerSign::unclear;
 }
 
 /// The end where the power vanishes, within a step of length s at whose end it is negative.
@@ -298,7 +329,7 @@ template <int Dim> Result<Arc<Dim>> Follower<Dim>::power_turn(double s, double p
             return Failure{FailureKind::not_converged, "the point where the power of the load vanishes was not found"};
         }
         const double p = power_(point->at, point->tangent);
-        if (std::abs(p) < std::abs(smallest)) {
+        if (std::abs(p) < std::abs(smallest) && chord_.tangent_error() <= turn_tangent_error) {
             smallest = p;
             best = std::move(point);
         }

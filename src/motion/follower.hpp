@@ -48,7 +48,7 @@ template <int Dim> class Follower {
     /// Nothing: again, with what `pace_` and the factors are now.
     using Attempt = Result<std::optional<Reached>>;
     using Ending = Result<std::optional<Arc<Dim>>>;
-    enum class PowerSign { positive, shorten, turned };
+    enum class PowerSign { positive, shorten, turned, unclear };
 
     bool predict();
     Ending step();
@@ -58,6 +58,7 @@ template <int Dim> class Follower {
     std::optional<CurvePoint<Dim>> step_to(double s, double accuracy);
     bool converge_to(Packing<Dim>& at, const Contact& closing);
     std::optional<CurvePoint<Dim>> tangent_at_event(Packing<Dim> at, double s, const Contact& closing);
+    double power_at_start();
     PowerSign judge_power(Reached& there);
     Result<Arc<Dim>> power_turn(double s, double power);
     std::optional<Failure> go_on(Reached there);

@@ -63,7 +63,9 @@ struct Exchange {
 
     Result<Arc<2>> open(int contact) {
         CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
-        const PowerLoad<2> power{&state.load, false, true};
+        Load<2> none = state.load; // any contact may open here, not only one that a load drives apart
+        none.stress.fill(0);
+        const PowerLoad<2> power{&none, false, false};
         return follow_arc<2>({state.packing, structure, factorisation, ContactId(contact)}, power, candidates, {});
     }
     [[nodiscard]] std::vector<double> on_dofs(const std::vector<double>& tangent) const {

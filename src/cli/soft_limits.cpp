@@ -31,7 +31,7 @@ void add_rows(std::vector<Row>& rows, const EquilibriumRow& equilibrium, const S
     if (!std::isfinite(equilibrium.stress_high) || !(equilibrium.stress_low > 0)) {
         return;
     }
-    const State<2> backbone = compare::backbone_of(state, compare::carrying(state, certify(state)));
+    const State<2> backbone = compare::backbone_of(state, compare::carrying(state));
     for (const int direction : {-1, +1}) {
         const compare::ExactInterval exact{equilibrium.stress_low, equilibrium.stress_high, direction};
         const auto soft = compare::soft_limit(backbone, exact, stiffness);

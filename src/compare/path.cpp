@@ -38,7 +38,7 @@ class Collector final : public RunObserver<2> {
         e.arcs = record.arcs;
         e.proved = record.verdict == Verdict::proved;
         e.state = state;
-        e.contacts = carrying(state, certify(state));
+        e.contacts = carrying(state);
         e.soft_limit = e.stiffness_needed = unknown;
         out_.push_back(std::move(e));
         highs_.push_back(record.opens_high);
@@ -160,7 +160,7 @@ Result<std::vector<Contact>> list_after(State<2> state, double sigma, bool jump,
     if (outcome.failure) {
         return *outcome.failure;
     }
-    return carrying(state, certify(state));
+    return carrying(state);
 }
 
 } // namespace isostat::compare

@@ -52,7 +52,7 @@ Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> inf
         return Failure{outcome.failure->kind, "rattlers do not come to rest: " + outcome.failure->message()};
     }
     state.equilibrium = 0;
-    const std::vector<Contact> found = carrying(state, certify(state));
+    const std::vector<Contact> found = carrying(state);
     if (found != list) {
         return other_list(list, found);
     }

@@ -1,7 +1,9 @@
+#include "certificate/subject.hpp"
 #include "compare/backbone.hpp"
 #include "compare/room.hpp"
 #include "crafted/peeling.hpp"
 #include "preparation/polish.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/compare/snap.hpp>
 
@@ -196,15 +198,30 @@ Snap snap(const SoftState& soft) {
     return out;
 }
 
-std::vector<Contact> carrying(const State<2>& state, const Certification& truth) {
+namespace {
+
+/// All of them where nothing is known of zeros.
+std::vector<Contact> without_zeros(const State<2>& state, const std::vector<unsigned char>& zero) {
     std::vector<Contact> out;
     for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-        if (truth.structural_zero.size() != state.contacts.size() || truth.structural_zero[l] == 0) {
+        if (zero.size() != state.contacts.size() || zero[l] == 0) {
             out.push_back(state.contacts[l]);
         }
     }
     std::sort(out.begin(), out.end());
     return out;
+}
+
+} // namespace
+
+std::vector<Contact> carrying(const State<2>& state, const Certification& truth) {
+    return without_zeros(state, truth.structural_zero);
+}
+
+std::vector<Contact> carrying(const State<2>& equilibrium) {
+    const auto structure = IsostaticStructure<2>::prove(equilibrium.packing, equilibrium.contacts);
+    return without_zeros(equilibrium, structure.ok() ? Subject<2>(equilibrium, structure.value()).zero
+                                                     : std::vector<unsigned char>());
 }
 
 std::string names_of(const std::vector<Contact>& contacts) {

@@ -82,6 +82,8 @@ Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed);
 
 /// The contacts of a certified state that carry a finite force, sorted.
 std::vector<Contact> carrying(const State<2>& state, const Certification& truth);
+/// The same of a state that is known to be an equilibrium: by its structural zeros. Cost: a rank, no bound.
+std::vector<Contact> carrying(const State<2>& equilibrium);
 
 /// Names of contacts, " 1-2 3-left", " none", or the first of them and how many more.
 std::string names_of(const std::vector<Contact>& contacts);

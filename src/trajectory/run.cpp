@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -50,6 +51,19 @@ template <int Dim> class Run {
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
     std::optional<double> beyond(double limit);
+    /// A rearrangement as it was begun.
+    struct Attempt {
+        Opening opening;
+        ArcKind kind = ArcKind::limit;
+        LimitLoad<Dim> at;
+        std::vector<TieDecision> chosen; ///< why this one opens, where the rule takes another first
+        bool begun = false;              ///< an arc was recorded
+        [[nodiscard]] bool in_vain(const Result<Reached<Dim>>& reached) const {
+            return !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
+        }
+    };
+    Result<Reached<Dim>> begin_at_limit(Attempt& attempt);
+    Result<Reached<Dim>> follow(Attempt& attempt);
     std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
     [[nodiscard]] std::optional<Failure> check(const EquilibriumRecord<Dim>& record);
@@ -329,31 +343,60 @@ template <int Dim> std::optional<double> Run<Dim>::beyond(double limit) {
                           segment_.direction * infinity);
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
-    const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
-    const Segment* const following = last ? nullptr : &segment_;
+/// In vain: its first arc is not decided. Then it may begin with the load rounded away, or with another force that
+/// vanishes at the same one.
+template <int Dim> Result<Reached<Dim>> Run<Dim>::begin_at_limit(Attempt& attempt) {
     const RunCounters before = counters_;
-    const auto attempt = [&](bool& begun) {
-        prover_.start_at(vertex_->packing);
-        Rearrangement<Dim> rearrangement({vertex_, opening, kind, at}, prover_, recorder_, following);
-        auto reached = rearrangement.run(std::move(next_));
-        begun = rearrangement.arcs() > 0;
+    const LimitLoad<Dim> nearest = attempt.at;
+    auto reached = follow(attempt);
+    if (!attempt.in_vain(reached) || perturbs()) {
         return reached;
-    };
-    bool begun = false;
-    auto reached = attempt(begun);
-    if (!reached.ok() && reached.failure().kind == FailureKind::undecided && kind == ArcKind::limit && !begun &&
-        !perturbs()) {
-        if (const auto stress = beyond(at.stress())) {
-            counters_ = before;
-            at.set_stress(*stress);
-            reached = attempt(begun);
-        }
     }
+    if (const auto stress = beyond(nearest.stress())) {
+        counters_ = before;
+        attempt.at.set_stress(*stress);
+        reached = follow(attempt);
+    }
+    const LimitLoad<Dim> last = attempt.at;
+    const ContactId first = attempt.opening.contact;
+    const bool is_proved = recorder_.options.certify != CertifyLevel::plain; // decisions of an arc are
+    for (const TieDecision& choice :
+         is_proved&& attempt.in_vain(reached) ? others_of_class(vertex_->statics, first) : std::vector<TieDecision>()) {
+        const auto& contacts = vertex_->structure.contacts();
+        const auto chosen = std::find(contacts.begin(), contacts.end(), choice.chosen) - contacts.begin();
+        attempt.opening.contact = ContactId(static_cast<std::size_t>(chosen));
+        attempt.chosen = {choice};
+        const RunCounters after = std::exchange(counters_, before);
+        for (const LimitLoad<Dim>& at : {nearest, last}) {
+            counters_ = before;
+            attempt.at = at;
+            auto other = follow(attempt);
+            if (!attempt.in_vain(other)) {
+                return other;
+            }
+        }
+        counters_ = after;
+    }
+    return reached;
+}
+
+template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt& attempt) {
+    const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
+    prover_.start_at(vertex_->packing);
+    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at, attempt.chosen}, prover_,
+                                     recorder_, last ? nullptr : &segment_);
+    auto reached = rearrangement.run(std::move(next_));
+    attempt.begun = rearrangement.arcs() > 0;
+    return reached;
+}
+
+template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
+    Attempt attempt{opening, kind, std::move(at), {}};
+    auto reached = kind == ArcKind::limit ? begin_at_limit(attempt) : follow(attempt);
     if (!reached.ok()) {
         return reached.failure();
     }
-    const Load<Dim> load = at.load;
+    const Load<Dim> load = attempt.at.load;
     Reached<Dim>& there = reached.value();
     next_ = std::move(there.next);
     vertex_ = std::move(there.proof.vertex);

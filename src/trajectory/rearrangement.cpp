@@ -60,8 +60,8 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<
 
 /// The other rules choose by differences that floating steering does not resolve.
 template <int Dim> bool Rearrangement<Dim>::floats() const {
-    return plain() || (options().ties == TiePolicy::stop && options().rule == OpeningRule::most_negative &&
-                       !by_steps_ && resting_.empty());
+    return plain() || (!at_first_order(options().ties) && options().rule == OpeningRule::most_negative && !by_steps_ &&
+                       resting_.empty());
 }
 
 /// Propose, prove, record, decide, until no force is negative.
@@ -382,7 +382,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return std::nullopt;
     }
     return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
-                  options().ties != TiePolicy::stop ? "the load as it is stored" : "fresh factors and bounds",
+                  at_first_order(options().ties) ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 

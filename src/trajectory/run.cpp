@@ -64,6 +64,7 @@ template <int Dim> class Run {
     };
     Result<Reached<Dim>> begin_at_limit(Attempt& attempt);
     Result<Reached<Dim>> follow(Attempt& attempt);
+    [[nodiscard]] Failure offering_class(const Failure& failure, ContactId first) const;
     std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
     [[nodiscard]] std::optional<Failure> check(const EquilibriumRecord<Dim>& record);
@@ -76,10 +77,10 @@ template <int Dim> class Run {
     double seconds_before_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::unique_ptr<const FirstOrderSide<Dim>> first_order_ = ///< null: ties end the run
-        recorder_.options.ties == TiePolicy::stop
-            ? nullptr
-            : std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
-                                                          recorder_.options.ties == TiePolicy::choose);
+        at_first_order(recorder_.options.ties)
+            ? std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
+                                                          recorder_.options.ties == TiePolicy::choose)
+            : nullptr;
     Prover<Dim> prover_{recorder_.options, first_order_.get()};
     std::shared_ptr<Vertex<Dim>> vertex_;
     EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
@@ -343,8 +344,8 @@ template <int Dim> std::optional<double> Run<Dim>::beyond(double limit) {
                           segment_.direction * infinity);
 }
 
-/// In vain: its first arc is not decided. Then it may begin with the load rounded away, or with another force that
-/// vanishes at the same one.
+/// In vain: its first arc is not decided. Then it may begin with the load rounded away, or, by `TiePolicy::by_class`,
+/// with another force that vanishes at the same one.
 template <int Dim> Result<Reached<Dim>> Run<Dim>::begin_at_limit(Attempt& attempt) {
     const RunCounters before = counters_;
     const LimitLoad<Dim> nearest = attempt.at;
@@ -357,27 +358,38 @@ template <int Dim> Result<Reached<Dim>> Run<Dim>::begin_at_limit(Attempt& attemp
         attempt.at.set_stress(*stress);
         reached = follow(attempt);
     }
-    const LimitLoad<Dim> last = attempt.at;
-    const ContactId first = attempt.opening.contact;
-    const bool is_proved = recorder_.options.certify != CertifyLevel::plain; // decisions of an arc are
-    for (const TieDecision& choice :
-         is_proved&& attempt.in_vain(reached) ? others_of_class(vertex_->statics, first) : std::vector<TieDecision>()) {
+    if (attempt.in_vain(reached) && recorder_.options.ties == TiePolicy::by_class) {
         const auto& contacts = vertex_->structure.contacts();
-        const auto chosen = std::find(contacts.begin(), contacts.end(), choice.chosen) - contacts.begin();
-        attempt.opening.contact = ContactId(static_cast<std::size_t>(chosen));
-        attempt.chosen = {choice};
-        const RunCounters after = std::exchange(counters_, before);
-        for (const LimitLoad<Dim>& at : {nearest, last}) {
-            counters_ = before;
-            attempt.at = at;
-            auto other = follow(attempt);
-            if (!attempt.in_vain(other)) {
-                return other;
+        for (const TieDecision& choice : others_of_class(vertex_->statics, attempt.opening.contact)) {
+            const auto chosen = std::find(contacts.begin(), contacts.end(), choice.chosen) - contacts.begin();
+            const RunCounters after = std::exchange(counters_, before);
+            for (const LimitLoad<Dim>& at : {nearest, attempt.at}) {
+                counters_ = before;
+                Attempt other{attempt.opening, attempt.kind, at, {choice}};
+                other.opening.contact = ContactId(static_cast<std::size_t>(chosen));
+                auto its = follow(other);
+                if (!other.in_vain(its)) {
+                    attempt = std::move(other);
+                    return its;
+                }
             }
+            counters_ = after;
         }
-        counters_ = after;
+    }
+    if (attempt.in_vain(reached)) {
+        return offering_class(reached.failure(), attempt.opening.contact);
     }
     return reached;
+}
+
+/// What a run that chooses nothing says where another policy would look further.
+template <int Dim> Failure Run<Dim>::offering_class(const Failure& failure, ContactId first) const {
+    const RunOptions& options = recorder_.options;
+    const bool may = options.ties == TiePolicy::stop && options.certify != CertifyLevel::plain &&
+                     !vertex_->packing.cell.any() && !others_of_class(vertex_->statics, first).empty();
+    return may ? failed(failure.kind, "{}; other forces vanish with it: ties = \"class\" in [run] may open one of them",
+                        failure)
+               : failure;
 }
 
 template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt& attempt) {
@@ -469,7 +481,7 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
         throw Error(ErrorKind::bad_input, source + ": a periodic cell; " + what);
     };
     if (options.ties != TiePolicy::stop) {
-        refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
+        refuse("ties = \"class\", \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
     }
     const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
     if (state.load.kind == LoadKind::true_stress && shears) {

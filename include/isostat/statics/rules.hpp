@@ -23,8 +23,8 @@ enum class OpeningRule : std::uint8_t { most_negative, steepest, random, least_n
 /// The words of scenes, in that order.
 inline constexpr std::array opening_rule_words{"most_negative", "steepest", "random", "least_negative", "least_index"};
 
-/// What a decision rests on where first-order terms do not tell, under `ties = "choose"`, or where what the rule takes
-/// first cannot be followed (statement C1).
+/// What a decision rests on where first-order terms do not tell, under `ties = "choose"`, or under `"class"` where what
+/// the rule takes first cannot be followed (statement C1).
 enum class TieChoice : unsigned char {
     none,    ///< nothing was chosen: first-order terms decided
     loads,   ///< the infinitesimal loads, by the rule

@@ -182,9 +182,9 @@ class Walk {
             v = -v;
         }
         velocity_ = v;
-        power_size_ = 0;
+        power_size_ = {};
         power_ = power(q_, velocity_, &power_size_);
-        powered_ = powered_ || power_ > 1e-9 * power_size_;
+        powered_ = powered_ || power_ > 1e-9 * power_size_.terms;
         next = q_;
         for (std::size_t d = 0; d < kept_.size(); ++d) {
             next[kept_.coordinate(d)] += step * v(static_cast<Eigen::Index>(d));
@@ -198,15 +198,21 @@ class Walk {
         return kept_.newton_in_quadruple(next, way);
     }
 
-    /// Power of the load on a velocity; `size`: the sum of the absolute values of its terms is added.
-    [[nodiscard]] double power(const std::vector<double>& q, const Eigen::VectorXd& v, double* size = nullptr) const {
+    struct PowerSize {
+        double terms = 0; ///< sum of the absolute values
+        double load = 0;  ///< the largest component
+    };
+    /// Power of the load on a velocity.
+    [[nodiscard]] double power(const std::vector<double>& q, const Eigen::VectorXd& v,
+                               PowerSize* size = nullptr) const {
         const std::vector<double> load = motion_.power_load(q);
         double sum = 0;
         for (std::size_t d = 0; d < kept_.size(); ++d) {
             const double part = load[kept_.coordinate(d)] * v(static_cast<Eigen::Index>(d));
             sum += part;
             if (size != nullptr) {
-                *size += std::abs(part);
+                size->terms += std::abs(part);
+                size->load = std::max(size->load, std::abs(load[kept_.coordinate(d)]));
             }
         }
         return sum;
@@ -253,7 +259,8 @@ class Walk {
 
     /// Does the contact close on the way to `next`?
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
-        if (powered_ && power_ < -1e-6 * power_size_) {
+        constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
+        if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
             return {false,
                     {},
                     fmt::format("the power of the load vanishes before {} closes", to_string<2>(motion_.closed))};
@@ -305,7 +312,17 @@ class Walk {
         for (std::size_t i = 0; i < q.size(); ++i) {
             q[i] += part * (next[i] - q[i]);
         }
-        return end_near(std::move(q), [](System& end, std::vector<double>& at) { return end.newton(at, {}, 0x1p-46); });
+        return end_near(std::move(q), [](System& end, std::vector<double>& at) {
+            constexpr double accuracy = 0x1p-46;
+            if (!end.newton(at, {}, accuracy)) {
+                return false;
+            }
+            std::vector<double> better = at;
+            if (end.step_in_quadruple(at) > accuracy && end.newton_in_quadruple(better)) {
+                at = std::move(better);
+            }
+            return true;
+        });
     }
 
     /// The same where the contacts are nearly singular, from the beginning of the last step: of two places the first.
@@ -357,7 +374,7 @@ class Walk {
     Eigen::VectorXd velocity_; ///< of the last step
     bool powered_ = false;     ///< the power was positive
     double power_ = 0;
-    double power_size_ = 0;
+    PowerSize power_size_;
 };
 
 } // namespace

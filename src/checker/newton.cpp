@@ -168,6 +168,10 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
     return false;
 }
 
+double System::step_in_quadruple(const std::vector<double>& q) {
+    return step_at(std::vector<Quadruple>(q.begin(), q.end()), {}).lpNorm<Eigen::Infinity>() / packing_.max_radius();
+}
+
 bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {
     constexpr int most = 60; // half the way to one of two zeros that are near each other, step by step
     const double scale = packing_.max_radius();

@@ -42,6 +42,8 @@ class System {
     /// To a zero of all F where the contacts are nearly singular: F in quadruple precision, factors made anew at each
     /// step.
     bool newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way = {});
+    /// The next step with F in quadruple precision, in units of the largest radius: F in double may be too rough.
+    [[nodiscard]] double step_in_quadruple(const std::vector<double>& q);
 
   private:
     void renew(const std::vector<double>& q);

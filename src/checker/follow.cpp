@@ -124,12 +124,18 @@ class Walk {
             return {};
         }
         double step = std::min(motion_.displacement / 4, motion_.step * from_.packing.min_radius());
-        const auto steps = static_cast<long>(std::min(8 * motion_.displacement / step + 16, 1e5));
+        auto steps = static_cast<long>(std::min(8 * motion_.displacement / step + 16, 1e5));
         int zooms = 0;
+        int halvings = 0;
         std::vector<double> next;
         for (long k = 0; k < steps; ++k) {
-            if (!move(step, next)) {
-                return {};
+            if (!move(step, next)) { // the way may bend too much for it
+                if (halvings++ == most_halvings) {
+                    return {};
+                }
+                step /= 2;
+                steps = k + 2 * (steps - k);
+                continue;
             }
             if (!list_pairs(next)) {
                 return {};
@@ -145,10 +151,9 @@ class Walk {
             }
             if (met.end) {
                 Followed there = arrive(next, *met.end);
-                return there.end || turns_ ? there : arrive_slowly();
+                return there.end ? there : arrive_slowly();
             }
-            if (!turns_ && !passed_ && displacement(next) >= motion_.displacement) { // a gap that grazes is 0 nowhere
-                passed_ = true;
+            if (!turns_ && (passes(next) || dips(next))) {
                 if (Followed there = arrive_slowly(); there.end) {
                     return there;
                 }
@@ -162,6 +167,9 @@ class Walk {
     }
 
   private:
+    static constexpr double near = 1e-2; ///< of the recorded displacement: an end there may be the right one
+    static constexpr int most_halvings = 10;
+
     /// The next point. Contact `opened` opens in the first step; later the motion goes on in the same sense.
     bool move(double step, std::vector<double>& next) {
         constexpr double between = 0x1p-40; // accuracy of the points on the way
@@ -174,25 +182,37 @@ class Walk {
             v = -v;
         }
         velocity_ = v;
-        power_size_ = 0;
+        power_size_ = {};
         power_ = power(q_, velocity_, &power_size_);
-        powered_ = powered_ || power_ > 1e-9 * power_size_;
+        powered_ = powered_ || power_ > 1e-9 * power_size_.terms;
         next = q_;
         for (std::size_t d = 0; d < kept_.size(); ++d) {
             next[kept_.coordinate(d)] += step * v(static_cast<Eigen::Index>(d));
         }
-        return kept_.newton(next, System::Way{motion_.opened, fastest}, between);
+        const System::Way way{motion_.opened, fastest};
+        std::vector<double> guess = next;
+        if (kept_.newton(next, way, between)) {
+            return true;
+        }
+        next = std::move(guess); // the contacts are nearly singular there
+        return kept_.newton_in_quadruple(next, way);
     }
 
-    /// Power of the load on a velocity; `size`: the sum of the absolute values of its terms is added.
-    [[nodiscard]] double power(const std::vector<double>& q, const Eigen::VectorXd& v, double* size = nullptr) const {
+    struct PowerSize {
+        double terms = 0; ///< sum of the absolute values
+        double load = 0;  ///< the largest component
+    };
+    /// Power of the load on a velocity.
+    [[nodiscard]] double power(const std::vector<double>& q, const Eigen::VectorXd& v,
+                               PowerSize* size = nullptr) const {
         const std::vector<double> load = motion_.power_load(q);
         double sum = 0;
         for (std::size_t d = 0; d < kept_.size(); ++d) {
             const double part = load[kept_.coordinate(d)] * v(static_cast<Eigen::Index>(d));
             sum += part;
             if (size != nullptr) {
-                *size += std::abs(part);
+                size->terms += std::abs(part);
+                size->load = std::max(size->load, std::abs(load[kept_.coordinate(d)]));
             }
         }
         return sum;
@@ -239,7 +259,8 @@ class Walk {
 
     /// Does the contact close on the way to `next`?
     [[nodiscard]] Met closing(const std::vector<double>& next, bool first) const {
-        if (powered_ && power_ < -1e-6 * power_size_) {
+        constexpr double rounding = 0x1p-50; // of a velocity, whose largest component is 1
+        if (powered_ && power_ < -1e-6 * power_size_.terms && power_ < -rounding * power_size_.load) {
             return {false,
                     {},
                     fmt::format("the power of the load vanishes before {} closes", to_string<2>(motion_.closed))};
@@ -254,6 +275,21 @@ class Walk {
             return {};
         }
         return {false, before > 0 ? before / (before - after) : 1, {}};
+    }
+
+    /// For the first time so far as the record says: a gap that grazes is 0 nowhere.
+    bool passes(const std::vector<double>& next) {
+        const bool first = !passed_ && displacement(next) >= motion_.displacement;
+        passed_ = passed_ || first;
+        return first;
+    }
+
+    /// The gap grows again near the recorded displacement: it may have been 0 within the last steps.
+    bool dips(const std::vector<double>& next) {
+        const double before = kept_.value(q_, motion_.closed);
+        const double after = kept_.value(next, motion_.closed);
+        const bool fell = std::exchange(falls_, after < before);
+        return fell && after >= before && displacement(next) >= (1 - near) * motion_.displacement;
     }
 
     /// Another pair that overlaps at `next`, as a message; empty: none.
@@ -272,17 +308,39 @@ class Walk {
 
     /// The vertex of the contacts at the end, near a point of the last step.
     [[nodiscard]] Followed arrive(const std::vector<double>& next, double part) const {
+        std::vector<double> q = q_;
+        for (std::size_t i = 0; i < q.size(); ++i) {
+            q[i] += part * (next[i] - q[i]);
+        }
+        return end_near(std::move(q), [](System& end, std::vector<double>& at) {
+            constexpr double accuracy = 0x1p-46;
+            if (!end.newton(at, {}, accuracy)) {
+                return false;
+            }
+            std::vector<double> better = at;
+            if (end.step_in_quadruple(at) > accuracy && end.newton_in_quadruple(better)) {
+                at = std::move(better);
+            }
+            return true;
+        });
+    }
+
+    /// The same where the contacts are nearly singular, from the beginning of the last step: of two places the first.
+    [[nodiscard]] Followed arrive_slowly() const {
+        return end_near(q_, [this](System& end, std::vector<double>& at) {
+            return end.newton_in_quadruple(at) &&
+                   std::abs(displacement(at) - motion_.displacement) <= near * motion_.displacement;
+        });
+    }
+
+    template <class Newton> [[nodiscard]] Followed end_near(std::vector<double> q, const Newton& newton) const {
         std::vector<Contact> contacts = from_.contacts;
         contacts[motion_.opened] = motion_.closed;
         System end(from_.packing, contacts);
         if (turns_) {
             end.hold(motion_.closed, motion_.held_at);
         }
-        std::vector<double> q = q_;
-        for (std::size_t i = 0; i < q.size(); ++i) {
-            q[i] += part * (next[i] - q[i]);
-        }
-        if (!end.newton(q, {}, 0x1p-46)) {
+        if (!newton(end, q)) {
             return {};
         }
         for (const Contact& contact : contacts) { // held means held, rounding apart
@@ -301,24 +359,11 @@ class Walk {
         return moved;
     }
 
-    /// The same where the contacts are nearly singular, from the beginning of the last step: of two places the first.
-    [[nodiscard]] Followed arrive_slowly() const {
-        std::vector<Contact> contacts = from_.contacts;
-        contacts[motion_.opened] = motion_.closed;
-        System end(from_.packing, std::move(contacts));
-        std::vector<double> q = q_;
-        constexpr double near = 1e-3; // of the recorded displacement
-        if (!end.newton_in_quadruple(q) ||
-            !(std::abs(displacement(q) - motion_.displacement) <= near * motion_.displacement)) {
-            return {};
-        }
-        return {q, {}, end.solver()};
-    }
-
     const State<2>& from_;
     const Motion& motion_;
     bool turns_;
     bool passed_ = false; ///< the recorded displacement
+    bool falls_ = false;  ///< the gap that closes
     double tolerance_;    ///< of gaps that are looked at, not proved
     double reach_;
     System kept_;
@@ -329,7 +374,7 @@ class Walk {
     Eigen::VectorXd velocity_; ///< of the last step
     bool powered_ = false;     ///< the power was positive
     double power_ = 0;
-    double power_size_ = 0;
+    PowerSize power_size_;
 };
 
 } // namespace

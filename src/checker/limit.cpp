@@ -183,6 +183,65 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     return together.size() == 1 ? Objections() : limit.among(together);
 }
 
+namespace {
+
+/// Of forces that vanish together the infinitesimal loads take the one that opens.
+Objections taken_by_loads(const Place& place, std::size_t opened, const std::vector<std::size_t>& together) {
+    const Evidence& e = *place.evidence;
+    for (const std::size_t l : together) {
+        if (soon(place, l).upper < soon(place, opened).lower) {
+            return Objection{
+                true, fmt::format("{} vanishes at the same load, and first under the infinitesimal loads", e.name(l))};
+        }
+        if (!(soon(place, opened).upper < soon(place, l).lower)) {
+            return Objection{false, fmt::format("{} and {} vanish together", e.name(opened), e.name(l))};
+        }
+    }
+    return {};
+}
+
+/// Or, by the record, one that falls at least half as fast as any opens in the place of the one that they take (K24).
+Objections taken_by_slope(const Place& place, const TieRecord& tie, std::size_t opened,
+                          const std::vector<std::size_t>& together) {
+    const Evidence& e = *place.evidence;
+    const auto wrong = [&](const std::string& what) {
+        return Objection{true, fmt::format("{} opens by its slope, but {}", e.name(opened), what)};
+    };
+    const auto speed = [&e](std::size_t l) {
+        const Range& slope = e.slopes()[l];
+        return slope.negative() ? Range(Rational(0)) - slope : slope;
+    };
+    const auto against =
+        std::find_if(together.begin(), together.end(), [&](std::size_t l) { return e.name(l) == tie.against; });
+    if (tie.what != "limit" || tie.contact != e.name(opened) || against == together.end()) {
+        return wrong(fmt::format("{} does not vanish with it", tie.against));
+    }
+    const Rational fast = 2 * speed(opened).upper;
+    for (const std::size_t l : together) {
+        if (fast < speed(l).lower) {
+            return wrong(fmt::format("that of {} falls more than twice as fast", e.name(l)));
+        }
+    }
+    std::vector<std::size_t> others = together;
+    std::replace(others.begin(), others.end(), *against, opened);
+    if (Objections late = taken_by_loads(place, *against, others)) {
+        return late;
+    }
+    const auto said = [](double value, double radius, const Range& found) {
+        return found.lower <= Rational(value) + Rational(radius) && found.upper >= Rational(value) - Rational(radius);
+    };
+    return said(tie.first, tie.first_bound, e.slopes()[opened]) &&
+                   said(tie.other, tie.other_bound, e.slopes()[*against])
+               ? Objections()
+               : wrong("the slopes are not as recorded");
+}
+
+} // namespace
+
+bool opens_by_slope(const TieRecord& tie) {
+    return tie.choice == "slope";
+}
+
 Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
                        ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
@@ -205,8 +264,9 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         wrong->wrong = wrong->wrong && check_load_end(place, roughly, opened, direction);
         return wrong;
     }
-    // Forces that vanish together: the infinitesimal loads decide which one comes first.
+    // Forces that vanish together.
     const Range step = step_to_limit(place, opened);
+    std::vector<std::size_t> together;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
         const bool other = l != opened && !contains(place.zeros, l);
         if (!other || (e.forces[l] + step * e.slopes()[l]).positive()) {
@@ -215,15 +275,11 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         if (e.slopes()[l].has_zero()) {
             return Objection{false, fmt::format("the force of {} may vanish at the limit too", e.name(l))};
         }
-        if (soon(place, l).upper < soon(place, opened).lower) {
-            return Objection{
-                true, fmt::format("{} vanishes at the same load, and first under the infinitesimal loads", e.name(l))};
-        }
-        if (!(soon(place, opened).upper < soon(place, l).lower)) {
-            return Objection{false, fmt::format("{} and {} vanish together", e.name(opened), e.name(l))};
-        }
+        together.push_back(l);
     }
-    return {};
+    const auto tie = std::find_if(event.ties.begin(), event.ties.end(), opens_by_slope);
+    return tie == event.ties.end() ? taken_by_loads(place, opened, together)
+                                   : taken_by_slope(place, *tie, opened, together);
 }
 
 } // namespace isostat::checker

@@ -56,6 +56,24 @@ Eigen::VectorXd System::step(const Eigen::VectorXd& residual) const {
     return solver_->solve(residual) * std::ldexp(1.0, -solver_->exponent());
 }
 
+/// Newton's step with the present factors.
+template <class T> Eigen::VectorXd System::step_at(const std::vector<T>& q, const std::optional<Way>& way) {
+    Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
+    for (std::size_t l = 0; l < contacts_.size(); ++l) {
+        const bool free = way && way->left_out == l;
+        residual(static_cast<Eigen::Index>(l)) = free ? 0.0 : static_cast<double>(-value(q, contacts_[l]));
+    }
+    Eigen::VectorXd x = step(residual);
+    if (way) {
+        if (!kernel_ || kernel_->first != way->left_out) {
+            kernel_ = {way->left_out,
+                       step(Eigen::VectorXd::Unit(residual.size(), static_cast<Eigen::Index>(way->left_out)))};
+        }
+        x -= x(way->kept) / kernel_->second(way->kept) * kernel_->second;
+    }
+    return x;
+}
+
 Eigen::VectorXd System::product(const std::vector<double>& q, const Eigen::VectorXd& v) const {
     const auto at = [&](int coordinate) {
         const int dof = structure_.dof_of[static_cast<std::size_t>(coordinate)];
@@ -122,18 +140,7 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
     double last = std::numeric_limits<double>::infinity();
     int renewals = 0;
     for (int k = 0; k < 100 && solver_->usable(); ++k) {
-        Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
-        for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            residual(static_cast<Eigen::Index>(l)) = way && way->left_out == l ? 0.0 : -value(q, contacts_[l]);
-        }
-        Eigen::VectorXd x = step(residual);
-        if (way) {
-            if (!kernel_ || kernel_->first != way->left_out) {
-                kernel_ = {way->left_out,
-                           step(Eigen::VectorXd::Unit(residual.size(), static_cast<Eigen::Index>(way->left_out)))};
-            }
-            x -= x(way->kept) / kernel_->second(way->kept) * kernel_->second;
-        }
+        const Eigen::VectorXd x = step_at(q, way);
         const double size = x.lpNorm<Eigen::Infinity>();
         if (!std::isfinite(size)) {
             return false;
@@ -161,7 +168,11 @@ bool System::newton(std::vector<double>& q, const std::optional<Way>& way, doubl
     return false;
 }
 
-bool System::newton_in_quadruple(std::vector<double>& q) {
+double System::step_in_quadruple(const std::vector<double>& q) {
+    return step_at(std::vector<Quadruple>(q.begin(), q.end()), {}).lpNorm<Eigen::Infinity>() / packing_.max_radius();
+}
+
+bool System::newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way) {
     constexpr int most = 60; // half the way to one of two zeros that are near each other, step by step
     const double scale = packing_.max_radius();
     std::vector<Quadruple> at(q.begin(), q.end());
@@ -170,11 +181,7 @@ bool System::newton_in_quadruple(std::vector<double>& q) {
         if (!solver_->usable()) {
             return false;
         }
-        Eigen::VectorXd residual(static_cast<Eigen::Index>(contacts_.size()));
-        for (std::size_t l = 0; l < contacts_.size(); ++l) {
-            residual(static_cast<Eigen::Index>(l)) = static_cast<double>(-value(at, contacts_[l]));
-        }
-        const Eigen::VectorXd x = step(residual);
+        const Eigen::VectorXd x = step_at(at, way);
         const double size = x.lpNorm<Eigen::Infinity>();
         if (!(size < scale)) {
             return false;

@@ -41,11 +41,14 @@ class System {
     bool newton(std::vector<double>& q, const std::optional<Way>& way, double accuracy);
     /// To a zero of all F where the contacts are nearly singular: F in quadruple precision, factors made anew at each
     /// step.
-    bool newton_in_quadruple(std::vector<double>& q);
+    bool newton_in_quadruple(std::vector<double>& q, const std::optional<Way>& way = {});
+    /// The next step with F in quadruple precision, in units of the largest radius: F in double may be too rough.
+    [[nodiscard]] double step_in_quadruple(const std::vector<double>& q);
 
   private:
     void renew(const std::vector<double>& q);
     [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& residual) const;
+    template <class T> [[nodiscard]] Eigen::VectorXd step_at(const std::vector<T>& q, const std::optional<Way>& way);
     [[nodiscard]] Eigen::VectorXd product(const std::vector<double>& q, const Eigen::VectorXd& v) const;
 
     const Packing<2>& packing_;

@@ -216,7 +216,9 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.status = status.substr(0, status.find(':'));
     const Field settings = run.at("settings").at("run");
     records.rule = settings.at("rule").string();
-    records.chooses = settings.has("ties") && settings.at("ties").string() == "choose";
+    const std::string ties = settings.has("ties") ? settings.at("ties").string() : "stop";
+    records.chooses = ties == "choose";
+    records.by_class = ties == "class";
     const std::string level = settings.has("certify") ? settings.at("certify").string() : "decisions";
     records.certified_arcs = level == "arcs";
     records.certified_states = level == "states" || records.certified_arcs;

@@ -52,6 +52,7 @@ struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
     bool chooses = false;                                  ///< ties = "choose"
+    bool by_class = false;                                 ///< ties = "class"
     std::string status;                                    ///< the word without the reason
     bool certified_states = false, certified_arcs = false; ///< files that its level must have left
     std::vector<EventRecord> events;

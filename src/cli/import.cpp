@@ -312,6 +312,13 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
                state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction());
 }
 
+/// What may help where no vertex is proved. Empty: nothing.
+std::string advice(const ImportArguments& a, bool crafted, std::vector<double> radius) {
+    std::sort(radius.begin(), radius.end());
+    const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
+    return equal && !crafted && a.jitter == 0 ? "; equal radii: try --jitter 1e-9 --contacts nearest" : "";
+}
+
 } // namespace
 
 int import(const ImportArguments& arguments) {
@@ -339,7 +346,7 @@ int import(const ImportArguments& arguments) {
     const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
     if (!found.ok() || refuted) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
-        fmt::print(stderr, "isostat: {}: {}\n", a.file, why);
+        fmt::print(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
         return refuted ? failed : status_of(found.failure().kind);
     }
     Imported& imported = found.value();
@@ -347,7 +354,8 @@ int import(const ImportArguments& arguments) {
     const Json provenance = provenance_of(a, format, imported, moves);
     imported.state.provenance = json::dumped(provenance);
     if (imported.truth.verdict != Verdict::proved) {
-        fmt::print(stderr, "isostat: {}: {}\n", a.file, fmt::join(imported.truth.claims.undecided, "; "));
+        fmt::print(stderr, "isostat: {}: {}{}\n", a.file, fmt::join(imported.truth.claims.undecided, "; "),
+                   advice(a, crafted, file.packing.radius));
     }
     if (!imported.truth.claims.vertex || !imported.truth.claims.forces) {
         return undecided;

@@ -229,11 +229,12 @@ void read_run(Section& section, Scene& scene) {
                                    "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
                                    "equilibria");
     }
-    if (run.ties != TiePolicy::stop) {
+    if (at_first_order(run.ties)) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
     } else if (ties_seed) {
-        section.refuse("ties_seed", "'ties_seed' in [run] is the seed of the direction in which ties = \"perturb\" "
-                                    "or \"choose\" changes the radii: with ties = \"stop\" it has no meaning");
+        section.refuse("ties_seed",
+                       "'ties_seed' in [run] is the seed of the direction in which ties = \"perturb\" "
+                       "or \"choose\" changes the radii: with ties = \"stop\" or \"class\" it has no meaning");
     }
     run.step_fraction = section.number("step_fraction", run.step_fraction, 1e-6, 10, "a number from 1e-6 to 10");
 }

@@ -76,7 +76,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
         }
     }
     require_followed(state, scene.run, source);
-    check_start(state, source, scene.run.ties != TiePolicy::stop);
+    check_start(state, source, at_first_order(scene.run.ties));
     check_programme(scene, state.load.ratio());
     if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
         Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);

@@ -13,9 +13,10 @@ namespace isostat {
 template <int Dim>
 Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following)
     : prover_(prover), recorder_(recorder), following_(following), at_(std::move(start.at)),
-      here_(std::move(start.vertex)), opening_(start.opening), kind_(start.kind),
+      here_(std::move(start.vertex)), opening_(start.opening), kind_(start.kind), chosen_(std::move(start.chosen)),
       tilts_at_start_(here_->packing.q.begin() + static_cast<std::ptrdiff_t>(here_->packing.length_at(Dim)),
-                      here_->packing.q.end()) {}
+                      here_->packing.q.end()),
+      by_steps_(!chosen_.empty()) {}
 
 template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
     return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
@@ -59,8 +60,8 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<
 
 /// The other rules choose by differences that floating steering does not resolve.
 template <int Dim> bool Rearrangement<Dim>::floats() const {
-    return plain() || (options().ties == TiePolicy::stop && options().rule == OpeningRule::most_negative &&
-                       !by_steps_ && resting_.empty());
+    return plain() || (!at_first_order(options().ties) && options().rule == OpeningRule::most_negative && !by_steps_ &&
+                       resting_.empty());
 }
 
 /// Propose, prove, record, decide, until no force is negative.
@@ -132,6 +133,7 @@ template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steer
     if (!floats()) {
         if (arcs_ == 0) {
             take_log(*here_, start.settled);
+            start.settled.insert(start.settled.end(), chosen_.begin(), chosen_.end());
         }
         auto departure = depart();
         start.settled.insert(start.settled.end(), relisted_.begin(), relisted_.end());
@@ -380,7 +382,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return std::nullopt;
     }
     return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
-                  options().ties != TiePolicy::stop ? "the load as it is stored" : "fresh factors and bounds",
+                  at_first_order(options().ties) ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 

@@ -38,6 +38,7 @@ template <int Dim> class Rearrangement {
         Opening opening;
         ArcKind kind = ArcKind::limit; ///< of the first arc
         LimitLoad<Dim> at;
+        std::vector<TieDecision> chosen{}; ///< why this one opens, where the rule takes another first
     };
     /// `following`: what follows the next equilibrium; null: nothing. All must outlive the rearrangement.
     Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following);
@@ -78,6 +79,7 @@ template <int Dim> class Rearrangement {
     std::shared_ptr<Vertex<Dim>> here_; ///< the last vertex that was proved
     Opening opening_;                   ///< what opens there
     ArcKind kind_;
+    std::vector<TieDecision> chosen_;   ///< recorded with the first arc
     std::vector<TieDecision> relisted_; ///< lists exchanged at `here_` since it was reached
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace isostat {
 
@@ -50,6 +51,20 @@ template <int Dim> class Run {
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
     std::optional<double> beyond(double limit);
+    /// A rearrangement as it was begun.
+    struct Attempt {
+        Opening opening;
+        ArcKind kind = ArcKind::limit;
+        LimitLoad<Dim> at;
+        std::vector<TieDecision> chosen; ///< why this one opens, where the rule takes another first
+        bool begun = false;              ///< an arc was recorded
+        [[nodiscard]] bool in_vain(const Result<Reached<Dim>>& reached) const {
+            return !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
+        }
+    };
+    Result<Reached<Dim>> begin_at_limit(Attempt& attempt);
+    Result<Reached<Dim>> follow(Attempt& attempt);
+    [[nodiscard]] Failure offering_class(const Failure& failure, ContactId first) const;
     std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
     [[nodiscard]] std::optional<Failure> check(const EquilibriumRecord<Dim>& record);
@@ -62,10 +77,10 @@ template <int Dim> class Run {
     double seconds_before_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::unique_ptr<const FirstOrderSide<Dim>> first_order_ = ///< null: ties end the run
-        recorder_.options.ties == TiePolicy::stop
-            ? nullptr
-            : std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
-                                                          recorder_.options.ties == TiePolicy::choose);
+        at_first_order(recorder_.options.ties)
+            ? std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
+                                                          recorder_.options.ties == TiePolicy::choose)
+            : nullptr;
     Prover<Dim> prover_{recorder_.options, first_order_.get()};
     std::shared_ptr<Vertex<Dim>> vertex_;
     EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
@@ -329,31 +344,71 @@ template <int Dim> std::optional<double> Run<Dim>::beyond(double limit) {
                           segment_.direction * infinity);
 }
 
-template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
-    const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
-    const Segment* const following = last ? nullptr : &segment_;
+/// In vain: its first arc is not decided. Then it may begin with the load rounded away, or, by `TiePolicy::by_class`,
+/// with another force that vanishes at the same one.
+template <int Dim> Result<Reached<Dim>> Run<Dim>::begin_at_limit(Attempt& attempt) {
     const RunCounters before = counters_;
-    const auto attempt = [&](bool& begun) {
-        prover_.start_at(vertex_->packing);
-        Rearrangement<Dim> rearrangement({vertex_, opening, kind, at}, prover_, recorder_, following);
-        auto reached = rearrangement.run(std::move(next_));
-        begun = rearrangement.arcs() > 0;
+    const LimitLoad<Dim> nearest = attempt.at;
+    auto reached = follow(attempt);
+    if (!attempt.in_vain(reached) || perturbs()) {
         return reached;
-    };
-    bool begun = false;
-    auto reached = attempt(begun);
-    if (!reached.ok() && reached.failure().kind == FailureKind::undecided && kind == ArcKind::limit && !begun &&
-        !perturbs()) {
-        if (const auto stress = beyond(at.stress())) {
-            counters_ = before;
-            at.set_stress(*stress);
-            reached = attempt(begun);
+    }
+    if (const auto stress = beyond(nearest.stress())) {
+        counters_ = before;
+        attempt.at.set_stress(*stress);
+        reached = follow(attempt);
+    }
+    if (attempt.in_vain(reached) && recorder_.options.ties == TiePolicy::by_class) {
+        const auto& contacts = vertex_->structure.contacts();
+        for (const TieDecision& choice : others_of_class(vertex_->statics, attempt.opening.contact)) {
+            const auto chosen = std::find(contacts.begin(), contacts.end(), choice.chosen) - contacts.begin();
+            const RunCounters after = std::exchange(counters_, before);
+            for (const LimitLoad<Dim>& at : {nearest, attempt.at}) {
+                counters_ = before;
+                Attempt other{attempt.opening, attempt.kind, at, {choice}};
+                other.opening.contact = ContactId(static_cast<std::size_t>(chosen));
+                auto its = follow(other);
+                if (!other.in_vain(its)) {
+                    attempt = std::move(other);
+                    return its;
+                }
+            }
+            counters_ = after;
         }
     }
+    if (attempt.in_vain(reached)) {
+        return offering_class(reached.failure(), attempt.opening.contact);
+    }
+    return reached;
+}
+
+/// What a run that chooses nothing says where another policy would look further.
+template <int Dim> Failure Run<Dim>::offering_class(const Failure& failure, ContactId first) const {
+    const RunOptions& options = recorder_.options;
+    const bool may = options.ties == TiePolicy::stop && options.certify != CertifyLevel::plain &&
+                     !vertex_->packing.cell.any() && !others_of_class(vertex_->statics, first).empty();
+    return may ? failed(failure.kind, "{}; other forces vanish with it: ties = \"class\" in [run] may open one of them",
+                        failure)
+               : failure;
+}
+
+template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt& attempt) {
+    const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
+    prover_.start_at(vertex_->packing);
+    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at, attempt.chosen}, prover_,
+                                     recorder_, last ? nullptr : &segment_);
+    auto reached = rearrangement.run(std::move(next_));
+    attempt.begun = rearrangement.arcs() > 0;
+    return reached;
+}
+
+template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
+    Attempt attempt{opening, kind, std::move(at), {}};
+    auto reached = kind == ArcKind::limit ? begin_at_limit(attempt) : follow(attempt);
     if (!reached.ok()) {
         return reached.failure();
     }
-    const Load<Dim> load = at.load;
+    const Load<Dim> load = attempt.at.load;
     Reached<Dim>& there = reached.value();
     next_ = std::move(there.next);
     vertex_ = std::move(there.proof.vertex);
@@ -426,7 +481,7 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
         throw Error(ErrorKind::bad_input, source + ": a periodic cell; " + what);
     };
     if (options.ties != TiePolicy::stop) {
-        refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
+        refuse("ties = \"class\", \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
     }
     const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
     if (state.load.kind == LoadKind::true_stress && shears) {

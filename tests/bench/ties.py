@@ -3,7 +3,7 @@
 
     python3 tests/bench/ties.py build/release/isostat OUT --law bidisperse --disks 100 --seeds 20 --policy choose
 
-Policies: stop, perturb, choose, or a jitter such as 1e-9 (with ties = "stop"). One process, one line per sample and one of
+Policies: stop, perturb, choose, or a jitter such as 1e-9 (with ties = "stop"; "1e-9,class": with that). One process, one line per sample and one of
 sums: finished, failed (caps), tied, undecided, other, seconds. Folders of the runs stay in OUT."""
 import argparse
 import collections
@@ -14,13 +14,14 @@ import time
 
 
 def scene(options, policy, seed):
-    jitter = 0 if policy in ("stop", "perturb", "choose") else float(policy)
-    ties = policy if jitter == 0 else "stop"
+    radii, _, ties = policy.partition(",")
+    jitter = 0 if radii in ("stop", "perturb", "choose") else float(radii)
+    ties = policy if jitter == 0 else ties or "stop"
     return f"""[packing]
 disks = {options.disks}
 law = "{options.law}"
 seed = {seed}
-{f"jitter = {policy}" if jitter else ""}
+{f"jitter = {radii}" if jitter else ""}
 [run]
 ties = "{ties}"
 [output]

@@ -9,6 +9,7 @@
 #include <boost/test/unit_test.hpp>
 
 using namespace isostat;
+using forger::altered;
 namespace fs = std::filesystem;
 
 namespace {
@@ -30,20 +31,6 @@ void play(State<2> state, int direction, int equilibria, const fs::path& folder)
     const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
     BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));
     directory.finish(RunStatus::completed, "");
-}
-
-/// One change in a file: what `verify` says of it.
-RunVerification altered(const fs::path& folder, const std::string& file, const std::string& from,
-                        const std::string& to) {
-    const std::string original = scratch::read(folder / file);
-    const std::string changed = scratch::replaced(original, from, to);
-    BOOST_REQUIRE(changed != original);
-    scratch::write(folder / file, changed);
-    forger::seal(folder);
-    RunVerification run = verify_run(folder);
-    scratch::write(folder / file, original);
-    forger::seal(folder);
-    return run;
 }
 
 /// The entry of a record that names an exchange at second order, with the braces; empty: none does.

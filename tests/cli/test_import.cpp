@@ -105,6 +105,37 @@ BOOST_AUTO_TEST_CASE(an_imported_state_runs_under_its_load) {
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
 }
 
+/// `export.text` of YADE 2023.02a wrote the file, with six digits: 20 disks (seed 1), stiffness 1e6, its walls at
+/// `box`.
+BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) {
+    const scratch::Folder folder;
+    const std::string out = (folder / "s.json").string(), start = (folder / "start.json").string();
+    const std::string box = "0:6.797743980394215,0:6.804741233269178";
+    scratch::write(folder / "prepared.toml", "[packing]\ndisks = 20\n");
+    expect(run({"prepare", (folder / "prepared.toml").string(), "-o", start, "-q"}), 0);
+    const State<2> from = read_state<2>(start).state;
+    for (const std::string contacts : {"plateau", "nearest"}) {
+        BOOST_TEST_CONTEXT(contacts) {
+            const Outcome outcome = import_text(folder, scratch::read(scratch::data("yade20.txt")),
+                                                {"--box", box, "--contacts", contacts, "--json"});
+            expect(outcome, 0);
+            const json answer = json::parse(outcome.out);
+            BOOST_TEST(answer.at("file_format") == "table");
+            BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
+            const double moved = answer.at("moved").at("backbone").get<double>();
+            BOOST_TEST(moved > 1e-6); // overlaps and digits
+            BOOST_TEST(moved < 1e-4);
+            std::vector<Contact> found = read_state<2>(out).state.contacts, expected = from.contacts;
+            std::sort(found.begin(), found.end());
+            std::sort(expected.begin(), expected.end());
+            BOOST_TEST((found == expected));
+            expect(run({"certify", out, "-o", (folder / "c.json").string()}), 0);
+        }
+    }
+    scratch::write(folder / "s.toml", scene_from("s.json", "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
+    expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
+}
+
 BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
     const scratch::Folder folder;
     const Soft soft(1e-6);
@@ -132,7 +163,11 @@ BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
     expect(import_text(folder, soft.table(), {"--box", "0:9,0:9"}), 65, {"centre between the walls"});
     expect(import_text(folder, soft.table(), {}), 65, {"walls", "--box"});
     const Soft deep(0.2);
-    expect(import_text(folder, deep.table(), {"--box", deep.box}), 65, {"overlap by", "expected at most"});
+    const std::string moved = (folder / "moved.csv").string();
+    expect(import_text(folder, deep.table(), {"--box", deep.box, "--moved", moved}), 65,
+           {"overlap by", "expected at most"});
+    expect(import_text(folder, scratch::replaced(soft.table(), "radius", "size"), {"--box", soft.box}), 65,
+           {"--radius"});
     expect(import_text(folder, "x,y\n1,1\n", {"--box", "0:2,0:2"}), 65, {"--radius"});
     std::string lattice = "x,y,r\n";
     for (int k = 0; k < 9; ++k) {
@@ -140,6 +175,8 @@ BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
     }
     expect(import_text(folder, lattice, {"--box", "0:6,0:6"}), 1, {"isostatic at no threshold", "--contacts nearest"});
     expect(import_text(folder, lattice, {"--box", "0:6,0:6", "--threshold", "0"}), 1, {"h = 4", "isostatic one"});
+    expect(import_text(folder, lattice, {"--box", "0:6,0:6", "--moved", moved}), 1, {"isostatic at no threshold"});
+    BOOST_TEST(!fs::exists(moved));
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "1"}), 64, {"--stress", "S1,S2"});
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--walls", "fixed"}), 64, {"--walls", "box"});
     expect(import_text(folder, state_text(soft.state), {}), 65, {"is a state of this program", "convert"});

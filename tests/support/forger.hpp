@@ -4,7 +4,10 @@
 #include "io/record_digests.hpp"
 #include "support/scratch.hpp"
 
+#include <isostat/checker/verify.hpp>
 #include <isostat/io/certificate_file.hpp>
+
+#include <boost/test/unit_test.hpp>
 
 #include <filesystem>
 #include <string>
@@ -39,6 +42,20 @@ inline void seal(const std::filesystem::path& folder) {
     text.pop_back();
     text += isostat::before_state + scratch::read(folder / "states" / "last.json");
     scratch::write(path, text + isostat::before_digest + '"' + isostat::sha256(text) + "\"}\n");
+}
+
+/// What `verify` says of a run with one text in a file in the place of another; the folder is then as before.
+inline isostat::RunVerification altered(const std::filesystem::path& folder, const std::string& file,
+                                        const std::string& from, const std::string& to) {
+    const std::string original = scratch::read(folder / file);
+    const std::string changed = scratch::replaced(original, from, to);
+    BOOST_REQUIRE(changed != original);
+    scratch::write(folder / file, changed);
+    seal(folder);
+    isostat::RunVerification run = isostat::verify_run(folder);
+    scratch::write(folder / file, original);
+    seal(folder);
+    return run;
 }
 
 } // namespace forger

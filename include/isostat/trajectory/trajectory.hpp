@@ -28,15 +28,21 @@ struct Segment {
 };
 
 /// What becomes of a tie: two quantities that are exactly equal, or agree to the cap of the precision ladder.
-/// - stop: the run ends with `tie`;
+/// - stop: the run ends with `tie`, and chooses nothing;
+/// - by_class: the same; but of forces that vanish together for structural reasons another one may open than the one
+///   that the infinitesimal loads take, where the arc of that one is undecided (C1 b). Recorded as a choice;
 /// - perturb: the radii are R_i + eps rho_i, eps > 0 smaller than every positive number, rho from `ties_seed` once for
 ///   the whole run: first-order terms decide (proofs/perturbation.md); when they do not, the run ends with `undecided`;
 /// - choose: the same, but where first-order terms do not tell which of several comes first, and any may, the rule goes
 ///   on with the infinitesimal loads and the order of contacts (proofs/degenerate.md, C1). What it chose is recorded as
 ///   a choice. The path is then one of the packing as it is, eps = 0: one of several.
-enum class TiePolicy : unsigned char { stop, perturb, choose };
+enum class TiePolicy : unsigned char { stop, by_class, perturb, choose };
 /// The words of scenes, in that order.
-inline constexpr std::array tie_policy_words{"stop", "perturb", "choose"};
+inline constexpr std::array tie_policy_words{"stop", "class", "perturb", "choose"};
+/// Ties are settled for radii R_i + eps rho_i.
+constexpr bool at_first_order(TiePolicy policy) {
+    return policy == TiePolicy::perturb || policy == TiePolicy::choose;
+}
 
 /// Caps and choices of a run.
 struct RunOptions {

@@ -107,8 +107,8 @@ std::optional<Failure> take_nearest(const ImportArguments& a, const compare::Sof
 std::optional<Failure> take_listed(const ImportArguments& a, compare::SoftState soft, const std::string& words,
                                    Imported& out) {
     compare::Snap snap = compare::snap(soft);
-    for (std::size_t axis = 0; axis < 2 && !snap.disks.empty(); ++axis) {
-        soft.load.reference_length[axis] = snap.backbone.packing.length(static_cast<int>(axis));
+    if (!snap.disks.empty()) {
+        soft.load.refer_to(snap.backbone.packing);
     }
     snap = compare::snap(soft);
     if (snap.outcome != compare::SnapOutcome::vertex) {
@@ -149,7 +149,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     Load<2> load;
     load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     load.stress = stress;
-    load.reference_length = {file.packing.length(0), file.packing.length(1)};
+    load.refer_to(file.packing);
     auto failure = wanted.any ? take_nearest(a, {file.packing, {}, load}, out)
                               : take_listed(a, {file.packing, wanted.contacts, load}, wanted.words, out);
     if (failure) {
@@ -220,9 +220,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     state.contacts = exact.contacts;
     state.load.stress = parse_stress(a.stress);
     state.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
-    for (std::size_t b = 0; b < 2; ++b) {
-        state.load.reference_length[b] = state.packing.length(static_cast<int>(b));
-    }
+    state.load.refer_to(state.packing);
     if (file.packing.load) {
         for (std::size_t b = 0; b < 2; ++b) {
             const double length = state.load.reference_length[1 - b];

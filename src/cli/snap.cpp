@@ -65,7 +65,7 @@ Read from_foreign(const SnapArguments& a) {
     out.soft.contacts = std::move(list.contacts);
     out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     out.soft.load.stress = parse_stress(a.stress);
-    out.soft.load.reference_length = {file.packing.length(0), file.packing.length(1)};
+    out.soft.load.refer_to(file.packing);
     return out;
 }
 

@@ -158,21 +158,17 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     return out;
 }
 
-/// Both axes repeat, and the periods move; the tilt if it is asked for, or the file has one.
 void set_cell(ImportArguments& a, bool own, Packing<2>& packing) {
-    if (!packing.cell.all()) {
-        refuse(a.file, "is periodic along one axis only: expected both or none (--not-periodic looks at the disks as "
-                       "they lie)");
-    }
     if (a.threshold || (a.contacts != "nearest" && !a.contacts.empty())) {
         throw Error(ErrorKind::usage, fmt::format("{} is periodic: expected --contacts nearest, other lists are for "
                                                   "packings in walls",
                                                   a.file));
     }
     a.contacts = "nearest";
-    packing.cell.period_moves.fill(true);
-    if (!own || !a.cell.empty()) {
-        packing.cell.tilt_moves.fill(a.cell == "tilted" || (a.cell.empty() && packing.lattice(0, 1) != 0));
+    const auto tilts = packing.cell.tilt_moves;
+    take_cell({a.file, a.cell}, packing);
+    if (own && a.cell.empty()) { // a state says what moves
+        packing.cell.tilt_moves = tilts;
     }
     validate(packing, a.file);
 }
@@ -191,12 +187,9 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     ReadPacking file = read_any_packing(a.file, a.foreign);
     if (file.packing.cell.any()) {
         set_cell(a, own, file.packing);
-    } else if (!a.cell.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
-                                                  "(--periodic says so where the file leaves it open)",
-                                                  a.cell, a.file));
-    } else if (a.contacts.empty()) {
-        a.contacts = "plateau";
+    } else {
+        take_cell({a.file, a.cell}, file.packing);
+        a.contacts = a.contacts.empty() ? "plateau" : a.contacts;
     }
     return file;
 }

@@ -5,15 +5,15 @@
 namespace isostat {
 
 struct LoadWords {
-    const char* ratio;        ///< as `Load::ratio_name`
-    const char* strain;       ///< as `Load::strain_name`
-    const char* rising;       ///< the ratio goes up
-    const char* falling;      ///< and down
-    const char* ratio_axis;   ///< labels of axes, UTF-8
+    const char* ratio;      ///< as `Load::ratio_name`
+    const char* strain;     ///< as `Load::strain_name`
+    const char* rising;     ///< the ratio goes up
+    const char* falling;    ///< and down
+    const char* ratio_axis; ///< labels of axes, UTF-8
     const char* strain_axis;
-    const char* ratio_step;   ///< of distributions of increments
+    const char* ratio_step; ///< of distributions of increments
     const char* strain_step;
-    const char* ratio_sign;   ///< short, UTF-8
+    const char* ratio_sign; ///< short, UTF-8
     const char* strain_sign;
     const char* other_strain; ///< that of the axis whose stress the ratio is taken over
     const char* stress_sign;

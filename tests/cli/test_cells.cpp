@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -322,11 +323,45 @@ BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
 BOOST_AUTO_TEST_CASE(other_commands_refuse_a_cell) {
     const scratch::Folder folder;
     const std::string out = (folder / "out").string();
-    for (const std::vector<std::string>& command :
-         {std::vector<std::string>{"convert", rectangle, "-o", out}, {"snap", rectangle, "-o", out}}) {
-        const auto refused = run(command);
-        BOOST_TEST(refused.status == 65, command.front() << ": " << refused.err);
-        BOOST_TEST(contains(refused.err, "a periodic cell"), command.front() << ": " << refused.err);
+    expect(run({"convert", rectangle, "-o", out}), 65, {"a periodic cell"});
+    expect(run({"snap", scratch::data("cells/channel_16.json"), "-o", out}), 65, {"or a periodic cell"});
+}
+
+BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "disks.dump").string(), made = (folder / "made.json").string();
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        BOOST_TEST_CONTEXT(name) {
+            const std::string from = scratch::data(std::string("cells/") + name + ".json");
+            scratch::write(file, soft_dump(from, 1e-5)); // the pairs that overlap are the contacts
+            const auto snapped = run({"snap", file, "-o", made});
+            expect(snapped, 0);
+            BOOST_TEST(contains(snapped.out, "snap      vertex"), snapped.out);
+            BOOST_TEST(!contains(snapped.out, "forces "), snapped.out); // the file has none
+            const isostat::Packing<2> found = isostat::read_any_state<2>(made).state.packing;
+            const isostat::Packing<2> stored = isostat::read_any_state<2>(from).state.packing;
+            for (std::size_t k = 32; k < 35; ++k) {
+                BOOST_TEST(std::abs(found.q[k] - stored.q[k]) < 1e-11);
+            }
+            expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
+            // A state: its forces are compared.
+            isostat::StateFile<2> state = isostat::read_any_state<2>(from);
+            const auto forces_of = [&] {
+                isostat::write_state<2>(folder / "state.json", state.state, state.forces);
+                const auto out = run({"snap", (folder / "state.json").string(), "-o", made, "--json"});
+                expect(out, 0);
+                return nlohmann::json::parse(out.out).at("forces");
+            };
+            BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
+            const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
+            *strongest *= 1.25;
+            const auto wrong = forces_of();
+            BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,
+                       boost::test_tools::tolerance(1e-6));
+            BOOST_TEST(wrong.at("contact") ==
+                       isostat::to_string<2>(
+                           state.state.contacts[static_cast<std::size_t>(strongest - state.forces.begin())]));
+        }
     }
 }
 

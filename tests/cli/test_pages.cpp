@@ -286,7 +286,7 @@ BOOST_AUTO_TEST_CASE(the_page_of_files_has_every_key_of_a_manifest) {
         name = begins ? key.substr(1, key.find(']') - 1) : name;
         told[name].insert(begins ? key.substr(key.find(']') + 2) : key);
     }
-    for (const char* other : {"files", "columns", "law", "load", "rest", "units"}) {
+    for (const char* other : {"files", "columns", "cell", "law", "load", "rest", "units"}) {
         told["manifest"].insert(other);
     }
     for (const auto& [section, keys] : told) {

@@ -172,8 +172,7 @@ BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what
     const std::string scene = (folder / "s.toml").string();
     scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
     Background background({"run", scene, "-o", (folder / "run").string(), "-q"});
-    BOOST_TEST(
-        background.signal_at(folder / "run/equilibria.csv", 1, SIGINT)); // the header is there before the preparation
+    BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGINT)); // it is there before the preparation
     BOOST_TEST(background.wait() == 130);
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "interrupted: "));
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "preparation failed at "));

@@ -86,6 +86,9 @@ EquilibriumRow row_of(const Fields& fields) {
 } // namespace
 
 std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
+    if (std::filesystem::exists(path) && std::filesystem::file_size(path) == 0) {
+        return {}; // columns are named with the first row
+    }
     const std::string content_of_file = read_text(path);
     const std::string_view text = without_byte_order_mark(content_of_file);
     std::vector<EquilibriumRow> rows;

@@ -42,13 +42,13 @@ std::optional<std::vector<Contact>> near_pairs_in_cell(const Packing<2>& packing
         return {};
     }
     const auto margin = [reach](int spread) { return 1.5 * reach * spread; }; // of the fastest of its coordinates
-    std::vector<Placed> places = images.places(*range);
+    const double farthest = widest + margin(2 + images.periods(*range));
+    std::vector<Placed> places = images.near_cell(*range, farthest);
     std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) { return a.x < b.x; });
     std::set<Contact> pairs; // one of each
-    const double farthest = widest + margin(2 + images.periods(*range));
     for (std::size_t p = 0; p < places.size(); ++p) {
         for (std::size_t k = p + 1; k < places.size() && places[k].x - places[p].x < farthest; ++k) {
-            if (!places[p].central && !places[k].central) {
+            if ((!places[p].central && !places[k].central) || std::abs(places[k].y - places[p].y) >= farthest) {
                 continue;
             }
             const Contact pair = pair_between(places[p], places[k]);

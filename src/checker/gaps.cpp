@@ -225,8 +225,8 @@ bool is_free_pair(const State<2>& state, const Contact& pair) {
 
 namespace {
 
-/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart in x alone
-/// cannot be nearer.
+/// All pairs, one of each being in the cell itself. Sweep along x: a pair whose centres are further apart in x, or in
+/// y, alone cannot be nearer.
 void sweep(std::vector<Placed> places, const Approximation& at, double widest, Collector& collector) {
     std::sort(places.begin(), places.end(), [](const Placed& a, const Placed& b) {
         return a.x < b.x || (a.x == b.x && (a.disk < b.disk || (a.disk == b.disk && a.image < b.image)));
@@ -235,10 +235,11 @@ void sweep(std::vector<Placed> places, const Approximation& at, double widest, C
         const Placed& one = places[p];
         for (std::size_t k = p + 1; k < places.size(); ++k) {
             const Placed& two = places[k];
-            if (two.x - one.x - widest > collector.limit() + at.error) {
+            const double farthest = widest + collector.limit() + at.error;
+            if (two.x - one.x > farthest) {
                 break;
             }
-            if (one.central || two.central) {
+            if ((one.central || two.central) && std::abs(two.y - one.y) <= farthest) {
                 collector.offer(pair_between(one, two));
             }
         }
@@ -260,7 +261,8 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
     if (!state.packing.cell.any()) {
         std::vector<Placed> places;
         for (int i = 0; i < problem.disks; ++i) {
-            places.push_back({i, {}, true, at.q[2 * static_cast<std::size_t>(i)]});
+            const auto at_x = 2 * static_cast<std::size_t>(i);
+            places.push_back({i, {}, true, at.q[at_x], at.q[at_x + 1]});
         }
         Collector collector(state, at);
         sweep_walls(problem, collector);
@@ -269,20 +271,21 @@ std::optional<std::vector<Contact>> nearest_pairs(const Problem& problem, const 
     }
     const CellImages images(state.packing, at.q);
     const double error = at.error;
-    std::optional<std::array<int, 2>> range = images.range(0);
+    double reach = 1.25 * widest; // of what is swept: the smallest gap is far below a quarter of that
+    std::optional<std::array<int, 2>> range = images.range(reach);
     while (range && images.usable()) {
         at.error = error * (1 + images.periods(*range)); // K9 with images
         Collector collector(state, at);
         sweep_walls(problem, collector);
-        sweep(images.places(*range), at, widest, collector);
+        sweep(images.near_cell(*range, reach), at, widest, collector);
         // Another sweep when a pair farther away could be as near as the nearest found.
-        const double reach =
+        const double needed =
             std::isfinite(collector.limit()) ? widest + collector.limit() + at.error : 2 * (widest + images.longest());
-        const auto needed = images.range(reach);
-        if (needed && (*needed)[0] <= (*range)[0] && (*needed)[1] <= (*range)[1]) {
+        if (needed <= reach) {
             return collector.nearest();
         }
-        range = needed;
+        reach = needed;
+        range = images.range(reach);
     }
     return std::nullopt;
 }

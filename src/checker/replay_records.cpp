@@ -39,7 +39,8 @@ Objections compare(const char* name, int recorded, int found) {
 Range strain_of(const Place& place, int axis) {
     const std::array<double, 2>& lengths = place.state->load.reference_length;
     if (axis == 2) { // the tilt, over the height
-        return Range(Rational(0)) - place.length(axis) / Range(Rational(lengths[1]));
+        return (Range(Rational(place.state->load.reference_tilt[0])) - place.length(axis)) /
+               Range(Rational(lengths[1]));
     }
     const Range reference{Rational(lengths[static_cast<std::size_t>(axis)])};
     return reference.positive() ? (reference - place.length(axis)) / reference : Range(Rational(0));
@@ -340,6 +341,11 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
                                                                    {"eps2", strain_of(place, load.loaded_axis), 1},
                                                                    {"L1", place.length(other), box},
                                                                    {"L2", place.length(load.loaded_axis), box}};
+    if (line.value.contains("L3")) { // of a cell whose tilt moves
+        const int third = shears ? 0 : 2;
+        with_bound.emplace_back("eps3", strain_of(place, third), 1);
+        with_bound.emplace_back("L3", place.length(third), box);
+    }
     if (load.kind == LoadKind::nominal) {
         double size = 0;
         const Range potential = potential_of(place, size);
@@ -478,7 +484,8 @@ Objections check_stored(const Place& place, const State<2>& stored, const std::v
     const Load<2>& a = stored.load;
     const Load<2>& b = place.state->load;
     if (a.stress != b.stress || a.shear != b.shear || a.kind != b.kind || a.reference_length != b.reference_length ||
-        a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force || a.infinitesimal != b.infinitesimal) {
+        a.reference_tilt != b.reference_tilt || a.loaded_axis != b.loaded_axis || a.disk_force != b.disk_force ||
+        a.infinitesimal != b.infinitesimal) {
         return Objection{true, "the stored state has another load"};
     }
     if (stored.perturbation.has_value() != place.state->perturbation.has_value() ||

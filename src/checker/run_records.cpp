@@ -234,7 +234,10 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
             records.events.back().estimated = level == "plain";
         });
     }
-    records.equilibria = equilibria_of(directory / "equilibria.csv", last);
+    const std::filesystem::path equilibria = directory / "equilibria.csv"; // its first row comes with their names
+    if (!std::filesystem::exists(equilibria) || std::filesystem::file_size(equilibria) > 0) {
+        records.equilibria = equilibria_of(equilibria, last);
+    }
     return records;
 }
 

@@ -27,6 +27,7 @@ std::string state_difference(const State<2>& a, const State<2>& b) {
         {"a stress", a.load.stress == b.load.stress},
         {"a shear stress", a.load.shear == b.load.shear},
         {"a reference length", a.load.reference_length == b.load.reference_length},
+        {"a reference tilt", a.load.reference_tilt == b.load.reference_tilt},
         {"the loaded axis", a.load.loaded_axis == b.load.loaded_axis},
         {"a force on a disk", a.load.disk_force == b.load.disk_force},
         {"an infinitesimal load", a.load.infinitesimal == b.load.infinitesimal},

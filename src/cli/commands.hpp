@@ -134,7 +134,7 @@ struct SnapArguments {
     std::string file, output;
     ForeignArguments foreign;
     std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
-    std::string stress, load;
+    std::string stress, load, cell;        ///< cell: as of `ImportArguments`
     std::uint64_t seed = 1;
     bool exchange = false;
 };

@@ -131,7 +131,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         std::string message = fmt::format("preparation failed at {}: {}: {}", last_stage,
                                           to_string(prepared.failure().kind), prepared.failure().message());
         if (report.last) {
-            message += advice(scene, prepared.failure(), report.last->radius);
+            message += advice(scene, prepared.failure(), *report.last);
             write_packing<2>(failed_path, *report.last, message);
             message += fmt::format(" (what was reached is in {})", failed_path.string());
         }

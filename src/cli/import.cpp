@@ -107,8 +107,8 @@ std::optional<Failure> take_nearest(const ImportArguments& a, const compare::Sof
 std::optional<Failure> take_listed(const ImportArguments& a, compare::SoftState soft, const std::string& words,
                                    Imported& out) {
     compare::Snap snap = compare::snap(soft);
-    for (std::size_t axis = 0; axis < 2 && !snap.disks.empty(); ++axis) {
-        soft.load.reference_length[axis] = snap.backbone.packing.length(static_cast<int>(axis));
+    if (!snap.disks.empty()) {
+        soft.load.refer_to(snap.backbone.packing);
     }
     snap = compare::snap(soft);
     if (snap.outcome != compare::SnapOutcome::vertex) {
@@ -149,7 +149,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     Load<2> load;
     load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     load.stress = stress;
-    load.reference_length = {file.packing.length(0), file.packing.length(1)};
+    load.refer_to(file.packing);
     auto failure = wanted.any ? take_nearest(a, {file.packing, {}, load}, out)
                               : take_listed(a, {file.packing, wanted.contacts, load}, wanted.words, out);
     if (failure) {
@@ -158,21 +158,17 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     return out;
 }
 
-/// Both axes repeat, and the periods move; the tilt if it is asked for, or the file has one.
 void set_cell(ImportArguments& a, bool own, Packing<2>& packing) {
-    if (!packing.cell.all()) {
-        refuse(a.file, "is periodic along one axis only: expected both or none (--not-periodic looks at the disks as "
-                       "they lie)");
-    }
     if (a.threshold || (a.contacts != "nearest" && !a.contacts.empty())) {
         throw Error(ErrorKind::usage, fmt::format("{} is periodic: expected --contacts nearest, other lists are for "
                                                   "packings in walls",
                                                   a.file));
     }
     a.contacts = "nearest";
-    packing.cell.period_moves.fill(true);
-    if (!own || !a.cell.empty()) {
-        packing.cell.tilt_moves.fill(a.cell == "tilted" || (a.cell.empty() && packing.lattice(0, 1) != 0));
+    const auto tilts = packing.cell.tilt_moves;
+    take_cell({a.file, a.cell}, packing);
+    if (own && a.cell.empty()) { // a state says what moves
+        packing.cell.tilt_moves = tilts;
     }
     validate(packing, a.file);
 }
@@ -191,12 +187,9 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     ReadPacking file = read_any_packing(a.file, a.foreign);
     if (file.packing.cell.any()) {
         set_cell(a, own, file.packing);
-    } else if (!a.cell.empty()) {
-        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
-                                                  "(--periodic says so where the file leaves it open)",
-                                                  a.cell, a.file));
-    } else if (a.contacts.empty()) {
-        a.contacts = "plateau";
+    } else {
+        take_cell({a.file, a.cell}, file.packing);
+        a.contacts = a.contacts.empty() ? "plateau" : a.contacts;
     }
     return file;
 }
@@ -220,9 +213,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     state.contacts = exact.contacts;
     state.load.stress = parse_stress(a.stress);
     state.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
-    for (std::size_t b = 0; b < 2; ++b) {
-        state.load.reference_length[b] = state.packing.length(static_cast<int>(b));
-    }
+    state.load.refer_to(state.packing);
     if (file.packing.load) {
         for (std::size_t b = 0; b < 2; ++b) {
             const double length = state.load.reference_length[1 - b];

@@ -364,6 +364,14 @@ struct Program {
             ->excludes("--not-periodic");
     }
 
+    static void add_cell(CLI::App& command, std::string& cell) {
+        command
+            .add_option("--cell", cell,
+                        "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt "
+                        "too (default: tilted if the file's is)")
+            ->check(CLI::IsMember({"rectangular", "tilted"}));
+    }
+
     void add_import(const std::string& line) {
         ImportArguments& a = import_arguments;
         CLI::App& command = add(
@@ -401,11 +409,7 @@ struct Program {
             ->check(CLI::Range(0.0, 0.1));
         command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
             ->type_name("FILE.csv");
-        command
-            .add_option("--cell", a.cell,
-                        "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt "
-                        "too (default: tilted if the file's is)")
-            ->check(CLI::IsMember({"rectangular", "tilted"}));
+        add_cell(command, a.cell);
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
         add_threads(command, a.common);
@@ -445,7 +449,9 @@ struct Program {
         command.add_flag("--exchange", a.exchange,
                          "where the list has no vertex: the one downhill, which need not be the only one near");
         command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)");
+        add_cell(command, a.cell);
         add_foreign(command, a.foreign);
+        add_periodic(command, a.foreign);
         add_common(command, a.common, false);
         command.callback([&a, line, this] {
             a.common.command = line;

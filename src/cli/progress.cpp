@@ -48,6 +48,7 @@ void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const S
     made_ = made;
     start_equilibrium_ = from.equilibrium;
     start_ratio_ = from.load.ratio();
+    loads_tilt_ = from.load.loads_tilt();
     if (quiet_) {
         return;
     }
@@ -55,8 +56,7 @@ void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const S
     if (!header_shown_) {
         header_shown_ = true;
         fmt::print("{:>7} {:>13} {:>12} {:>6} {:>2} {:>8} {:<13} {:>8} {:>8}\n", "equil", from.load.ratio_name(),
-                   from.load.loads_tilt() ? "shear strain" : "eps2", "arcs", "h", "margin", "precision", "elapsed",
-                   "rest");
+                   from.load.strain_name(), "arcs", "h", "margin", "precision", "elapsed", "rest");
     }
     fmt::print("segment {} of {}: {}\n", number + 1, programme_.size(),
                programme_[static_cast<std::size_t>(number)].name);
@@ -87,8 +87,9 @@ double RunTable::remaining(double ratio) const {
 
 void RunTable::on_arc(const ArcRecord<2>& arc) {
     if (!quiet_) {
-        line_.show(fmt::format("towards equilibrium {}: arc {} at sigma2 = {:.9g}, eps2 = {:.6g}", arc.equilibrium,
-                               arc.arc, arc.stress, arc.strain));
+        line_.show(fmt::format("towards equilibrium {}: arc {} at {} = {:.9g}, {} = {:.6g}", arc.equilibrium, arc.arc,
+                               loads_tilt_ ? "shear" : "sigma2", arc.stress, loads_tilt_ ? "strain" : "eps2",
+                               arc.strain));
     }
 }
 

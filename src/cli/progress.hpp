@@ -54,6 +54,7 @@ class RunTable final : public RunObserver<2> {
     int here_ = 0; ///< equilibria made by this process
     int start_equilibrium_ = 0;
     double start_ratio_ = 1;
+    bool loads_tilt_ = false;
     bool header_shown_ = false;
 };
 

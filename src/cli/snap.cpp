@@ -2,6 +2,7 @@
 #include "cli/common.hpp"
 #include "cli/soft_list.hpp"
 #include "compare/backbone.hpp"
+#include "compare/force_split.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 
@@ -13,7 +14,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace isostat::cli {
 
@@ -21,6 +24,7 @@ namespace {
 
 struct Read {
     compare::SoftState soft;
+    std::vector<double> forces; ///< of its contacts in the file; NaN, or an empty list: not said
     std::string words;
     std::vector<std::string> notes;
 };
@@ -31,41 +35,54 @@ Read from_state(const SnapArguments& a) {
         throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
                                                "--contacts, --stress, --load");
     }
-    State<2> state = read_state<2>(a.file).state;
+    const StateFile<2> file = read_any_state<2>(a.file);
+    State<2> state = file.state;
     const bool fixed =
         std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
-    if (!(state.packing.walls == Walls<2>::box()) || fixed || !state.load.disk_force.empty()) {
+    const bool box = state.packing.walls == Walls<2>::box() || state.packing.cell.all();
+    if (!box || fixed || !state.load.disk_force.empty()) {
         throw Error(ErrorKind::bad_input, a.file +
-                                              ": expected a box with two fixed and two movable walls, no fixed disk "
-                                              "and no force on a disk");
+                                              ": expected a box with two fixed and two movable walls or a periodic "
+                                              "cell, no fixed disk and no force on a disk");
     }
     Read out;
     out.words = fmt::format("{} contacts of the state, those that can carry a force", state.contacts.size());
+    std::map<Contact, double> forces;
+    for (std::size_t l = 0; l < file.forces.size(); ++l) {
+        forces.emplace(state.contacts[l], file.forces[l]);
+    }
     std::sort(state.contacts.begin(), state.contacts.end());
     state.contacts = compare::able_to_carry(state.packing, std::move(state.contacts));
+    for (std::size_t l = 0; l < state.contacts.size() && !forces.empty(); ++l) {
+        out.forces.push_back(forces.at(state.contacts[l]));
+    }
     out.soft = {std::move(state.packing), std::move(state.contacts), std::move(state.load)};
     return out;
 }
 
 Read from_foreign(const SnapArguments& a) {
     ForeignArguments foreign = a.foreign;
+    foreign.walls_unless_periodic = foreign.walls.empty();
+    foreign.cells = true;
     foreign.walls = foreign.walls.empty() ? "box" : foreign.walls;
     if (foreign.walls != "box") {
         throw Error(ErrorKind::usage,
                     fmt::format("--walls is '{}': expected box, two fixed and two movable walls", foreign.walls));
     }
-    const ReadPacking file = read_any_packing(a.file, foreign);
+    ReadPacking file = read_any_packing(a.file, foreign);
+    take_cell({a.file, a.cell}, file.packing);
     check_nearness(a.file, file.packing);
     SoftList list = a.contacts.empty() ? list_by_overlaps(file.packing)
                                        : list_by_forces(a.file, file, foreign.frame, a.contacts, a.contact_columns);
     Read out;
     out.words = list.words;
+    out.forces = list.forces;
     out.notes = file.notes;
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
     out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     out.soft.load.stress = parse_stress(a.stress);
-    out.soft.load.reference_length = {file.packing.length(0), file.packing.length(1)};
+    out.soft.load.refer_to(file.packing);
     return out;
 }
 
@@ -85,6 +102,14 @@ Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap
     out["reason"] = snap.reason;
     out["distance"] = number(snap.distance);
     out["walls"] = number(snap.walls);
+    if (!read.forces.empty() && snap.counting.hyperstaticity == 0 && snap.counting.mechanisms == 0) {
+        const double mean = compare::mean_force(read.forces);
+        const compare::ForceSplit split = compare::split_forces(read.soft, read.forces, mean, snap);
+        out["forces"] = {{"mean", number(mean)},
+                         {"rest", number(split.rest)},
+                         {"stiffness", number(split.stiffness)},
+                         {"contact", std::isfinite(split.rest) ? Json(to_string<2>(split.worst)) : Json()}};
+    }
     return out;
 }
 
@@ -127,6 +152,15 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
     if (!report["distance"].is_null()) {
         fmt::print("distance  of a disk with a force from its true place at most {}\n",
                    rounded_up(report["distance"].get<double>(), 3));
+    }
+    if (const auto forces = report.find("forces"); forces != report.end() && !(*forces)["rest"].is_null()) {
+        fmt::print("forces    of the file differ by at most {} mean forces from those that balance at its coordinates, "
+                   "in {}",
+                   rounded_up((*forces)["rest"].get<double>(), 2), (*forces)["contact"].get<std::string>());
+        fmt::print("{}\n", (*forces)["stiffness"].is_null()
+                               ? ""
+                               : fmt::format("; those by at most {} from the ones at the vertex",
+                                             rounded_up((*forces)["stiffness"].get<double>(), 2)));
     }
     if (written) {
         fmt::print("written   {}\n", a.output);

@@ -1,6 +1,7 @@
 #include "cli/soft_list.hpp"
 
 #include "compare/backbone.hpp"
+#include "compare/pair_images.hpp"
 #include "contact/candidates.hpp"
 
 #include <isostat/core/error.hpp>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
 
 namespace isostat::cli {
 
@@ -23,7 +25,7 @@ std::vector<Contact> walls_of(const Packing<2>& packing) {
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
         for (int i = 0; i < packing.disk_count(); ++i) {
             for (int axis = 0; axis < 2; ++axis) {
-                if (gap<2>(packing, {kind, i, axis}) <= 0) {
+                if (!packing.cell.periodic[static_cast<std::size_t>(axis)] && gap<2>(packing, {kind, i, axis}) <= 0) {
                     out.emplace_back(kind, i, axis);
                 }
             }
@@ -55,6 +57,24 @@ std::array<double, 2> parse_stress(const std::string& text) {
         throw Error(ErrorKind::usage, fmt::format("--stress is '{}': expected S1,S2, two positive numbers", text));
     }
     return stress;
+}
+
+void take_cell(const CellStatement& statement, Packing<2>& packing) {
+    const auto& [file, cell] = statement;
+    if (!packing.cell.any() && !cell.empty()) {
+        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is not periodic: expected no --cell "
+                                                  "(--periodic says so where the file leaves it open)",
+                                                  cell, file));
+    }
+    if (!packing.cell.any()) {
+        return;
+    }
+    if (!packing.cell.all()) {
+        refuse(file, "is periodic along one axis only: expected both or none (--not-periodic looks at the disks as "
+                     "they lie)");
+    }
+    packing.cell.period_moves.fill(true);
+    packing.cell.tilt_moves.fill(cell == "tilted" || (cell.empty() && packing.lattice(0, 1) != 0));
 }
 
 std::string far_wall(const Packing<2>& packing) {
@@ -109,14 +129,25 @@ SoftList list_by_forces(const std::string& file, const ReadPacking& packing, con
         number = std::stol(frame); // read once already
     }
     SoftList out;
-    out.contacts = read_local_dump(contacts, {names[0], names[1], names[2]}, packing.ids, number);
-    const std::size_t pairs = out.contacts.size();
+    compare::PairImages images(packing.packing);
+    std::map<Contact, double> forces;
+    for (const PairForce& row : read_local_dump(contacts, {names[0], names[1], names[2]}, packing.ids, number)) {
+        forces.emplace(images.next(row.i, row.j), row.force);
+    }
+    const std::size_t pairs = forces.size();
     const std::vector<Contact> walls = walls_of(packing.packing);
-    out.contacts.insert(out.contacts.end(), walls.begin(), walls.end());
-    out.words = fmt::format("{} pairs with a force in {}, {} overlaps with walls, without rattlers", pairs, contacts,
-                            walls.size());
-    std::sort(out.contacts.begin(), out.contacts.end());
+    for (const Contact& wall : walls) {
+        forces.emplace(wall, NAN);
+    }
+    const std::string beside = packing.packing.cell.any() ? "" : fmt::format(", {} overlaps with walls", walls.size());
+    out.words = fmt::format("{} pairs with a force in {}{}, without rattlers", pairs, contacts, beside);
+    for (const auto& [contact, force] : forces) {
+        out.contacts.push_back(contact);
+    }
     out.contacts = compare::able_to_carry(packing.packing, out.contacts);
+    for (const Contact& contact : out.contacts) {
+        out.forces.push_back(forces.at(contact));
+    }
     return out;
 }
 

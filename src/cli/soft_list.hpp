@@ -28,9 +28,18 @@ std::string far_wall(const Packing<2>& packing);
 /// `Error(bad_input)`.
 void check_nearness(const std::string& file, const Packing<2>& packing);
 
+/// `--cell`: what of a periodic cell moves, "rectangular" or "tilted"; empty: the tilt too if the file has one.
+struct CellStatement {
+    std::string file, cell;
+};
+/// Both axes repeat, and the periods move. Throws `Error(bad_input)` when one axis only repeats, `Error(usage)` for a
+/// statement about walls.
+void take_cell(const CellStatement& statement, Packing<2>& packing);
+
 /// A list of contacts, and in words where it comes from.
 struct SoftList {
     std::vector<Contact> contacts; ///< without rattlers, sorted
+    std::vector<double> forces;    ///< that the file says of them; NaN: none. Empty: of none
     std::string words;
 };
 

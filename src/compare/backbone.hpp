@@ -4,7 +4,12 @@
 
 #include <isostat/contact/state.hpp>
 
+#include <vector>
+
 namespace isostat::compare {
+
+/// These disks alone, with walls or cell. The pinned disk is the same if it is among them, else the first.
+Packing<2> of_disks(const Packing<2>& packing, const std::vector<int>& disks);
 
 /// The disks and movable walls that `carrying` holds, in these contacts, under the same load; infinitesimal loads are
 /// generic ones of their own.

@@ -19,9 +19,9 @@ constexpr std::array rests{"down", "up", "left", "right"};
 constexpr std::array rules{OpeningRule::most_negative, OpeningRule::steepest};
 
 /// The loads of `generic_infinitesimal` point down: turned until they point where the rattlers shall rest.
-std::vector<double> infinitesimal_towards(std::size_t rest, const std::vector<double>& radius) {
+std::vector<double> infinitesimal_towards(std::size_t rest, const Packing<2>& packing) {
     constexpr std::array<std::size_t, 4> quarters{0, 2, 3, 1}; // anticlockwise, of down, up, left, right
-    std::vector<double> g = generic_infinitesimal<2>(radius, 1);
+    std::vector<double> g = generic_infinitesimal<2>(packing.radius, 1);
     for (std::size_t i = 0; i + 1 < g.size(); i += 2) {
         for (std::size_t k = 0; k < quarters[rest]; ++k) {
             const double x = g[i];
@@ -29,6 +29,7 @@ std::vector<double> infinitesimal_towards(std::size_t rest, const std::vector<do
             g[i + 1] = x;
         }
     }
+    balance(g, packing.cell);
     return g;
 }
 
@@ -108,10 +109,9 @@ Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<do
             return;
         }
         const BundleMember m = member(static_cast<int>(k));
-        auto resting =
-            vertex.outcome == SnapOutcome::vertex
-                ? with_resting_rattlers(vertex, infinitesimal_towards(k % rests.size(), start.packing.radius))
-                : Failure{FailureKind::undecided, vertex.reason};
+        auto resting = vertex.outcome == SnapOutcome::vertex
+                           ? with_resting_rattlers(vertex, infinitesimal_towards(k % rests.size(), vertex.packing))
+                           : Failure{FailureKind::undecided, vertex.reason};
         if (!resting.ok()) {
             paths[k].end = resting.failure().message();
             paths[k].at_load.assign(loads.size(), -1);

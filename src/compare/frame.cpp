@@ -1,8 +1,6 @@
 #include "compare/frame.hpp"
 
-#include "rigidity/isostatic.hpp"
-#include "statics/statics.hpp"
-#include "verified/inverse_bound.hpp"
+#include "compare/force_split.hpp"
 
 #include <fmt/format.h>
 
@@ -37,39 +35,6 @@ FrameResult begin(const Frame& frame, const Reading& reading) {
     out.eps1 = strain(0);
     out.eps2 = strain(1);
     return out;
-}
-
-/// Errors of the forces: the exact solve at the soft place stands between those of the file and those of the vertex.
-void split_forces(const SoftState& soft, const Reading& reading, const Snap& snap, FrameResult& out) {
-    Packing<2> packing; // the backbone at the soft place
-    packing.walls = soft.packing.walls;
-    packing.radius = snap.backbone.packing.radius;
-    for (const int disk : snap.disks) {
-        const auto i = static_cast<std::size_t>(disk);
-        packing.q.insert(packing.q.end(), {soft.packing.q[2 * i], soft.packing.q[2 * i + 1]});
-    }
-    packing.q.insert(packing.q.end(), {soft.packing.length(0), soft.packing.length(1)});
-    (void)snap_to_grid(packing);
-    const auto structure = IsostaticStructure<2>::prove(packing, snap.backbone.contacts);
-    if (!structure.ok() || !(reading.mean > 0)) {
-        return;
-    }
-    const Factorisation factorisation(structure.value());
-    InverseBoundCache cache;
-    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
-    const Statics<2> statics(packing, snap.backbone.load, structure.value(), factorisation, inverse);
-    double rest = 0, stiffness = 0;
-    for (std::size_t l = 0; l < reading.forces.size(); ++l) {
-        const Enclosure f = statics.force(ContactId(l), snap.backbone.load.stress[1]);
-        rest = std::max(rest, std::abs(reading.forces[l] - f.value) + f.radius);
-        if (l < snap.truth.finite.size()) {
-            const Interval& t = snap.truth.finite[l];
-            stiffness =
-                std::max({stiffness, std::abs(f.value - t.lower) + f.radius, std::abs(f.value - t.upper) + f.radius});
-        }
-    }
-    out.rest = rest / reading.mean;
-    out.stiffness = snap.truth.finite.empty() ? nan : stiffness / reading.mean;
 }
 
 void add_vertex(const Snap& snap, const Frame& frame, FrameResult& out) {
@@ -140,7 +105,9 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
         return out;
     }
     if (r.counting.hyperstaticity == 0) {
-        split_forces(soft, reading, snapped, r);
+        const ForceSplit split = split_forces(soft, reading.forces, reading.mean, snapped);
+        r.rest = split.rest;
+        r.stiffness = split.stiffness;
     }
     if (snapped.outcome != SnapOutcome::vertex) {
         try_exchange(soft, snapped, out);

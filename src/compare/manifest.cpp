@@ -117,15 +117,26 @@ Manifest read_manifest(const std::filesystem::path& path) {
     }
     out.series.title = top.string("title").value_or("");
     out.series.program = top.string("program").value_or("");
+    out.periodic = top.table("cell") != nullptr;
     const auto section = [&](const char* name) { return Section(top.table(name), name, source, settings); };
     Section files = section("files");
     read_files(files, path.parent_path(), out);
     Section columns = section("columns");
     read_columns(columns, source, out);
+    Section cell = section("cell");
+    out.tilted = cell.word("kind", 0, {"rectangular", "tilted"}) == 1;
+    cell.finish();
+    if (out.periodic && out.series.wall_forces) {
+        columns.refuse("wall_force", "wall_force and a [cell]: expected no walls");
+    }
     Section law = section("law");
     read_law(law, out);
     Section load = section("load");
     read_load(load, out);
+    if (out.tilted && out.load == LoadKind::true_stress) {
+        load.refuse("kind", "true stresses and a tilt that moves: expected \"nominal\", or kind = \"rectangular\" in "
+                            "[cell] (they have no potential)");
+    }
     Section rest = section("rest");
     out.series.rest = positive(rest, "allowance", out.series.rest);
     rest.finish();

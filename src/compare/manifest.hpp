@@ -22,6 +22,8 @@ struct Manifest {
     LoadKind load = LoadKind::nominal;
     double sigma1 = 0;
     std::array<double, 2> reference_length{};
+    bool periodic = false; ///< frames of a periodic cell: the bounds of the dump are its periods
+    bool tilted = false;   ///< its tilt moves, under no shear stress
 };
 
 /// Names of the walls in the order of `Manifest::wall_force`, and the contact of a disk with each.

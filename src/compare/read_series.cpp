@@ -1,5 +1,6 @@
 // Frames of a series, matched by time step.
 #include "compare/manifest.hpp"
+#include "compare/pair_images.hpp"
 #include "io/files.hpp"
 #include "io/lammps_dump.hpp"
 
@@ -36,8 +37,11 @@ class FrameTable {
             names_.emplace_back(names.field(k));
         }
         where_ = fmt::format("{}:{}", manifest.frames, names.number());
-        for (const char* name : {"timestep", "left", "bottom", "right", "top"}) {
-            (void)required(name); // the bounds of a dump are not the walls
+        (void)required("timestep");
+        for (const char* name : wall_names) {
+            if (!manifest.periodic) {
+                (void)required(name); // the bounds of a dump are not the walls
+            }
         }
         if (find("sigma2") < 0 && (manifest.load == LoadKind::true_stress || find("force_top") < 0)) {
             throw Error(ErrorKind::bad_input,
@@ -62,7 +66,7 @@ class FrameTable {
             line.fail(line.field(step), "timestep", fmt::format("a number above {}, that of the frame before", last_));
         }
         last_ = frame.timestep;
-        for (std::size_t w = 0; w < 4; ++w) {
+        for (std::size_t w = 0; w < 4 && !manifest_.periodic; ++w) {
             walls[w] = line.number(required(wall_names[w]), wall_names[w]) * manifest_.length_factor;
         }
         frame.load = load_of(line);
@@ -133,8 +137,9 @@ class Disks {
   public:
     explicit Disks(const Manifest& manifest) : manifest_(manifest), dump_(manifest.disks, "ATOMS") {}
 
-    void read(Frame& frame, const std::array<double, 4>& walls) {
+    void read(Frame& frame, std::array<double, 4> walls) {
         const DumpFrame rows = dump_.at(frame.timestep);
+        check_boundaries(rows);
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
         const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
         std::map<long, const Line*> by_id;
@@ -150,17 +155,15 @@ class Disks {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.header.line)));
         }
-        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
-            if (rows.header.boundary[axis] == Boundary::periodic) {
-                throw Error(
-                    ErrorKind::bad_input,
-                    fmt::format("{}: the box is periodic along {}: expected walls, series of periodic cells are "
-                                "not read",
-                                dump_.where(rows.header.line), axis == 0 ? 'x' : 'y'));
-            }
-        }
-        frame.packing.walls = Walls<2>::box();
         const double f = manifest_.length_factor;
+        if (manifest_.periodic) {
+            const auto& box = rows.header.box;
+            walls = {box[0] * f, box[2] * f, box[1] * f, box[3] * f};
+            frame.packing.walls = Walls<2>::none();
+            frame.packing.cell.periodic.fill(true);
+            frame.packing.cell.period_moves.fill(true);
+            frame.packing.cell.tilt_moves.fill(manifest_.tilted);
+        }
         for (const auto& [number, row] : by_id) {
             const auto disk = frame.ids.size();
             if (frame.number > 0 && (disk >= ids_.size() || number != ids_[disk])) {
@@ -181,18 +184,53 @@ class Disks {
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }
         frame.packing.q.insert(frame.packing.q.end(), {walls[2] - walls[0], walls[3] - walls[1]});
+        if (manifest_.periodic) {
+            frame.packing.q.push_back(rows.header.tilt * f);
+        }
         if (frame.ids.size() < ids_.size()) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: no disk {}: expected the disks of the first frame",
                                                           dump_.where(rows.header.line), ids_[frame.ids.size()]));
         }
+        validate(frame.packing, dump_.where(rows.header.line));
         if (frame.number == 0) {
             ids_ = frame.ids;
             first_ = frame.packing;
+        } else if (manifest_.periodic) {
+            unwrap(frame.packing);
         }
-        validate(frame.packing, dump_.where(rows.header.line));
+        last_ = frame.packing;
     }
 
   private:
+    /// Walls, or both axes periodic: as the manifest says.
+    void check_boundaries(const DumpFrame& rows) const {
+        for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
+            if ((rows.header.boundary[axis] == Boundary::periodic) != manifest_.periodic) {
+                throw Error(ErrorKind::bad_input,
+                            fmt::format("{}: the box is {}periodic along {}: expected {}",
+                                        dump_.where(rows.header.line), manifest_.periodic ? "not " : "",
+                                        axis == 0 ? 'x' : 'y',
+                                        manifest_.periodic ? "periodic boundaries, the manifest has a [cell]"
+                                                           : "walls, or a [cell] in the manifest"));
+            }
+        }
+    }
+
+    /// Other programs wrap disks that leave the cell. Each is put where it has moved least since the frame before,
+    /// relative to the first disk: contacts keep their images.
+    void unwrap(Packing<2>& packing) const {
+        const auto fractions = [](const Packing<2>& p, std::size_t i) {
+            const double y = (p.q[2 * i + 1] - p.q[1]) / p.length(1);
+            return std::array{(p.q[2 * i] - p.q[0] - y * p.lattice(0, 1)) / p.length(0), y};
+        };
+        for (std::size_t i = 1; i < packing.radius.size(); ++i) {
+            const auto now = fractions(packing, i), before = fractions(last_, i);
+            const double mx = std::round(before[0] - now[0]), my = std::round(before[1] - now[1]);
+            packing.q[2 * i] += mx * packing.length(0) + my * packing.lattice(0, 1);
+            packing.q[2 * i + 1] += my * packing.length(1);
+        }
+    }
+
     /// Forces of walls that are not 0, positive when they press the disk inwards.
     void add_walls(Frame& frame, const Line& row, const DumpFrame& rows, int disk) {
         if (!manifest_.series.wall_forces) {
@@ -210,7 +248,7 @@ class Disks {
     const Manifest& manifest_;
     DumpFile dump_;
     std::vector<long> ids_;
-    Packing<2> first_;
+    Packing<2> first_, last_;
 };
 
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
@@ -226,11 +264,12 @@ void read_contacts(const Manifest& manifest, DumpFile& dump, Frame& frame) {
         }
         return static_cast<int>(found - frame.ids.begin());
     };
+    PairImages images(frame.packing);
     for (const Line& row : rows.rows) {
         const int i = disk(row, first, manifest.contact_i);
         const std::string_view other = row.field(second);
         FileContact contact;
-        if (other.starts_with('-')) {
+        if (other.starts_with('-') && !manifest.periodic) {
             const long wall = row.integer(second, manifest.contact_j, last_wall, -1);
             contact.contact = with_wall(i, static_cast<std::size_t>(-1 - wall));
         } else {
@@ -238,7 +277,7 @@ void read_contacts(const Manifest& manifest, DumpFile& dump, Frame& frame) {
             if (i == j) {
                 row.fail(other, manifest.contact_j, "another disk than the first");
             }
-            contact.contact = {ContactKind::disk_disk, std::min(i, j), std::max(i, j)};
+            contact.contact = images.next(i, j);
         }
         contact.force = row.number(force, manifest.contact_force) * manifest.force_factor;
         contact.row = dump.where(row.number());

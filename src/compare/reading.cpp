@@ -162,7 +162,8 @@ class Reader {
     struct Left {
         double disks = 0;
         std::array<double, 2> walls{};
-        [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1]}); }
+        double tilt = 0; ///< of a cell whose tilt moves
+        [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1], tilt}); }
     };
     [[nodiscard]] Left left_by(const std::map<Contact, double>& forces) const {
         std::vector<double> left = frame_.load.external_force(frame_.packing);
@@ -174,7 +175,10 @@ class Reader {
             }
         }
         const std::size_t n = frame_.packing.radius.size();
-        Left out{0, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}};
+        Left out{0, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}, 0};
+        if (const Cell<2>& cell = frame_.packing.cell; cell.any() && cell.tilt_moves[0]) {
+            out.tilt = std::abs(left[frame_.packing.tilt_at(0, 1)]);
+        }
         for (std::size_t i = 0; i < n; ++i) {
             out.disks = std::max(out.disks, std::hypot(left[2 * i], left[2 * i + 1]));
         }
@@ -185,10 +189,12 @@ class Reader {
     void check_load(const Left& left) {
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
             if (left.walls[axis] > series_.rest * out_.mean && left.disks < wall_alone * left.walls[axis]) {
-                contradict(
-                    fmt::format("{}: the forces on the {} wall and its load differ by {:.6g}, those on every disk "
-                                "balance to {:.2g} (the load of another frame?)",
-                                frame_.row, axis == 0 ? "right" : "top", left.walls[axis], left.disks));
+                contradict(fmt::format("{}: the forces on the {} and its load differ by {:.6g}, those on every disk "
+                                       "balance to {:.2g} (the load of another frame?)",
+                                       frame_.row,
+                                       frame_.packing.cell.any() ? (axis == 0 ? "period along x" : "period along y")
+                                                                 : (axis == 0 ? "right wall" : "top wall"),
+                                       left.walls[axis], left.disks));
             }
         }
     }

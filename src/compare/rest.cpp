@@ -22,7 +22,9 @@ Failure other_list(const std::vector<Contact>& list, const std::vector<Contact>&
 } // namespace
 
 Result<State<2>> with_resting_rattlers(const Snap& snap, std::uint64_t seed) {
-    return with_resting_rattlers(snap, generic_infinitesimal<2>(snap.packing.radius, seed));
+    std::vector<double> infinitesimal = generic_infinitesimal<2>(snap.packing.radius, seed);
+    balance(infinitesimal, snap.packing.cell);
+    return with_resting_rattlers(snap, std::move(infinitesimal));
 }
 
 Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> infinitesimal) {
@@ -60,6 +62,9 @@ Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> inf
 }
 
 Result<Exchanged> exchange(const SoftState& soft, std::uint64_t seed) {
+    if (soft.load.shear[0] != 0) {
+        return Failure{FailureKind::undecided, "the linear programmes know no shear stress"};
+    }
     PreparationOptions options;
     options.seed = seed;
     options.load = soft.load.kind;

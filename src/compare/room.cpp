@@ -74,8 +74,14 @@ void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vec
 double lower_gap(const Packing<2>& packing, const Contact& pair, double radius) {
     using roundoff::u;
     const double h = gap(packing, pair);
-    const double length = std::abs(h) + touching_distance(packing.radius, pair);
-    const double off = pair.kind == ContactKind::disk_disk ? 1.4143 * 2 * radius : 2 * radius;
+    double length = std::abs(h) + touching_distance(packing.radius, pair);
+    double off = pair.kind == ContactKind::disk_disk ? 1.4143 * 2 * radius : 2 * radius;
+    if (!pair.image.is_here()) { // sums on the way to the separation, and the periods as many times as they enter
+        const int periods = std::abs(pair.image.m[0]) + std::abs(pair.image.m[1]);
+        off = 1.4143 * (2 + 2 * periods) * radius;
+        const auto [low, high] = std::minmax_element(packing.q.begin(), packing.q.end());
+        length += (2 + 2 * periods) * std::max(std::abs(*low), std::abs(*high));
+    }
     return h - (off + 16 * u * length) * (1 + 0x1p-49);
 }
 

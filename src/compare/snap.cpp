@@ -33,8 +33,6 @@ void take_backbone(const SoftState& soft, Snap& out) {
             use(c.j);
         }
     }
-    Packing<2>& packing = out.backbone.packing;
-    packing.walls = soft.packing.walls;
     for (std::size_t i = 0; i < n; ++i) {
         if (number[i] < 0) {
             out.rattlers.push_back(static_cast<int>(i));
@@ -42,10 +40,9 @@ void take_backbone(const SoftState& soft, Snap& out) {
         }
         number[i] = static_cast<int>(out.disks.size());
         out.disks.push_back(static_cast<int>(i));
-        packing.radius.push_back(soft.packing.radius[i]);
-        packing.q.insert(packing.q.end(), {soft.packing.q[2 * i], soft.packing.q[2 * i + 1]});
     }
-    packing.q.insert(packing.q.end(), {soft.packing.length(0), soft.packing.length(1)});
+    out.backbone.packing = of_disks(soft.packing, out.disks);
+    const Packing<2>& packing = out.backbone.packing;
     for (Contact c : soft.contacts) {
         c.i = number[static_cast<std::size_t>(c.i)];
         c.j = c.kind == ContactKind::disk_disk ? number[static_cast<std::size_t>(c.j)] : c.j;
@@ -55,12 +52,13 @@ void take_backbone(const SoftState& soft, Snap& out) {
     out.backbone.load.disk_force.clear();
     // Where several forces vanish together for structural reasons, the end of the interval needs them.
     out.backbone.load.infinitesimal = generic_infinitesimal<2>(packing.radius, 1);
+    balance(out.backbone.load.infinitesimal, packing.cell);
 }
 
 /// In names of the whole packing.
 std::string renamed(const Snap& snap, const Contact& c) {
     const auto disk = [&](int i) { return snap.disks[static_cast<std::size_t>(i)]; };
-    return to_string<2>(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j});
+    return to_string<2>(Contact{c.kind, disk(c.i), c.kind == ContactKind::disk_disk ? disk(c.j) : c.j, c.image});
 }
 
 /// The first force that is proved negative, or empty.
@@ -98,9 +96,16 @@ void measure_moves(const SoftState& soft, Snap& out) {
         out.distance = std::max(out.distance, out.moved[i]);
         std::copy_n(&q[2 * b], 2, &out.packing.q[2 * i]);
     }
-    const std::size_t n = soft.packing.radius.size(), m = out.disks.size();
-    out.walls = std::max(way(2 * m, 2 * n), way(2 * m + 1, 2 * n + 1));
-    std::copy_n(&q[2 * m], 2, &out.packing.q[2 * n]);
+    const std::size_t n = 2 * soft.packing.radius.size(), m = 2 * out.disks.size();
+    out.walls = 0;
+    for (std::size_t k = 0; m + k < q.size(); ++k) { // walls, or periods and tilt
+        out.walls = std::max(out.walls, way(m + k, n + k));
+        out.packing.q[n + k] = q[m + k];
+    }
+    out.packing.cell = soft.packing.cell;
+    if (soft.packing.cell.any()) { // the disk that stays where it is carries a force
+        out.packing.cell.pin = out.disks[static_cast<std::size_t>(out.backbone.packing.cell.pin)];
+    }
 }
 
 /// Newton's method, no farther than grains that are nearly rigid are from their vertex. Empty, or why not.
@@ -139,6 +144,22 @@ void judge(Snap& out) {
 }
 
 } // namespace
+
+Packing<2> of_disks(const Packing<2>& packing, const std::vector<int>& disks) {
+    Packing<2> out;
+    out.walls = packing.walls;
+    out.cell = packing.cell;
+    for (const int disk : disks) {
+        const auto i = static_cast<std::size_t>(disk);
+        out.radius.push_back(packing.radius[i]);
+        out.q.insert(out.q.end(), {packing.q[2 * i], packing.q[2 * i + 1]});
+    }
+    out.q.insert(out.q.end(), packing.q.begin() + static_cast<std::ptrdiff_t>(2 * packing.radius.size()),
+                 packing.q.end());
+    const auto pin = std::find(disks.begin(), disks.end(), packing.cell.pin);
+    out.cell.pin = pin == disks.end() ? 0 : static_cast<int>(pin - disks.begin());
+    return out;
+}
 
 const char* to_string(SnapOutcome outcome) {
     switch (outcome) {

@@ -35,8 +35,8 @@ template <class Use> void for_each_row(const std::string& text, const Use& use) 
     }
 }
 
-std::string equilibria_header() {
-    std::vector<std::string> columns = equilibria_columns();
+std::string equilibria_header(bool tilted) {
+    std::vector<std::string> columns = equilibria_columns(tilted);
     columns.pop_back(); // the time
     return fmt::format("# seed,{}\n", fmt::join(columns, ","));
 }
@@ -162,7 +162,7 @@ void EnsembleDirectory::write_header(const std::string& status, const std::vecto
 }
 
 std::vector<Sample> EnsembleDirectory::merge() const {
-    std::string equilibria = equilibria_header();
+    std::string equilibria;
     std::string increments = "# seed,segment,number,direction,ratio,arcs,stress_increment,strain_increment\n";
     std::string table = "# seed,status,equilibria,proved,arcs,seconds\n";
     std::vector<Sample> samples;
@@ -172,12 +172,16 @@ std::vector<Sample> EnsembleDirectory::merge() const {
                              one.arcs, one.seconds);
         if (one.equilibria > 0) {
             const fs::path file = samples_.folder(number) / "equilibria.csv";
-            append_equilibria(equilibria, one.seed, read_text(file));
+            const std::string text = read_text(file);
+            if (equilibria.empty()) { // one scene, one kind of cell
+                equilibria = equilibria_header(text.substr(0, text.find('\n')).ends_with(",L3_bound,seconds"));
+            }
+            append_equilibria(equilibria, one.seed, text);
             append_increments(increments, one.seed, read_equilibria(file));
         }
     }
     const fs::path& path = samples_.path();
-    write_atomically(path / "equilibria.csv", equilibria);
+    write_atomically(path / "equilibria.csv", equilibria.empty() ? equilibria_header(false) : equilibria);
     write_atomically(path / "increments.csv", increments);
     write_atomically(path / "samples.csv", table);
     const bool all = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.finished(); });

@@ -31,16 +31,12 @@ class Pairs {
         if (i == j) {
             line.fail(line.field(second_), "second id", "another disk than the first");
         }
-        if (line.number(force_, names_[force_]) > 0) {
-            contacts_.emplace_back(ContactKind::disk_disk, std::min(i, j), std::max(i, j));
+        if (const double force = line.number(force_, names_[force_]); force > 0) {
+            pairs_.push_back({std::min(i, j), std::max(i, j), force});
         }
     }
 
-    std::vector<Contact> take() {
-        std::sort(contacts_.begin(), contacts_.end());
-        contacts_.erase(std::unique(contacts_.begin(), contacts_.end()), contacts_.end());
-        return std::move(contacts_);
-    }
+    std::vector<PairForce> take() { return std::move(pairs_); }
 
   private:
     [[nodiscard]] int disk(const Line& line, std::size_t at) const {
@@ -54,13 +50,13 @@ class Pairs {
     std::vector<std::string> names_;
     std::size_t first_, second_, force_;
     std::map<long, int> disk_of_;
-    std::vector<Contact> contacts_;
+    std::vector<PairForce> pairs_;
 };
 
 } // namespace
 
-std::vector<Contact> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
-                                     const std::vector<long>& ids, std::optional<long> frame) {
+std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
+                                       const std::vector<long>& ids, std::optional<long> frame) {
     foreign::DumpFile file(path.string(), "ENTRIES");
     std::optional<foreign::DumpFrame> found;
     long number = 0;

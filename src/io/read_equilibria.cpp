@@ -29,21 +29,20 @@ double column(const std::string& name, std::string_view field, const std::string
 /// One row by the names of its columns.
 class Fields {
   public:
-    Fields(std::string_view content, std::string where) : where_(std::move(where)) {
+    Fields(std::string_view content, std::string where, const std::vector<std::string>& columns)
+        : columns_(columns), where_(std::move(where)) {
         for (std::size_t at = 0; at <= content.size();) {
             const std::size_t comma = std::min(content.find(',', at), content.size());
             fields_.push_back(content.substr(at, comma - at));
             at = comma + 1;
         }
-        const std::size_t expected = equilibria_columns().size();
-        if (fields_.size() != expected) {
+        if (fields_.size() != columns_.size()) {
             throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {} columns: expected {}", where_, fields_.size(), expected));
+                        fmt::format("{}: {} columns: expected {}", where_, fields_.size(), columns_.size()));
         }
     }
     [[nodiscard]] double number(const char* name) const {
-        const std::vector<std::string>& columns = equilibria_columns();
-        const auto index = std::find(columns.begin(), columns.end(), name) - columns.begin();
+        const auto index = std::find(columns_.begin(), columns_.end(), name) - columns_.begin();
         return column(name, fields_[static_cast<std::size_t>(index)], where_);
     }
     [[nodiscard]] int integer(const char* name) const {
@@ -56,6 +55,7 @@ class Fields {
     }
 
   private:
+    const std::vector<std::string>& columns_;
     std::string where_;
     std::vector<std::string_view> fields_;
 };
@@ -86,9 +86,13 @@ EquilibriumRow row_of(const Fields& fields) {
 } // namespace
 
 std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
+    if (std::filesystem::exists(path) && std::filesystem::file_size(path) == 0) {
+        return {}; // columns are named with the first row
+    }
     const std::string content_of_file = read_text(path);
     const std::string_view text = without_byte_order_mark(content_of_file);
     std::vector<EquilibriumRow> rows;
+    const bool tilted = text.starts_with(equilibria_header(true));
     std::size_t begin = 0;
     for (int line = 1; begin < text.size(); ++line) {
         const std::size_t end = text.find('\n', begin);
@@ -98,8 +102,9 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
         const std::string_view content = text.substr(begin, end - begin);
         begin = end + 1;
         if (line > 1) {
-            rows.push_back(row_of(Fields(content, fmt::format("{}:{}", path.string(), line))));
-        } else if (std::string(content) + "\n" != equilibria_header()) {
+            rows.push_back(
+                row_of(Fields(content, fmt::format("{}:{}", path.string(), line), equilibria_columns(tilted))));
+        } else if (std::string(content) + "\n" != equilibria_header(tilted)) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}:{}: the names of the columns are not those of this program: expected {}",
                                     path.string(), line, equilibria_header()));

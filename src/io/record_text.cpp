@@ -125,7 +125,7 @@ std::string witness_line(const ArcRecord<2>& arc) {
     return json::dumped(line) + "\n";
 }
 
-const std::vector<std::string>& equilibria_columns() {
+const std::vector<std::string>& equilibria_columns(bool tilted) {
     static const std::vector<std::string> columns{"number",
                                                   "previous",
                                                   "segment",
@@ -176,11 +176,16 @@ const std::vector<std::string>& equilibria_columns() {
                                                   "potential_bound",
                                                   "min_gap_bound",
                                                   "seconds"};
-    return columns;
+    static const std::vector<std::string> with_third = [] {
+        std::vector<std::string> more = columns;
+        more.insert(more.end() - 1, {"eps3", "L3", "eps3_bound", "L3_bound"});
+        return more;
+    }();
+    return tilted ? with_third : columns;
 }
 
-std::string equilibria_header() {
-    return fmt::format("# {}\n", fmt::join(equilibria_columns(), ","));
+std::string equilibria_header(bool tilted) {
+    return fmt::format("# {}\n", fmt::join(equilibria_columns(tilted), ","));
 }
 
 std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous) {
@@ -204,6 +209,11 @@ std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& 
     row += fmt::format(",{},{},{},{},{},{},{},{}", record.strain_bound[other], record.strain_bound[loaded],
                        record.length_bound[other], record.length_bound[loaded], record.stress_low_bound,
                        record.stress_high_bound, record.potential_bound, record.min_gap_bound);
+    if (is_tilted(record)) {
+        const std::size_t third = 3 - other - loaded;
+        row += fmt::format(",{},{},{},{}", record.strain[third], record.length[third], record.strain_bound[third],
+                           record.length_bound[third]);
+    }
     row += fmt::format(",{:.3f}\n", record.seconds); // last: runs are compared without it
     return row;
 }

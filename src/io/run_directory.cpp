@@ -120,10 +120,6 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
         make_directory(directory_ / "certificates");
         files_->witnesses = Descriptor::open(directory_ / witness_records, flags);
     }
-    if (!checkpoint_) {
-        files_->equilibria.write(equilibria_header());
-        equilibria_digest_ = chained("", equilibria_header());
-    }
     Json provenance;
     provenance["program"] = header_.program;
     provenance["command"] = header_.command;
@@ -171,7 +167,7 @@ void RunDirectory::open_for_resume() {
     point.counters = counters_from(file.at("counters"));
     StateFile<2> state = parse_any_state<2>(file.at("state").value().dump(), path);
     point.state = state.state;
-    for (std::size_t a = 0; a < 2; ++a) {
+    for (std::size_t a = 0; a < file.at("strain").size(); ++a) {
         last_strain_.push_back(file.at("strain").at(a).number());
     }
     segment_ = point.segment;
@@ -230,9 +226,18 @@ void RunDirectory::on_arc(const ArcRecord<2>& arc) {
     }
 }
 
+void RunDirectory::name_columns(bool tilted) {
+    if (equilibria_digest_.empty()) {
+        const std::string header = equilibria_header(tilted);
+        files_->equilibria.write(header);
+        equilibria_digest_ = chained("", header);
+    }
+}
+
 void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
+    name_columns(is_tilted(record));
     const std::string row = equilibrium_row(record, state, first ? -1 : previous_);
     files_->equilibria.write(row);
     equilibria_digest_ = chained(equilibria_digest_, row);
@@ -314,6 +319,7 @@ void RunDirectory::sync() {
 
 void RunDirectory::finish(RunStatus status, const std::string& reason) {
     const std::string words = reason.empty() ? to_string(status) : fmt::format("{}: {}", to_string(status), reason);
+    name_columns(false); // of a run without an equilibrium
     write_checkpoint();
     if (!last_.packing.radius.empty()) {
         write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);

@@ -190,13 +190,11 @@ void require_balance(const Field& document, const char* name, const std::vector<
 
 template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& packing) {
     Load<Dim> load;
-    for (std::size_t a = 0; a < Dim; ++a) {
-        load.stress[a] = 1;
-        load.reference_length[a] = packing.length(static_cast<int>(a));
-    }
+    load.stress.fill(1);
+    load.refer_to(packing);
     if (document.has("load")) {
         const Field field = document.at("load");
-        field.only({"kind", "stress", "loaded_axis", "reference_length", "shear"});
+        field.only({"kind", "stress", "loaded_axis", "reference_length", "reference_tilt", "shear"});
         if (field.has("kind")) {
             const std::string& kind = field.at("kind").string();
             if (kind != "nominal" && kind != "true") {
@@ -217,6 +215,15 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
                     shear.at(t).fail("0, as that tilt does not move");
                 }
             }
+        }
+        if (field.has("reference_tilt")) {
+            const Field tilt = field.at("reference_tilt");
+            tilt.require_size(packing.cell.any() ? Cell<Dim>::tilts : 0, "one number per tilt of a periodic cell");
+            for (std::size_t t = 0; t < tilt.size(); ++t) {
+                load.reference_tilt[t] = tilt.at(t).number();
+            }
+        } else if (field.has("reference_length")) {
+            load.reference_tilt.fill(0); // a rectangle
         }
         for (const char* name : {"stress", "reference_length"}) {
             if (!field.has(name)) {

@@ -105,6 +105,7 @@ template <int Dim> std::string load_text(const State<Dim>& state) {
     object["reference_length"] = numbers(load.reference_length, "load.reference_length");
     if (state.packing.cell.any()) {
         object["shear"] = numbers(load.shear, "load.shear");
+        object["reference_tilt"] = numbers(load.reference_tilt, "load.reference_tilt");
     }
     return fmt::format("  \"load\": {},\n", object.dump());
 }

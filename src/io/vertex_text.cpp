@@ -98,7 +98,7 @@ State<2> parse_vertex_text(const std::string& text, const std::string& source) {
     rows.finish(fmt::format("the end of the file after {} contacts", contacts));
     json::refuse_duplicates<2>(state.contacts, source, "contacts");
     std::sort(state.contacts.begin(), state.contacts.end());
-    state.load.reference_length = {state.packing.length(0), state.packing.length(1)};
+    state.load.refer_to(state.packing);
     state.provenance = json::dumped({{"converted_from", source}});
     return state;
 }

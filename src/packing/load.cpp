@@ -7,6 +7,15 @@
 
 namespace isostat {
 
+template <int Dim> void Load<Dim>::refer_to(const Packing<Dim>& packing) {
+    for (std::size_t a = 0; a < Dim; ++a) {
+        reference_length[a] = packing.length(static_cast<int>(a));
+    }
+    for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+        reference_tilt[t] = packing.cell.any() ? packing.q[packing.length_at(Dim + t)] : 0;
+    }
+}
+
 template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<Dim>& packing) const {
     static_assert(Dim == 2, "the area that a wall is pressed on is one length");
     std::vector<WallForce> forces;

@@ -80,9 +80,10 @@ template <int Dim> void require_sensible(const Packing<Dim>& start, const Prepar
                     "start of the linear programmes: expected a box with two fixed and two movable walls, or a "
                     "periodic cell whose periods move, and no fixed disk");
     }
-    if (repeats && (start.disk_count() > options.large_above || options.load != LoadKind::nominal)) {
-        throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected nominal stresses and "
-                                                      "at most {} disks in a periodic cell",
+    const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
+    if (repeats && (start.disk_count() > options.large_above || (shears && options.load != LoadKind::nominal))) {
+        throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected at most {} disks in a "
+                                                      "periodic cell, and nominal stresses where its tilt moves",
                                                       options.large_above));
     }
     for (const auto& [name, value] : {std::pair{"stress", options.stress},

@@ -129,9 +129,7 @@ template <int Dim> class Basis {
 
   private:
     static Load<Dim> final_load(Load<Dim> load, const Packing<Dim>& packing) {
-        for (int a = 0; a < Dim; ++a) {
-            load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
-        }
+        load.refer_to(packing);
         return load;
     }
 
@@ -177,9 +175,7 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
             if (open) {
                 candidate.emplace();
                 candidate->load = load;
-                for (int a = 0; a < Dim; ++a) {
-                    candidate->load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
-                }
+                candidate->load.refer_to(packing);
                 candidate->packing = std::move(packing);
                 candidate->contacts = std::move(contacts);
             }

@@ -213,9 +213,7 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
     if (!others.ok()) {
         return others.failure();
     }
-    for (int a = 0; a < Dim; ++a) {
-        load.reference_length[static_cast<std::size_t>(a)] = packing.length(a);
-    }
+    load.refer_to(packing);
     Statics<Dim> statics(packing, load, structure, factorisation, inverse);
     const double sigma = load.loaded_stress();
     const Result<double> force = smallest_force(statics, sigma);

@@ -119,8 +119,8 @@ void check(const PreparationOptions& options) {
     if (periodic && disks > static_cast<std::size_t>(options.large_above)) {
         bad(fmt::format("{} disks in a periodic cell: expected at most {}", disks, options.large_above));
     }
-    if (periodic && options.load != LoadKind::nominal) {
-        bad("true stresses in a periodic cell: expected nominal ones");
+    if (options.cell == PreparedCell::tilted && options.load != LoadKind::nominal) {
+        bad("true stresses where the tilt moves have no potential: expected nominal ones");
     }
     if (options.loads_tilt && options.cell != PreparedCell::tilted) {
         bad("the shear stress is to be changed and no tilt moves: expected a tilted cell");

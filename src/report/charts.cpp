@@ -76,12 +76,12 @@ struct Curve {
     std::vector<EquilibriumRow> path;
 };
 
-Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, bool pdf, bool shear) {
+Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, const LoadWords& words, bool pdf) {
     Chart chart;
     chart.name = name;
     std::string plot;
     for (std::size_t k = 0; k < curves.size(); ++k) {
-        append_points(chart.data, (shear ? "shear_strain shear/sigma2: " : "eps2 sigma2/sigma1: ") + curves[k].title,
+        append_points(chart.data, fmt::format("{} {}: {}", words.strain, words.ratio, curves[k].title),
                       stairs(curves[k].path));
         plot += fmt::format("{} {} index {} with lines lw 1.5 dt {} lc rgb {} title {} noenhanced",
                             k == 0 ? "plot" : ",\\\n    ", quoted(name + ".dat"), k, dash(k),
@@ -89,8 +89,7 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, bo
     }
     chart.script = chart_script(
         name, 800, 560,
-        std::string(shear ? "set xlabel \"shear strain γ\"\nset ylabel \"shear stress over normal stress τ/σ_2\"\n"
-                          : "set xlabel \"axial strain ε_2\"\nset ylabel \"stress ratio σ_2/σ_1\"\n") +
+        fmt::format("set xlabel {}\nset ylabel {}\n", quoted(words.strain_axis), quoted(words.ratio_axis)) +
             "set key top left reverse Left\nset format x \"%g\"\nset autoscale xfixmin\nset grid back lt 1 lw 0.5 lc "
             "rgb \"#cccccc\"\n" +
             plot + "\n",
@@ -106,7 +105,7 @@ bool branches(const std::vector<EquilibriumRow>& rows, const std::vector<Equilib
 }
 
 void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& rows,
-                const std::vector<std::string>& names, bool pdf, bool shear) {
+                const std::vector<std::string>& names, const LoadWords& words, bool pdf) {
     std::vector<Curve> main_path;
     std::vector<Curve> cycles;
     int highest_branch = -1;
@@ -126,18 +125,24 @@ void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& r
         (branch ? cycles : main_path).push_back({title, std::move(path)});
     }
     if (!main_path.empty()) {
-        charts.push_back(stairs_chart("staircase", main_path, pdf, shear));
+        charts.push_back(stairs_chart("staircase", main_path, words, pdf));
     }
     if (!cycles.empty()) {
         cycles.insert(cycles.begin(),
                       Curve{fmt::format("path to equilibrium {}", highest_branch), path_to(rows, highest_branch)});
-        charts.push_back(stairs_chart("cycles", cycles, pdf, shear));
+        charts.push_back(stairs_chart("cycles", cycles, words, pdf));
     }
 }
 
+struct Distribution {
+    std::string name, label;
+    bool power_law;
+};
+
 /// Two panels: histogram, and complementary distribution with logarithmic scales.
-void add_distribution(std::vector<Chart>& charts, const std::string& name, const std::string& label,
-                      const Increments& increments, bool power_law, bool pdf) {
+void add_distribution(std::vector<Chart>& charts, const Distribution& of, const Increments& increments,
+                      const LoadWords& words, bool pdf) {
+    const auto& [name, label, power_law] = of;
     constexpr std::size_t fewest = 3;
     Chart chart;
     chart.name = name;
@@ -145,7 +150,7 @@ void add_distribution(std::vector<Chart>& charts, const std::string& name, const
     std::string right;
     int index = 0;
     const std::array<std::pair<const char*, const std::vector<double>*>, 2> kinds{
-        {{"loading", &increments.loading}, {"unloading", &increments.unloading}}};
+        {{words.rising, &increments.loading}, {words.falling, &increments.unloading}}};
     for (std::size_t k = 0; k < kinds.size(); ++k) {
         const std::vector<double>& values = *kinds[k].second;
         if (values.size() < fewest) {
@@ -219,15 +224,12 @@ std::string chart_script(const std::string& name, int width, int height, const s
     return script;
 }
 
-std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names, bool pdf,
-                               bool shear) {
+std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
+                               const LoadWords& words, bool pdf) {
     std::vector<Chart> charts;
-    add_stairs(charts, rows, names, pdf, shear);
-    add_distribution(charts, "stress_increments",
-                     shear ? "increment of the shear stress Δτ/σ_2" : "increment of the stress ratio Δσ_2/σ_1",
-                     stress_increments(rows), false, pdf);
-    add_distribution(charts, "strain_increments", shear ? "increment of the shear strain Δγ" : "strain increment Δε_2",
-                     strain_increments(rows), true, pdf);
+    add_stairs(charts, rows, names, words, pdf);
+    add_distribution(charts, {"stress_increments", words.ratio_step, false}, stress_increments(rows), words, pdf);
+    add_distribution(charts, {"strain_increments", words.strain_step, true}, strain_increments(rows), words, pdf);
     return charts;
 }
 

@@ -2,6 +2,8 @@
 /// \file
 /// The charts of a run: data and gnuplot scripts.
 
+#include "report/words.hpp"
+
 #include <isostat/io/run_directory.hpp>
 
 #include <string>
@@ -17,9 +19,8 @@ struct Chart {
 /// The gnuplot script that draws `body` to NAME.svg and NAME.png, of that size in pixels; with `pdf` to NAME.pdf too.
 std::string chart_script(const std::string& name, int width, int height, const std::string& body, bool pdf = false);
 
-/// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments. `shear`: the
-/// tilt is loaded.
+/// Staircase of the main path, cycles, distributions; those that have data. `names`: of the segments.
 std::vector<Chart> make_charts(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                               bool pdf = false, bool shear = false);
+                               const LoadWords& words = biaxial_words, bool pdf = false);
 
 } // namespace isostat

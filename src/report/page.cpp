@@ -5,6 +5,7 @@
 #include "linear/factorisation.hpp"
 #include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"
+#include "report/words.hpp"
 #include "rigidity/isostatic.hpp"
 
 #include <fmt/format.h>
@@ -250,6 +251,13 @@ Json header_json(const std::filesystem::path& directory) {
     return object;
 }
 
+Json words_json(const LoadWords& words) {
+    return {{"ratio", words.ratio_sign},
+            {"strain", words.strain_sign},
+            {"other_strain", words.other_strain},
+            {"stress", words.stress_sign}};
+}
+
 } // namespace
 
 Page run_page(const std::filesystem::path& directory, const std::function<void(std::size_t, std::size_t)>& progress) {
@@ -258,6 +266,7 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     Json data = header_json(directory);
     std::optional<Frames> frames;
     const std::optional<StateFile<2>> first = records.stored(0);
+    data["words"] = words_json(load_words(first && first->state.load.loads_tilt()));
     if (first && first->state.packing.cell.any()) {
         page.left_out.emplace_back("the packing in its periodic cell: the force pictures show it");
     } else if (first) {

@@ -48,9 +48,9 @@ class Writer {
             file.forces = solve_forces(file.state, path);
         }
         const State<2>& state = file.state;
-        const std::string caption = fmt::format(
-            "equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
-            state.load.loads_tilt() ? "shear/\u03c3\u2082" : "\u03c3\u2082/\u03c3\u2081", state.load.ratio());
+        const std::string caption =
+            fmt::format("equilibrium {}, {} disks, {} = {:.6g}", state.equilibrium, state.packing.disk_count(),
+                        load_words(state.load.loads_tilt()).ratio_sign, state.load.ratio());
         if (options_.pictures) {
             count_work(Work::pictures);
             write(name + ".svg", force_picture(state, file.forces, caption));
@@ -163,6 +163,19 @@ std::string decision_table(const json::Field& decisions) {
     return text;
 }
 
+std::vector<fs::path> stored_states(const fs::path& directory) {
+    std::vector<fs::path> states;
+    if (fs::exists(directory / "states")) {
+        for (const fs::directory_entry& entry : fs::directory_iterator(directory / "states")) {
+            if (entry.path().extension() == ".json") {
+                states.push_back(entry.path());
+            }
+        }
+    }
+    std::sort(states.begin(), states.end());
+    return states;
+}
+
 } // namespace
 
 ReportResult report_run(const fs::path& directory, const fs::path& output, const ReportOptions& options) {
@@ -181,19 +194,11 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     }
     const std::vector<EquilibriumRow> rows = read_equilibria(directory / "equilibria.csv");
     Writer writer(output, options);
+    const std::vector<fs::path> states = stored_states(directory);
+    const LoadWords& words = load_words(!states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt());
     if (options.pictures || options.vtk) {
-        std::vector<fs::path> states;
-        if (fs::exists(directory / "states")) {
-            for (const fs::directory_entry& entry : fs::directory_iterator(directory / "states")) {
-                if (entry.path().extension() == ".json") {
-                    states.push_back(entry.path());
-                }
-            }
-        }
-        std::sort(states.begin(), states.end());
         if (options.pictures) {
-            const bool shear = !states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt();
-            for (const Chart& chart : make_charts(rows, names, options.pdf, shear)) {
+            for (const Chart& chart : make_charts(rows, names, words, options.pdf)) {
                 writer.chart(chart);
             }
         }
@@ -209,7 +214,7 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         }
         writer.write("trajectory.html", page.html);
     }
-    std::string text = run_tables(rows, names, header.at("status").string());
+    std::string text = run_tables(rows, names, header.at("status").string(), words);
     const fs::path summary = directory / "summary.json"; // of runs that ended
     if (fs::exists(summary)) {
         const json::Json ended = json::Field::parse(read_text(summary), summary.string());

@@ -13,7 +13,7 @@ namespace {
 
 void add_segments(std::string& text, const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names) {
     text += fmt::format("\n{:>3} {:<36} {:>6} {:>6} {:>12} {:>12} {:>12} {:>12} {:>6}\n", "seg", "name", "from", "made",
-                        "ratio from", "to", "eps2 from", "to", "arcs");
+                        "ratio from", "to", "strain from", "to", "arcs");
     for (std::size_t s = 0; s < names.size(); ++s) {
         const EquilibriumRow* first = nullptr;
         const EquilibriumRow* last = nullptr;
@@ -40,9 +40,9 @@ void add_segments(std::string& text, const std::vector<EquilibriumRow>& rows, co
     }
 }
 
-void add_increments(std::string& text, const char* what, const Increments& increments) {
+void add_increments(std::string& text, const char* what, const Increments& increments, const LoadWords& words) {
     for (const auto& [name, values] :
-         {std::pair{"loading", &increments.loading}, std::pair{"unloading", &increments.unloading}}) {
+         {std::pair{words.rising, &increments.loading}, std::pair{words.falling, &increments.unloading}}) {
         if (!values->empty()) {
             const auto [low, high] = std::minmax_element(values->begin(), values->end());
             text += fmt::format("{:<20} {:<10} {:>6} values, mean {:.4e}, from {:.4e} to {:.4e}\n", what, name,
@@ -86,8 +86,8 @@ void add_arcs(std::string& text, const std::vector<EquilibriumRow>& rows) {
 }
 
 /// What is left of the largest strain when the path has come back to the ratio it started from.
-void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows,
-                      const std::vector<std::string>& names) {
+void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
+                      const LoadWords& words) {
     for (std::size_t s = 0; s < names.size(); ++s) {
         const auto last =
             std::find_if(rows.rbegin(), rows.rend(), [&](const auto& r) { return r.segment == static_cast<int>(s); });
@@ -98,9 +98,10 @@ void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows
         const auto peak =
             std::max_element(path.begin(), path.end(), [](auto& a, auto& b) { return a.strain2 < b.strain2; });
         if (last->ratio == path.front().ratio && peak->strain2 > 0) {
-            text += fmt::format(
-                "left of peak strain  {:.1f} % after \"{}\" (peak eps2 {:.5e}, back at sigma2/sigma1 = {:g}: {:.5e})\n",
-                100 * last->strain2 / peak->strain2, names[s], peak->strain2, last->ratio, last->strain2);
+            text +=
+                fmt::format("left of peak strain  {:.1f} % after \"{}\" (peak {} {:.5e}, back at {} = {:g}: {:.5e})\n",
+                            100 * last->strain2 / peak->strain2, names[s], words.strain, peak->strain2, words.ratio,
+                            last->ratio, last->strain2);
         }
     }
 }
@@ -108,16 +109,17 @@ void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows
 } // namespace
 
 std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                       const std::string& status) {
-    std::string text = fmt::format("status               {}\nequilibria           {}\n", status, rows.size());
+                       const std::string& status, const LoadWords& words) {
+    std::string text = fmt::format("status               {}\nratio, strain        {}, {}\nequilibria           {}\n",
+                                   status, words.ratio, words.strain, rows.size());
     if (rows.empty()) {
         return text;
     }
     add_checks(text, rows);
     add_arcs(text, rows);
-    add_increments(text, "increments of ratio", stress_increments(rows));
-    add_increments(text, "jumps of eps2", strain_increments(rows));
-    add_irreversible(text, rows, names);
+    add_increments(text, "increments of ratio", stress_increments(rows), words);
+    add_increments(text, "jumps of strain", strain_increments(rows), words);
+    add_irreversible(text, rows, names, words);
     add_segments(text, rows, names);
     return text;
 }

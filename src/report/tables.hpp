@@ -2,6 +2,8 @@
 /// \file
 /// The figures of a run as text.
 
+#include "report/words.hpp"
+
 #include <isostat/io/run_directory.hpp>
 
 #include <string>
@@ -11,6 +13,6 @@ namespace isostat {
 
 /// Segments, increments, arcs, checks. `names`: of the segments; `status`: that of run.json.
 std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
-                       const std::string& status);
+                       const std::string& status, const LoadWords& words = biaxial_words);
 
 } // namespace isostat

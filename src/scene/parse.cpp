@@ -168,9 +168,10 @@ void read_load(Section& section, Scene& scene) {
         if (sigma1 && !(*sigma1 > 0)) {
             section.fail("sigma1", "a positive stress");
         }
-        if (scene.preparation.cell != PreparedCell::none && scene.preparation.load != LoadKind::nominal) {
-            section.refuse("kind", "'kind' in [load] is \"true\" and there is a [cell]: expected \"nominal\" (true "
-                                   "stresses are not written for periodic cells)");
+        if (scene.preparation.cell == PreparedCell::tilted && scene.preparation.load != LoadKind::nominal) {
+            section.refuse("kind",
+                           "'kind' in [load] is \"true\" and the tilt of the [cell] moves: expected \"nominal\" "
+                           "(true stresses have no potential there), or kind = \"rectangular\" in [cell]");
         }
         scene.preparation.stress = section.number("sigma1", 1, 1e-100, 1e100, "a positive stress from 1e-100 to 1e100");
     }
@@ -228,6 +229,11 @@ void read_run(Section& section, Scene& scene) {
         section.refuse("ties", "ties = \"" + policy +
                                    "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
                                    "equilibria");
+    }
+    if (run.ties != TiePolicy::stop && scene.preparation.cell != PreparedCell::none) {
+        section.refuse("ties", "ties = \"" + policy +
+                                   "\" in [run] and there is a [cell]: expected \"stop\", ties are settled in "
+                                   "boxes only (radii without ties: 'jitter' in [packing])");
     }
     if (at_first_order(run.ties)) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));

@@ -120,7 +120,9 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
     return header;
 }
 
-std::string advice(const Scene& scene, const Failure& failure, std::vector<double> radius) {
+std::string advice(const Scene& scene, const Failure& failure, const Packing<2>& packing) {
+    std::vector<double> radius = packing.radius;
+    const bool can_choose = scene.run.ties != TiePolicy::choose && !packing.cell.any();
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
     const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;
@@ -129,8 +131,7 @@ std::string advice(const Scene& scene, const Failure& failure, std::vector<doubl
     }
     if (!scene.start.empty()) {
         return equal ? fmt::format("; equal radii: try isostat import {} --jitter 1e-9 --contacts nearest{}",
-                                   scene.start.string(),
-                                   scene.run.ties == TiePolicy::choose ? "" : ", or ties = \"choose\" in [run]")
+                                   scene.start.string(), can_choose ? ", or ties = \"choose\" in [run]" : "")
                      : "";
     }
     constexpr double ample = 1e-6;
@@ -138,7 +139,7 @@ std::string advice(const Scene& scene, const Failure& failure, std::vector<doubl
     // Where all are equal ties are everywhere: no list of contacts is found without jitter, and a smaller one leaves
     // more runs undecided (src/scene/README.md).
     const bool all = equal && radius.front() == radius.back();
-    const bool choose = scene.run.ties != TiePolicy::choose && !scene.programme.empty() && !all;
+    const bool choose = can_choose && !scene.programme.empty() && !all;
     return equal && jitter == 0 ? fmt::format("; equal radii: try [packing] jitter = {}{}", all ? "1e-4" : "1e-9",
                                               choose ? ", or ties = \"choose\" in [run]" : "")
            : jitter > 0 && jitter < ample ? fmt::format("; nearly equal radii: try a larger jitter than {}", jitter)
@@ -176,7 +177,7 @@ SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directo
     const ProgrammeOutcome outcome = play(programme, state, options, counters, observer);
     if (outcome.failure) {
         SceneEnding ending = ending_of(*outcome.failure, fmt::format("segment \"{}\": ", outcome.segment));
-        ending.reason += advice(scene, *outcome.failure, state.packing.radius);
+        ending.reason += advice(scene, *outcome.failure, state.packing);
         return ending;
     }
     return outcome.impossible.empty() ? SceneEnding{} : SceneEnding{RunStatus::failed, outcome.impossible, {}};

@@ -215,9 +215,9 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
     }
     if (std::abs(record.strain) > options().max_strain) {
         return failed(FailureKind::cap_reached,
-                      "|eps_2| = {:.6g} at sigma = {:.17g}: the sample fails "
+                      "|{}| = {:.6g} at sigma = {:.17g}: the sample fails "
                       "here (cap max_strain = {:.6g})",
-                      std::abs(record.strain), at_.stress(), options().max_strain);
+                      at_.load.strain_name(), std::abs(record.strain), at_.stress(), options().max_strain);
     }
     if (auto failure = flows(proof)) {
         return failure;

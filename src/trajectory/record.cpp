@@ -224,7 +224,8 @@ template <int Dim> Result<Description<Dim>> describe(Vertex<Dim>& vertex, const 
     record.sigma1 = load.other_stress();
     description.vertex = at_true_vertex(vertex);
     const TrueCoordinates<Dim> q{vertex, description.vertex};
-    for (std::size_t a = 0; a < Dim + (load.loads_tilt() ? 1 : 0); ++a) {
+    const Cell<Dim>& cell = vertex.packing.cell;
+    for (std::size_t a = 0; a < Dim + (cell.any() && cell.tilt_moves[0] ? 1 : 0); ++a) {
         const Enclosure length = length_of(q, a);
         const Enclosure strain = strain_of(q, load, a);
         record.length.push_back(length.value);

@@ -9,7 +9,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <sstream>
 
 namespace {
 
@@ -169,6 +172,76 @@ BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replaye
     expect(run({"verify", (folder / "last.cert.json").string()}), 0);
 }
 
+/// One row of equilibria.csv by the names of its columns.
+std::map<std::string, std::string> row_of(const std::filesystem::path& csv, int number) {
+    std::istringstream text(scratch::read(csv));
+    std::string names, row;
+    std::getline(text, names);
+    for (int k = 0; k <= number; ++k) {
+        std::getline(text, row);
+    }
+    std::map<std::string, std::string> found;
+    std::istringstream name(names.substr(2)), value(row);
+    for (std::string a, b; std::getline(name, a, ',') && std::getline(value, b, ',');) {
+        found[a] = b;
+    }
+    return found;
+}
+
+BOOST_AUTO_TEST_CASE(a_prepared_cell_begins_at_no_shear_strain_and_the_words_are_those_of_a_shear) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "cell.toml").string();
+    scratch::write(scene, "[packing]\ndisks = 60\n[cell]\nkind = \"tilted\"\n[load]\nloaded = \"tilt\"\n"
+                          "[[programme]]\ndo = \"up\"\nequilibria = 4\n[[programme]]\ndo = \"to\"\nto = 0\n");
+    const auto out = folder / "out";
+    expect(run({"run", scene, "-o", out.string()}), 0);
+    const auto start = isostat::read_any_state<2>(out / "states" / "eq_000000.json").state;
+    BOOST_TEST(start.packing.lattice(0, 1) != 0);
+    BOOST_TEST(start.load.reference_tilt[0] == start.packing.lattice(0, 1));
+    const auto first = row_of(out / "equilibria.csv", 0), later = row_of(out / "equilibria.csv", 4);
+    BOOST_TEST(std::abs(std::stod(first.at("eps2"))) < 1e-12);
+    BOOST_TEST(std::stod(later.at("eps2")) > 0); // the shear does work
+    const double height = start.load.reference_length[1];
+    BOOST_TEST(std::abs(std::stod(first.at("L2")) - std::stod(later.at("L2")) - height * std::stod(later.at("eps2"))) <
+               1e-9);
+    BOOST_TEST(std::abs(std::stod(first.at("L3")) - start.packing.length(0)) < 1e-9);
+    expect(run({"verify", out.string()}), 0);
+
+    const std::string report = scratch::read(out / "figures" / "report.txt");
+    for (const char* words : {"shear/sigma2, shear strain", "shear up", "jumps of strain"}) {
+        BOOST_TEST(contains(report, words), report);
+    }
+    expect(run({"report", out.string(), "--html", "-q"}), 0);
+    const std::string page = scratch::read(out / "figures" / "trajectory.html");
+    BOOST_TEST(contains(page, "\"ratio\":\"τ/σ₂\""));
+    BOOST_TEST(!contains(page, "σ₂/σ₁"));
+    const std::string chart = scratch::read(out / "figures" / "staircase.gp");
+    for (const char* words : {"eps2", "sigma2/sigma1", "loading", "σ_2/σ_1"}) { // of the biaxial test
+        BOOST_TEST(!contains(report, words), report);
+        BOOST_TEST(!contains(chart, words), chart);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "cell.toml").string();
+    std::map<std::string, std::map<std::string, std::string>> last;
+    for (const std::string kind : {"true", "nominal"}) {
+        scratch::write(scene, fmt::format("[packing]\ndisks = 40\n[cell]\n[load]\nkind = \"{}\"\n[[programme]]\ndo = "
+                                          "\"up\"\nequilibria = 3\n",
+                                          kind));
+        expect(run({"run", scene, "-o", (folder / kind).string()}), 0);
+        expect(run({"verify", (folder / kind).string()}), 0);
+        last[kind] = row_of(folder / kind / "equilibria.csv", 3);
+    }
+    const auto of = [&](const char* kind, const char* name) { return std::stod(last[kind].at(name)); };
+    // The same way: sigma2 L1 / (sigma1 L2) is the ratio of the forces, of the lengths of the moment or of the start.
+    const double strains = (1 - of("true", "eps1")) / (1 - of("true", "eps2"));
+    BOOST_TEST(of("true", "eps2") == of("nominal", "eps2"), boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(of("true", "sigma2_high") * strains == of("nominal", "sigma2_high"), boost::test_tools::tolerance(1e-9));
+    BOOST_TEST(of("true", "sigma2_high") != of("nominal", "sigma2_high"));
+}
+
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
     const scratch::Folder folder;
     isostat::State<2> state = cells::one_tilted_disk(1, 1, 0.5);
@@ -236,7 +309,8 @@ BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
     expect(run({"import", file, "-o", out, "--box", "0:9,0:9"}), 65, {"walls or a box were stated of a periodic"});
     expect(run({"import", file, "-o", out, "--threshold", "0"}), 64, {"is periodic", "--contacts nearest"});
     expect(run({"import", file, "-o", out, "--contacts", "plateau"}), 64, {"is periodic", "--contacts nearest"});
-    expect(run({"import", file, "-o", out, "--load", "true"}), 65, {"nominal stresses"});
+    expect(run({"import", file, "-o", out, "--load", "true", "--cell", "tilted"}), 65, {"nominal stresses"});
+    expect(run({"import", file, "-o", out, "--load", "true"}), 0);
     expect(run({"import", file, "-o", out, "--walls", "fixed"}), 64, {"--walls"});
     expect(run({"import", file, "-o", out, "--not-periodic", "--box", "-1:14,-1:14", "--cell", "tilted"}), 64,
            {"--cell", "not periodic"});
@@ -249,11 +323,45 @@ BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
 BOOST_AUTO_TEST_CASE(other_commands_refuse_a_cell) {
     const scratch::Folder folder;
     const std::string out = (folder / "out").string();
-    for (const std::vector<std::string>& command :
-         {std::vector<std::string>{"convert", rectangle, "-o", out}, {"snap", rectangle, "-o", out}}) {
-        const auto refused = run(command);
-        BOOST_TEST(refused.status == 65, command.front() << ": " << refused.err);
-        BOOST_TEST(contains(refused.err, "a periodic cell"), command.front() << ": " << refused.err);
+    expect(run({"convert", rectangle, "-o", out}), 65, {"a periodic cell"});
+    expect(run({"snap", scratch::data("cells/channel_16.json"), "-o", out}), 65, {"or a periodic cell"});
+}
+
+BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) {
+    const scratch::Folder folder;
+    const std::string file = (folder / "disks.dump").string(), made = (folder / "made.json").string();
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        BOOST_TEST_CONTEXT(name) {
+            const std::string from = scratch::data(std::string("cells/") + name + ".json");
+            scratch::write(file, soft_dump(from, 1e-5)); // the pairs that overlap are the contacts
+            const auto snapped = run({"snap", file, "-o", made});
+            expect(snapped, 0);
+            BOOST_TEST(contains(snapped.out, "snap      vertex"), snapped.out);
+            BOOST_TEST(!contains(snapped.out, "forces "), snapped.out); // the file has none
+            const isostat::Packing<2> found = isostat::read_any_state<2>(made).state.packing;
+            const isostat::Packing<2> stored = isostat::read_any_state<2>(from).state.packing;
+            for (std::size_t k = 32; k < 35; ++k) {
+                BOOST_TEST(std::abs(found.q[k] - stored.q[k]) < 1e-11);
+            }
+            expect(run({"certify", made, "-o", (folder / "c.json").string()}), 0);
+            // A state: its forces are compared.
+            isostat::StateFile<2> state = isostat::read_any_state<2>(from);
+            const auto forces_of = [&] {
+                isostat::write_state<2>(folder / "state.json", state.state, state.forces);
+                const auto out = run({"snap", (folder / "state.json").string(), "-o", made, "--json"});
+                expect(out, 0);
+                return nlohmann::json::parse(out.out).at("forces");
+            };
+            BOOST_TEST(forces_of().at("rest").get<double>() < 1e-9);
+            const auto strongest = std::max_element(state.forces.begin(), state.forces.end());
+            *strongest *= 1.25;
+            const auto wrong = forces_of();
+            BOOST_TEST(wrong.at("rest").get<double>() * wrong.at("mean").get<double>() == 0.2 * *strongest,
+                       boost::test_tools::tolerance(1e-6));
+            BOOST_TEST(wrong.at("contact") ==
+                       isostat::to_string<2>(
+                           state.state.contacts[static_cast<std::size_t>(strongest - state.forces.begin())]));
+        }
     }
 }
 

@@ -167,13 +167,27 @@ BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_equilibria) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "s.toml").string(), out = (folder / "run").string();
+    scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
+    Background background({"run", scene, "-o", out, "-q"});
+    for (int k = 0; k < 60000 && !fs::exists(folder / "run/equilibria.csv"); ++k) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGKILL));
+    (void)background.wait();
+    BOOST_TEST(isostat::read_equilibria(folder / "run/equilibria.csv").empty());
+    expect(run({"report", out, "--html", "-q"}), 0);
+    expect(run({"verify", out}), 2, {});
+}
+
 BOOST_AUTO_TEST_CASE(a_preparation_that_is_interrupted_says_where_and_keeps_what_it_reached) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
     scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
     Background background({"run", scene, "-o", (folder / "run").string(), "-q"});
-    BOOST_TEST(
-        background.signal_at(folder / "run/equilibria.csv", 1, SIGINT)); // the header is there before the preparation
+    BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGINT)); // it is there before the preparation
     BOOST_TEST(background.wait() == 130);
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "interrupted: "));
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "preparation failed at "));

@@ -1,4 +1,5 @@
 // The vertex of a list of contacts: proved near the soft place, or refused with the reason.
+#include "compare/force_split.hpp"
 #include "compare/series_copy.hpp"
 
 #include <isostat/compare/snap.hpp>
@@ -22,7 +23,7 @@ struct Sample {
     std::vector<Contact> list = compare::carrying(state, certify(state));
     State<2> backbone = compare::snap({state.packing, list, state.load}).backbone;
 
-    [[nodiscard]] SoftState soft(double stiffness) const {
+    [[nodiscard]] SoftState soft(double stiffness, std::vector<double>* forces = nullptr) const {
         const Snap exact = compare::snap({state.packing, list, state.load});
         const auto there = compare::soften(exact.backbone, state.load.stress[1], stiffness);
         SoftState out{state.packing, list, state.load};
@@ -31,11 +32,19 @@ struct Sample {
             out.packing.q[2 * i] = there->packing.q[2 * b];
             out.packing.q[2 * i + 1] = there->packing.q[2 * b + 1];
         }
-        out.packing.length(0) = there->packing.length(0);
-        out.packing.length(1) = there->packing.length(1);
+        std::copy(there->packing.q.begin() + static_cast<std::ptrdiff_t>(2 * exact.disks.size()),
+                  there->packing.q.end(),
+                  out.packing.q.begin() + static_cast<std::ptrdiff_t>(2 * state.packing.radius.size()));
+        if (forces != nullptr) {
+            *forces = there->forces;
+        }
         return out;
     }
 };
+
+Sample of_cell(const std::string& name) {
+    return {read_any_state<2>(scratch::data("cells/" + name + ".json")).state};
+}
 
 } // namespace
 
@@ -75,6 +84,56 @@ BOOST_AUTO_TEST_CASE(rattlers_come_to_rest_and_the_state_is_an_equilibrium_with_
     const Certification truth = certify(state.value());
     BOOST_TEST((truth.verdict == Verdict::proved));
     BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+}
+
+BOOST_AUTO_TEST_CASE(frames_of_a_periodic_cell_snap_to_their_vertex) {
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        for (const double stiffness : {1e5, 1e7}) {
+            BOOST_TEST_CONTEXT(name << ", stiffness " << stiffness) {
+                const Sample sample = of_cell(name);
+                const SoftState soft = sample.soft(stiffness);
+                const Snap found = compare::snap(soft);
+                BOOST_TEST_REQUIRE((found.outcome == SnapOutcome::vertex), found.reason);
+                const auto state = compare::with_resting_rattlers(found, 3);
+                BOOST_TEST_REQUIRE(state.ok(), (state.ok() ? "" : state.failure().message()));
+                const Certification truth = certify(state.value());
+                BOOST_TEST((truth.verdict == Verdict::proved));
+                BOOST_TEST((compare::carrying(state.value(), truth) == sample.list));
+                for (std::size_t k = 32; k < soft.packing.q.size(); ++k) { // the cell of the sample
+                    BOOST_TEST(std::abs(found.packing.q[k] - sample.state.packing.q[k]) < 1e-9);
+                    BOOST_TEST(found.walls >= std::abs(soft.packing.q[k] - found.packing.q[k]));
+                }
+                // Another disk is pinned, one that carries nothing if there is one: the vertex is the same.
+                SoftState other = soft;
+                other.packing.cell.pin = found.rattlers.empty() ? 7 : found.rattlers.front();
+                const Snap again = compare::snap(other);
+                BOOST_TEST_REQUIRE((again.outcome == SnapOutcome::vertex), again.reason);
+                BOOST_TEST(again.packing.length(0) == found.packing.length(0), boost::test_tools::tolerance(1e-12));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(forces_are_split_into_what_is_left_and_what_the_overlaps_change) {
+    std::vector<Sample> samples{Sample(), of_cell("rect_16"), of_cell("tilt_16")};
+    for (const Sample& sample : samples) {
+        std::vector<double> stiffnesses;
+        for (const double stiffness : {1e5, 1e6}) {
+            std::vector<double> forces;
+            const SoftState soft = sample.soft(stiffness, &forces);
+            const Snap found = compare::snap(soft);
+            const double mean = compare::mean_force(forces);
+            const compare::ForceSplit split = compare::split_forces(soft, forces, mean, found);
+            BOOST_TEST(split.rest < 1e-9);
+            stiffnesses.push_back(split.stiffness);
+            forces[5] += 0.25 * mean;
+            const compare::ForceSplit wrong = compare::split_forces(soft, forces, mean, found);
+            BOOST_TEST(wrong.rest == 0.25, boost::test_tools::tolerance(1e-6));
+            BOOST_TEST((wrong.worst == soft.contacts[5]));
+            BOOST_TEST(wrong.stiffness == split.stiffness);
+        }
+        BOOST_TEST(stiffnesses[0] / stiffnesses[1] == 10.0, boost::test_tools::tolerance(0.1)); // as 1 / K
+    }
 }
 
 BOOST_AUTO_TEST_CASE(lists_without_a_vertex_are_refused_with_the_reason) {

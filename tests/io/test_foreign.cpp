@@ -293,10 +293,13 @@ BOOST_AUTO_TEST_CASE(dumps_of_pairs_have_frames_and_named_columns) {
     const std::string first = head + "1\n" + box + "7 9 1\n";
     const auto pairs = [&](const std::string& text, std::optional<long> frame) {
         scratch::write(folder / "p.dump", text);
-        return read_local_dump(folder / "p.dump", {"i", "j", "f"}, {9, 8, 7}, frame);
+        std::vector<std::tuple<int, int, double>> rows;
+        for (const PairForce& row : read_local_dump(folder / "p.dump", {"i", "j", "f"}, {9, 8, 7}, frame)) {
+            rows.emplace_back(row.i, row.j, row.force);
+        }
+        return rows;
     };
-    const std::vector<Contact> outer{{ContactKind::disk_disk, 0, 2}},
-        both{{ContactKind::disk_disk, 0, 1}, {ContactKind::disk_disk, 1, 2}};
+    const std::vector<std::tuple<int, int, double>> outer{{0, 2, 1}}, both{{1, 2, 2}, {1, 2, 2}, {0, 1, 1e-9}};
     const std::string two = first + head + "4\n" + box + "8 7 2\n7 8 2\n8 9 1e-9\n9 7 0\n";
     BOOST_TEST((pairs(two, 0) == outer));
     BOOST_TEST((pairs(two, std::nullopt) == both));

@@ -143,6 +143,8 @@ BOOST_AUTO_TEST_CASE(too_few_or_too_many_disks_are_refused) {
     BOOST_CHECK_THROW((void)prepare<2>(periodic(9000, 1), report), Error);
     PreparationOptions options = periodic(30, 1);
     options.load = LoadKind::true_stress;
+    BOOST_TEST((certify(prepared(options)).verdict == Verdict::proved));
+    options.cell = PreparedCell::tilted; // no potential
     BOOST_CHECK_THROW((void)prepare<2>(options, report), Error);
     PreparationOptions few = periodic(3, 1); // the cell becomes narrower than four diameters
     BOOST_CHECK_THROW((void)prepare<2>(few, report), Error);

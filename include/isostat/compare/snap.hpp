@@ -15,8 +15,8 @@
 
 namespace isostat::compare {
 
-/// Disks of another program in the box with two fixed and two movable walls, the contacts that carry a force there
-/// (sorted, each once) and the load. Overlaps are allowed. Infinitesimal loads are not used.
+/// Disks of another program in the box with two fixed and two movable walls, or in a periodic cell, the contacts that
+/// carry a force there (sorted, each once) and the load. Overlaps are allowed. Infinitesimal loads are not used.
 struct SoftState {
     Packing<2> packing;
     std::vector<Contact> contacts;
@@ -45,7 +45,8 @@ struct Snap {
     State<2> backbone;
     Certification truth;       ///< of `backbone`
     std::vector<double> moved; ///< per disk: bound of the distance from the soft place to the true vertex; rattlers: 0
-    /// Bounds of the same, largest over the disks of the list, and over the walls. Infinite without a vertex.
+    /// Bounds of the same, largest over the disks of the list, and over the walls, or periods and tilt, where the
+    /// pinned disk stays. Infinite without a vertex.
     double distance = std::numeric_limits<double>::infinity();
     double walls = std::numeric_limits<double>::infinity();
     /// All disks: those of the list as in `backbone`, rattlers where they have room (`outcome` is `vertex`; else where

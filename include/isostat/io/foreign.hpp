@@ -84,11 +84,16 @@ struct PairColumns {
     std::string first, second, force;
 };
 
+struct PairForce {
+    int i = 0, j = 0; ///< i < j
+    double force = 0;
+};
+
 /// The pairs of disks with a positive force in a frame (from 0; none: the last) of a dump of style local (`compute
-/// property/local`, `compute pair/local`), sorted, each once. \p ids: of the disks. Throws `Error(bad_input)` with
-/// file, line, value and what was expected: also for columns and ids that are not there.
-std::vector<Contact> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
-                                     const std::vector<long>& ids, std::optional<long> frame);
+/// property/local`, `compute pair/local`), as they come: a pair may touch through several images. \p ids: of the disks.
+/// Throws `Error(bad_input)` with file, line, value and what was expected: also for columns and ids that are not there.
+std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
+                                       const std::vector<long>& ids, std::optional<long> frame);
 
 /// The texts that other programs read, every number in the shortest form that gives the same double back: a LAMMPS
 /// data file (atom style sphere, ids from 1, density 1); one frame of extended XYZ (OVITO), with `displacement` (Dim*n

@@ -104,6 +104,8 @@ class RunDirectory final : public RunObserver<2> {
   private:
     struct Files;
     void write_header(const std::string& status) const;
+    /// The first line of equilibria.csv, once.
+    void name_columns(bool tilted);
     /// Of the last equilibrium, unless it was written already.
     void write_checkpoint();
     void sync();
@@ -149,8 +151,9 @@ class RunDirectory final : public RunObserver<2> {
 /// bottom, -3 right, -4 top wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double, 3 mpfr, 4 exact.
 /// `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was asked for. An
 /// unbounded interval ends at inf or -inf. `x_bound`: of the error of `x` at the true vertex, rounding included.
-/// `previous` is the equilibrium that this one follows on its path (-1: the start).
-const std::vector<std::string>& equilibria_columns();
+/// `previous` is the equilibrium that this one follows on its path (-1: the start). `tilted`: of a cell whose tilt
+/// moves, with its third length.
+const std::vector<std::string>& equilibria_columns(bool tilted = false);
 
 /// One equilibrium as equilibria.csv gives it back.
 struct EquilibriumRow {

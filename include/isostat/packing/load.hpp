@@ -36,6 +36,8 @@ template <int Dim> struct Load {
     std::array<double, Dim> reference_length{}; ///< L_a at which nominal stress and strain are defined
     /// Nominal shear stresses on the tilts of a cell that move: the dead force on A_ab is - shear L_a,ref.
     std::array<double, Cell<Dim>::tilts> shear{};
+    /// A_ab of the cell at which the strain of a tilt is 0.
+    std::array<double, Cell<Dim>::tilts> reference_tilt{};
     /// The axis whose stress the programme changes (sigma_2). Dim: that is the shear stress on the tilt. \pre it moves.
     int loaded_axis = 1;
     std::vector<double> disk_force;    ///< empty, or Dim*n external forces on the disks
@@ -56,10 +58,14 @@ template <int Dim> struct Load {
     [[nodiscard]] double ratio() const { return loaded_stress() / other_stress(); }
     /// "sigma2/sigma1", "shear/sigma2": for messages and tables.
     [[nodiscard]] const char* ratio_name() const { return loads_tilt() ? "shear/sigma2" : "sigma2/sigma1"; }
+    /// "eps2", "shear strain": the strain that belongs to it.
+    [[nodiscard]] const char* strain_name() const { return loads_tilt() ? "shear strain" : "eps2"; }
+    /// Stresses are nominal, and strains count, from where box or cell are now.
+    void refer_to(const Packing<Dim>& packing);
     /// Strain of an axis, or of the tilt (axis Dim): (`at_rest` - coordinate) / `strain_length`. That of the tilt is
-    /// minus A_xy over the reference height: 0 in a rectangle, and growing as a positive shear stress does work.
+    /// what A_xy fell by over the reference height: it grows as a positive shear stress does work.
     [[nodiscard]] double at_rest(int axis) const {
-        return axis >= Dim ? 0 : reference_length[static_cast<std::size_t>(axis)];
+        return axis >= Dim ? reference_tilt[0] : reference_length[static_cast<std::size_t>(axis)];
     }
     [[nodiscard]] double strain_length(int axis) const {
         return reference_length[static_cast<std::size_t>(axis >= Dim ? Dim - 1 : axis)];

@@ -96,7 +96,7 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
 
 /// What may help after a failure: equal radii tie, and a jitter of a prepared scene makes them different. Empty:
 /// nothing.
-std::string advice(const Scene& scene, const Failure& failure, std::vector<double> radius);
+std::string advice(const Scene& scene, const Failure& failure, const Packing<2>& packing);
 
 /// How a run ended; `failure` where there is one (a programme that cannot begin a step has none).
 struct SceneEnding {

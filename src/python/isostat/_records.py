@@ -187,9 +187,7 @@ class Records:
         """(m, 2) lengths (Lx, Ly) of the box at every equilibrium."""
         # L1 is along the axis that is not loaded.
         axis = self.states[0].loaded_axis if 0 in self.states else 1
-        if axis == 2:
-            raise ValueError("the tilt is loaded: the lengths of the cell are in the states")
-        columns = ("L1", "L2") if axis == 1 else ("L2", "L1")
+        columns = {0: ("L2", "L1"), 1: ("L1", "L2"), 2: ("L3", "L1")}[axis]  # 2: the tilt
         return np.column_stack([self.equilibria[name] for name in columns])
 
     @property

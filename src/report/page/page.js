@@ -352,9 +352,9 @@ function drawAxes(pen, width, height) {
     pen.beginPath(); pen.moveTo(chart.left, chart.y(t)); pen.lineTo(width - chart.right, chart.y(t)); pen.stroke();
     pen.fillText(t.toFixed(up.digits), chart.left - 6, chart.y(t) + 4);
   }
-  pen.fillText("axial strain ε₂" + (unit === 1 ? "" : ` (10${[...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")})`), width - chart.right, height - 5);
+  pen.fillText(`strain ${run.words.strain}` + (unit === 1 ? "" : ` (10${[...String(power)].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")})`), width - chart.right, height - 5);
   pen.textAlign = "left";
-  pen.fillText("stress ratio σ₂/σ₁", 6, 15);
+  pen.fillText(`stress ratio ${run.words.ratio}`, 6, 15);
 }
 
 function drawStairs() {
@@ -421,8 +421,8 @@ function fillEquilibria() {
 function fillNumbers(k) {
   const body = byId("numbers").tBodies[0];
   const stress = (value) => value === null ? "unbounded" : short(value, 9);
-  const list = [["number", rows.number[k]], ["segment", run.segments[rows.segment[k]] ?? rows.segment[k]], ["σ₂/σ₁", short(rows.ratio[k], 12)], ["ε₂", short(rows.eps2[k], 9)], ["ε₁", short(rows.eps1[k], 9)],
-    ["supported interval of σ₂", `${stress(rows.sigma2_low[k])} to ${stress(rows.sigma2_high[k])}`], ["solid fraction", short(rows.solid_fraction[k], 8)], ["contacts, with a force", `${rows.contacts[k]}, ${rows.backbone[k]}`],
+  const list = [["number", rows.number[k]], ["segment", run.segments[rows.segment[k]] ?? rows.segment[k]], [run.words.ratio, short(rows.ratio[k], 12)], [run.words.strain, short(rows.eps2[k], 9)], [run.words.other_strain, short(rows.eps1[k], 9)],
+    [`supported interval of ${run.words.stress}`, `${stress(rows.sigma2_low[k])} to ${stress(rows.sigma2_high[k])}`], ["solid fraction", short(rows.solid_fraction[k], 8)], ["contacts, with a force", `${rows.contacts[k]}, ${rows.backbone[k]}`],
     ["rattlers", rows.rattlers[k]], ["self-stresses h", rows.h[k]], ["held coordinates", rows.held[k]], ["smallest margin", sci(rows.margin[k], 2)], ["decided by", ["signs and counts", "double", "double-double", "MPFR", "exact numbers"][rows.decided_by[k]] ?? "–"], ["proved", provedWords(k)]];
   body.replaceChildren(...list.map(([name, value]) => row([name, value], [0])));
 }
@@ -458,9 +458,9 @@ function describe() {
   const number = recorded.equilibrium[current], event = recorded.event[current];
   const arrows = number >= 0 ? recorded.whole[current] : recorded.arrow[current];
   const longest = arrows >= 0 ? ` Longest arrow: ${short(recorded.longest[arrows], 3)}.` : "";
-  if (number >= 0) return `Equilibrium ${number}: σ₂/σ₁ = ${short(rows.ratio[number], 9)}, ε₂ = ${short(rows.eps2[number], 6)}, ${rows.arcs[number] === 1 ? "1 arc" : rows.arcs[number] + " arcs"} led here.` + longest;
+  if (number >= 0) return `Equilibrium ${number}: ${run.words.ratio} = ${short(rows.ratio[number], 9)}, ${run.words.strain} = ${short(rows.eps2[number], 6)}, ${rows.arcs[number] === 1 ? "1 arc" : rows.arcs[number] + " arcs"} led here.` + longest;
   const [first, end] = eventsOf.get(events.equilibrium[event]);
-  return `Towards equilibrium ${events.equilibrium[event]}, end of arc ${events.arc[event]} of ${end - first}: ${contactName([events.opened[2 * event], events.opened[2 * event + 1]])} opened, ${contactName([events.closed[2 * event], events.closed[2 * event + 1]])} closed, ε₂ = ${short(events.eps2[event], 6)}.` + longest;
+  return `Towards equilibrium ${events.equilibrium[event]}, end of arc ${events.arc[event]} of ${end - first}: ${contactName([events.opened[2 * event], events.opened[2 * event + 1]])} opened, ${contactName([events.closed[2 * event], events.closed[2 * event + 1]])} closed, ${run.words.strain} = ${short(events.eps2[event], 6)}.` + longest;
 }
 
 // --- going about -----------------------------------------------------------------------------------------------------
@@ -576,6 +576,7 @@ function introduce() {
   const name = run.scene_file.split("/").pop();
   document.title = `${name} – Isostat`;
   byId("name").textContent = name;
+  for (const word of ["ratio", "strain"]) for (const place of document.getElementsByClassName(word)) place.textContent = run.words[word];
   const arcs = events?.arc.length ?? 0, disks = run.packing ? `${run.packing.radii.length} disks, ` : "";
   byId("summary").textContent = `${run.program}: ${disks}${rowCount} equilibria, ${arcs} arcs; the run is: ${run.status}`;
   const proved = rows.proved.filter((p) => p === 1).length;

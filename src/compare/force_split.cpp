@@ -1,0 +1,60 @@
+#include "compare/force_split.hpp"
+
+#include "compare/backbone.hpp"
+#include "rigidity/isostatic.hpp"
+#include "statics/statics.hpp"
+#include "verified/inverse_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::compare {
+
+ForceSplit split_forces(const SoftState& soft, const std::vector<double>& forces, double mean, const Snap& snap) {
+    ForceSplit out;
+    Packing<2> packing = of_disks(soft.packing, snap.disks);
+    (void)snap_to_grid(packing);
+    const auto structure = IsostaticStructure<2>::prove(packing, snap.backbone.contacts);
+    if (!structure.ok() || !(mean > 0)) {
+        return out;
+    }
+    const Factorisation factorisation(structure.value());
+    InverseBoundCache cache;
+    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
+    const Load<2>& load = snap.backbone.load;
+    const Statics<2> statics(packing, load, structure.value(), factorisation, inverse);
+    double rest = -1, stiffness = 0;
+    for (std::size_t l = 0; l < forces.size(); ++l) {
+        const Enclosure f = statics.force(ContactId(l), load.loaded_stress());
+        if (const double off = std::abs(forces[l] - f.value) + f.radius; off > rest) { // not of a NaN
+            rest = off;
+            out.worst = soft.contacts[l];
+        }
+        if (l < snap.truth.finite.size()) {
+            const Interval& t = snap.truth.finite[l];
+            stiffness =
+                std::max({stiffness, std::abs(f.value - t.lower) + f.radius, std::abs(f.value - t.upper) + f.radius});
+        }
+    }
+    if (rest >= 0) {
+        out.rest = rest / mean;
+    }
+    if (!snap.truth.finite.empty()) {
+        out.stiffness = stiffness / mean;
+    }
+    return out;
+}
+
+double mean_force(const std::vector<double>& forces) {
+    double sum = 0;
+    int count = 0;
+    for (const double f : forces) {
+        if (f > 0) {
+            sum += f;
+            ++count;
+        }
+    }
+    return count > 0 ? sum / count : 0;
+}
+
+} // namespace isostat::compare

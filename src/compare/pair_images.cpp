@@ -1,0 +1,35 @@
+#include "compare/pair_images.hpp"
+
+#include "contact/candidates.hpp"
+
+#include <algorithm>
+
+namespace isostat::compare {
+
+PairImages::PairImages(const Packing<2>& packing) {
+    if (!packing.cell.any()) {
+        return;
+    }
+    constexpr double reach = 0.5; // of the smallest radius
+    for (const Contact& c : find_candidates(packing, reach).contacts) {
+        if (c.kind == ContactKind::disk_disk) {
+            images_[{c.i, c.j}].by_gap.emplace_back(gap(packing, c), c);
+        }
+    }
+    for (auto& [pair, images] : images_) {
+        std::sort(images.by_gap.begin(), images.by_gap.end());
+    }
+}
+
+Contact PairImages::next(int i, int j) {
+    const auto found = images_.find({std::min(i, j), std::max(i, j)});
+    if (found == images_.end()) {
+        return pair_of(i, j);
+    }
+    Images& images = found->second;
+    const std::size_t row = images.rows++;
+    const bool overlaps = row < images.by_gap.size() && images.by_gap[row].first < 0;
+    return images.by_gap[overlaps ? row : 0].second;
+}
+
+} // namespace isostat::compare

@@ -1,0 +1,175 @@
+// Series of frames of a periodic cell, made from the exact run by softening: every frame is the exact equilibrium.
+#include "compare/series_copy.hpp"
+
+#include <isostat/compare/compare.hpp>
+#include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace isostat;
+using compare::Comparison;
+using compare::FrameStatus;
+
+namespace {
+
+constexpr double stiffness = 1e6;
+constexpr double drift_per_step = 0.013;
+
+/// Dumps as LAMMPS writes them: disks wrapped into a box that does not begin at 0, pairs without images.
+class PeriodicSeries {
+  public:
+    PeriodicSeries(const std::string& name, const std::vector<double>& loads) {
+        State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+        snap_to_grid(state.packing);
+        tilted_ = state.packing.cell.tilt_moves[0];
+        reference_ = state.load.reference_length;
+        RunCounters counters;
+        RunObserver<2> nobody;
+        for (const double load : loads) {
+            Segment segment;
+            if (load == state.load.stress[1]) {
+                segment.equilibria = 0;
+            } else {
+                segment.to_stress = load;
+            }
+            const SegmentOutcome outcome = run_segment<2>(state, segment, 0, {}, counters, nobody);
+            BOOST_REQUIRE_MESSAGE(!outcome.failure, outcome.failure->message());
+            add(state);
+        }
+    }
+
+    std::string disks, contacts, frames = "timestep,sigma2\n", cell = "[cell]\n";
+
+    [[nodiscard]] Comparison compare() const {
+        scratch::write(folder_ / "disks.dump", disks);
+        scratch::write(folder_ / "contacts.dump", contacts);
+        scratch::write(folder_ / "frames.csv", frames);
+        scratch::write(folder_ / "series.toml",
+                       fmt::format("format = \"isostat-series 1\"\n[files]\ndisks = \"disks.dump\"\ncontacts = "
+                                   "\"contacts.dump\"\nframes = \"frames.csv\"\n[columns]\ncontact_i = "
+                                   "\"i\"\ncontact_j = \"j\"\ncontact_force = \"f\"\n{}{}[law]\nkind = "
+                                   "\"linear\"\nstiffness = {}\n[load]\nsigma1 = 1.0\nreference_length = [{}, {}]\n",
+                                   cell, tilted_ && !cell.empty() ? "kind = \"tilted\"\n" : "", stiffness,
+                                   reference_[0], reference_[1]));
+        compare::SeriesReader reader(folder_ / "series.toml");
+        compare::CompareOptions options;
+        options.bundle = 2;
+        return compare::compare(reader, options);
+    }
+
+  private:
+    void add(const State<2>& state) {
+        const std::vector<Contact> list = compare::carrying(state, certify(state));
+        const compare::Snap exact = compare::snap({state.packing, list, state.load});
+        const auto soft = compare::soften(exact.backbone, state.load.stress[1], stiffness);
+        BOOST_REQUIRE(soft.has_value());
+        Packing<2> packing = exact.packing; // rattlers where they have room
+        for (std::size_t b = 0; b < exact.disks.size(); ++b) {
+            std::copy_n(&soft->packing.q[2 * b], 2, &packing.q[2 * static_cast<std::size_t>(exact.disks[b])]);
+        }
+        std::copy(soft->packing.q.end() - 3, soft->packing.q.end(), packing.q.end() - 3);
+        const double tilt = packing.lattice(0, 1);
+        for (std::size_t k = 0; k < 2 * packing.radius.size(); ++k) {
+            packing.q[k] += drift_per_step * static_cast<double>(step_); // disks leave the cell on one side
+        }
+        const auto head = [&](const char* what, std::size_t rows) {
+            return fmt::format("ITEM: TIMESTEP\n{}\nITEM: NUMBER OF {}\n{}\nITEM: BOX BOUNDS {}pp pp pp\n{} {}{}\n{} "
+                               "{}{}\n-1 1{}\n",
+                               step_, what, rows, tilted_ ? "xy xz yz " : "", low_ + std::min(tilt, 0.0),
+                               low_ + packing.length(0) + std::max(tilt, 0.0), tilted_ ? fmt::format(" {}", tilt) : "",
+                               low_, low_ + packing.length(1), tilted_ ? " 0" : "", tilted_ ? " 0" : "");
+        };
+        disks += head("ATOMS", packing.radius.size()) + "ITEM: ATOMS id x y radius\n";
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            const double up = std::floor(packing.q[2 * i + 1] / packing.length(1));
+            const double y = packing.q[2 * i + 1] - up * packing.length(1);
+            double x = packing.q[2 * i] - up * tilt;
+            x -= std::floor((x - y / packing.length(1) * tilt) / packing.length(0)) * packing.length(0);
+            disks += fmt::format("{} {} {} {}\n", i + 1, x + low_, y + low_, packing.radius[i]);
+        }
+        contacts += head("ENTRIES", list.size()) + "ITEM: ENTRIES i j f\n";
+        for (std::size_t l = 0; l < list.size(); ++l) {
+            contacts += fmt::format("{} {} {}\n", list[l].j + 1, list[l].i + 1, soft->forces[l]);
+        }
+        frames += fmt::format("{},{}\n", step_, state.load.stress[1]);
+        step_ += 100;
+    }
+
+    double low_ = -1.25;
+    long step_ = 0;
+    bool tilted_ = false;
+    std::array<double, 2> reference_{};
+    scratch::Folder folder_;
+};
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(compare_periodic)
+
+BOOST_AUTO_TEST_CASE(frames_of_the_exact_run_in_a_cell_are_the_same_and_their_forces_are_split) {
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        BOOST_TEST_CONTEXT(name) {
+            const Comparison result = PeriodicSeries(name, {1, 1.3, 1.45, 1.9, 2.0}).compare();
+            BOOST_TEST(result.status == 0);
+            BOOST_TEST(result.path_end.empty(), result.path_end);
+            BOOST_TEST_REQUIRE(result.frames.size() == 5U);
+            BOOST_TEST(result.frames.back().expected > 0); // it rearranged
+            for (const compare::FrameResult& frame : result.frames) {
+                BOOST_TEST((frame.status == FrameStatus::same), compare::to_string(frame.status)
+                                                                    << ": " << frame.reason);
+                BOOST_TEST(frame.counting.hyperstaticity == 0);
+                BOOST_TEST(frame.law < 1e-6);
+                BOOST_TEST(frame.rest < 1e-6);
+                BOOST_TEST(frame.stiffness > frame.rest);
+                BOOST_TEST(frame.stiffness < 1e-2);
+                BOOST_TEST(frame.distance < 1e-3);
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(damaged_frames_of_a_cell_are_named) {
+    PeriodicSeries damaged("rect_16", {1, 1.01});
+    const auto expect_file = [](const Comparison& result, const std::string& words) {
+        BOOST_TEST((result.frames[1].status == FrameStatus::file), compare::to_string(result.frames[1].status));
+        BOOST_TEST((result.frames[1].reason.find(words) != std::string::npos), result.frames[1].reason);
+        BOOST_TEST((result.frames[0].status == FrameStatus::same));
+    };
+    const std::string contacts = damaged.contacts;
+    const std::size_t last = contacts.rfind('\n', contacts.size() - 2) + 1;
+    std::string row = contacts.substr(last);
+    damaged.contacts.replace(last, std::string::npos, row.substr(0, row.rfind(' ')) + " 0.0001\n");
+    expect_file(damaged.compare(), "force");
+    const std::size_t before = contacts.rfind('\n', last - 2) + 1;
+    damaged.contacts = contacts.substr(0, before) + row + row; // in the place of the row before
+    expect_file(damaged.compare(), "come twice");
+    damaged.contacts = contacts;
+    damaged.frames = scratch::replaced(damaged.frames, "100,1.01", "100,1.011");
+    expect_file(damaged.compare(), "period along y");
+}
+
+BOOST_AUTO_TEST_CASE(a_cell_and_its_manifest_must_agree) {
+    PeriodicSeries series("rect_16", {1});
+    const auto refuses = [&](const std::string& words) {
+        BOOST_CHECK_EXCEPTION((void)series.compare(), Error, [&](const Error& error) {
+            return std::string(error.what()).find(words) != std::string::npos;
+        });
+    };
+    series.cell = "";
+    refuses("no column 'left'");
+    series.frames = "timestep,sigma2,left,bottom,right,top\n0,1,0,0,9,9\n";
+    refuses("walls, or a [cell] in the manifest");
+    series.cell = "[cell]\nkind = \"cubic\"\n";
+    refuses("cubic");
+    series.cell = "[cell]\n";
+    series.disks = scratch::replaced(series.disks, "pp pp pp", "pp ff pp");
+    refuses("the box is not periodic along y");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

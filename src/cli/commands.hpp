@@ -168,6 +168,7 @@ struct GenericityArguments {
     double stress = 1;
     int lists = 10;
     bool keep_equal = false;
+    bool tilt = false;
 };
 /// Perturbed radii: what the vertices are. 0: every sample proved isostatic; 2: some were not.
 int genericity(const GenericityArguments& arguments);

@@ -53,7 +53,7 @@ Original read_original(const std::string& file) {
         out.exact = inspection.value().rank_exact;
         out.title = "exact contacts of the crafted packing";
     } else if (format == "state" || format == "vertex") {
-        State<2> state = format == "state" ? parse_state<2>(text, file).state : parse_vertex_text(text, file);
+        State<2> state = format == "state" ? parse_any_state<2>(text, file).state : parse_vertex_text(text, file);
         const Counting counting = count_contacts(state.packing, state.contacts);
         out.hyperstaticity = counting.hyperstaticity;
         out.mechanisms = counting.mechanisms;
@@ -206,8 +206,9 @@ void print_head(const GenericityArguments& a, const Original& original) {
     const char* bound = original.exact == Verdict::proved ? "=" : "<=";
     fmt::print("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
                original.contacts.size(), original.title, bound, original.hyperstaticity, bound, original.mechanisms);
-    fmt::print("radius times 1 + size u, u uniform in [-1, 1){}; {} samples, seeds {} to {}\n\n",
-               a.keep_equal ? ", the same u for equal radii" : "", a.samples, a.seed,
+    fmt::print("radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}\n\n",
+               a.keep_equal ? ", the same u for equal radii" : "",
+               a.tilt ? "; tilt plus size u times the first period" : "", a.samples, a.seed,
                a.seed + static_cast<std::uint64_t>(a.samples) - 1);
     fmt::print("{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
                "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
@@ -250,6 +251,7 @@ Json report(const GenericityArguments& a, const Original& original, Json results
     out["samples"] = a.samples;
     out["stress"] = number(a.stress);
     out["keep_equal"] = a.keep_equal;
+    out["tilt"] = a.tilt;
     out["original"] = {{"N", original.contacts.size()},
                        {"h", original.hyperstaticity},
                        {"k", original.mechanisms},
@@ -267,6 +269,7 @@ int genericity(const GenericityArguments& a) {
     options.seed = a.seed;
     options.stress = a.stress;
     options.keep_equal = a.keep_equal;
+    options.tilt = a.tilt;
     const bool text = !a.common.json;
     if (text) {
         print_head(a, original);

@@ -185,13 +185,32 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     }
     a.foreign.cells = !crafted;
     ReadPacking file = read_any_packing(a.file, a.foreign);
-    if (file.packing.cell.any()) {
+    if (crafted && !a.cell.empty()) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("--cell is '{}' and {} is a crafted packing, which says what moves: expected no --cell",
+                                a.cell, a.file));
+    }
+    if (file.packing.cell.any() && !crafted) {
         set_cell(a, own, file.packing);
     } else {
         take_cell({a.file, a.cell}, file.packing);
         a.contacts = a.contacts.empty() ? "plateau" : a.contacts;
     }
     return file;
+}
+
+/// The periodic axis along which the stored forces on the disks do not sum to zero; null: there is none.
+const char* unbalanced_axis(const State<2>& state) {
+    for (std::size_t a = 0; a < 2; ++a) {
+        exact::Number sum;
+        for (std::size_t k = a; k < state.load.disk_force.size(); k += 2) {
+            sum += exact::Number::from_double(state.load.disk_force[k]);
+        }
+        if (state.packing.cell.periodic[a] && !sum.is_zero()) {
+            return a == 0 ? "x" : "y";
+        }
+    }
+    return nullptr;
 }
 
 /// A crafted packing as it is: exact contacts, doubles next to its numbers, its load.
@@ -219,8 +238,18 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
             const double length = state.load.reference_length[1 - b];
             state.load.stress[b] = length > 0 ? file.packing.load->wall[b].to_double() / length : 0;
         }
+        if (file.packing.cell.any()) {
+            state.load.shear[0] = file.packing.load->tilt.to_double() / state.load.reference_length[0];
+        }
         for (const exact::Number& force : file.packing.load->disk) {
             state.load.disk_force.push_back(force.to_double());
+        }
+        if (const char* axis = unbalanced_axis(state)) {
+            return Failure{
+                FailureKind::undecided,
+                fmt::format("the forces on the disks, rounded to doubles, do not sum to 0 along {}: expected "
+                            "numbers that are doubles",
+                            axis)};
         }
     }
     out.from = state.packing.q;

@@ -531,9 +531,12 @@ struct Program {
             "Exit status 0: every sample is proved isostatic; 2: some are not (ties, signs beyond 100 digits, no "
             "vertex found).\n"
             "Examples: isostat genericity examples/packings/square_lattice_3.toml --samples 20 --size 1e-2,1e-6,1e-10\n"
-            "          isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal");
+            "          isostat genericity examples/packings/square_lattice_3.toml --size 1e-3 --keep-equal\n"
+            "          isostat genericity examples/packings/cell_triangular_lattice_6.toml --size 1e-3 --tilt");
         command
-            .add_option("packing", a.file, "crafted packing (TOML), state or vertex text, in a box with movable walls")
+            .add_option("packing", a.file,
+                        "crafted packing (TOML), state or vertex text, in a box with movable walls or a cell whose "
+                        "periods move")
             ->required()
             ->type_name("FILE");
         command.add_option("--samples", a.samples, "samples per size (default 100)");
@@ -544,6 +547,7 @@ struct Program {
         command.add_option("--lists", a.lists, "frequent contact lists to show (default 10)")
             ->check(CLI::NonNegativeNumber);
         command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
+        command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
         command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
         add_threads(command, a.common);
         add_common(command, a.common, false);

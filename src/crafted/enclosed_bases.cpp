@@ -162,7 +162,8 @@ class Encloser {
 } // namespace
 
 EnclosedBases enclose_bases(const ExactPacking& packing, const Inspection& inspection, int count) {
-    if (inspection.rank_exact != Verdict::proved) {
+    // The bound of a column is that of two disks without a period between them.
+    if (inspection.rank_exact != Verdict::proved || packing.cell.any()) {
         return {};
     }
     const DofMap<2> dofs(approximate(packing));

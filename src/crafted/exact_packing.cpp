@@ -1,3 +1,4 @@
+#include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
 
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 
 namespace isostat::crafted {
 
@@ -42,7 +44,7 @@ Words describe(const ExactPacking& packing, int i) {
 
 /// Sign of gap, cheap where doubles settle it.
 struct Sweep {
-    explicit Sweep(const ExactPacking& p) : packing(p) {
+    explicit Sweep(const ExactPacking& p) {
         for (std::size_t i = 0; i < p.radius.size(); ++i) {
             x.push_back(bounds(p.centre[i][0]));
             y.push_back(bounds(p.centre[i][1]));
@@ -64,21 +66,120 @@ struct Sweep {
                squares * (1 - 0x1p-49) > reach * reach * (1 + 0x1p-49);
     }
 
-    [[nodiscard]] Number defect(std::size_t i, std::size_t j) const {
-        const Number dx = packing.centre[j][0] - packing.centre[i][0];
-        const Number dy = packing.centre[j][1] - packing.centre[i][1];
-        const Number reach = packing.radius[i] + packing.radius[j];
-        return dx * dx + dy * dy - reach * reach;
+    std::vector<Bounds> x, y, r;
+};
+
+/// The contacts found so far, each with its gap decided.
+struct Touching {
+    Touching(const ExactPacking& exact, const Packing<2>& rounded) : packing(exact), dofs(rounded) {}
+
+    /// A pair or a disk and a wall with this excess over touching, in the sign of the gap.
+    std::optional<Failure> take(const Contact& contact, const Number& excess) {
+        if (excess.sign() < 0) {
+            return overlap(contact, excess);
+        }
+        bool moves = false;
+        Separation<2>(contact, packing.disk_count()).for_each_coordinate([&](std::size_t k, std::size_t, int) {
+            moves = moves || dofs.dof_of(k) >= 0;
+        });
+        if (excess.is_zero() && moves) {
+            contacts.push_back(contact);
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Failure> take_pair(const Contact& pair) {
+        const auto [dx, dy] =
+            Separation<2>(pair, packing.disk_count())
+                .of_disks([&](std::size_t k) -> const Number& { return packing.coordinate(k); }, std::minus<>());
+        const Number reach = touching_distance(packing.radius, pair);
+        return take(pair, dx * dx + dy * dy - reach * reach);
+    }
+
+    [[nodiscard]] Failure overlap(const Contact& contact, const Number& excess) const {
+        const Words first = describe(packing, contact.i);
+        if (contact.kind != ContactKind::disk_disk) {
+            return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}", first,
+                          named<2>(contact), excess.text());
+        }
+        const Words second = describe(packing, contact.j);
+        if (contact.image.is_here()) {
+            return failed(FailureKind::overlap, "{} and {} overlap: distance^2 - (sum of radii)^2 = {}", first, second,
+                          excess.text());
+        }
+        return failed(FailureKind::overlap,
+                      "{} and an image of {} overlap, pair {}: distance^2 - (sum of radii)^2 = {}", first, second,
+                      named<2>(contact), excess.text());
     }
 
     const ExactPacking& packing;
-    std::vector<Bounds> x, y, r;
+    DofMap<2> dofs;
+    std::vector<Contact> contacts;
 };
+
+std::optional<Failure> take_walls(Touching& touching) {
+    const ExactPacking& packing = touching.packing;
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        for (std::size_t a = 0; a < 2; ++a) {
+            const Number& c = packing.centre[i][a];
+            for (const bool lower : {true, false}) {
+                if ((lower ? packing.walls.lower[a] : packing.walls.upper[a]) == WallKind::absent) {
+                    continue;
+                }
+                const Contact contact(lower ? ContactKind::lower_wall : ContactKind::upper_wall, static_cast<int>(i),
+                                      static_cast<int>(a));
+                const Number gap = (lower ? c : packing.length[a] - c) - packing.radius[i];
+                if (auto failure = touching.take(contact, gap)) {
+                    return failure;
+                }
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<Failure> take_pairs(Touching& touching) {
+    const Sweep sweep(touching.packing);
+    std::vector<std::size_t> order(touching.packing.radius.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto left = [&](std::size_t i) { return std::nextafter(sweep.x[i].lower - sweep.r[i].upper, -HUGE_VAL); };
+    const auto right = [&](std::size_t i) { return std::nextafter(sweep.x[i].upper + sweep.r[i].upper, HUGE_VAL); };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
+    for (std::size_t s = 0; s < order.size(); ++s) {
+        for (std::size_t t = s + 1; t < order.size() && left(order[t]) <= right(order[s]); ++t) {
+            if (sweep.apart(order[s], order[t])) {
+                continue;
+            }
+            if (auto failure = touching.take_pair(pair_of(static_cast<int>(order[s]), static_cast<int>(order[t])))) {
+                return failure;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+/// Rounding to doubles changes a gap by less than this: of each coordinate half a unit of the last place, of an image
+/// less than 100 times that for each period.
+double lost_by_rounding(const Packing<2>& rounded) {
+    double largest = rounded.max_radius();
+    for (const double x : rounded.q) {
+        largest = std::max(largest, std::abs(x));
+    }
+    return 0x1p-40 * largest;
+}
+
+std::optional<Failure> take_images(Touching& touching, const Packing<2>& rounded) {
+    for (const Contact& pair : near_pairs<2>(rounded, lost_by_rounding(rounded)).pairs) {
+        if (auto failure = touching.take_pair(pair)) {
+            return failure;
+        }
+    }
+    return std::nullopt;
+}
 
 } // namespace
 
 ExactPacking exact_copy(const Packing<2>& packing) {
-    require_box(packing, "exact numbers", "a crafted packing");
     ExactPacking out;
     for (int i = 0; i < packing.disk_count(); ++i) {
         out.radius.push_back(Number::from_double(packing.radius[static_cast<std::size_t>(i)]));
@@ -88,6 +189,10 @@ ExactPacking exact_copy(const Packing<2>& packing) {
     out.fixed = packing.fixed;
     out.walls = packing.walls;
     out.length = {Number::from_double(packing.length(0)), Number::from_double(packing.length(1))};
+    out.cell = packing.cell;
+    if (packing.cell.any()) {
+        out.tilt = Number::from_double(packing.lattice(0, 1));
+    }
     return out;
 }
 
@@ -102,64 +207,24 @@ Packing<2> approximate(const ExactPacking& packing) {
     }
     out.q.push_back(packing.length[0].to_double());
     out.q.push_back(packing.length[1].to_double());
+    out.cell = packing.cell;
+    if (packing.cell.any()) {
+        out.q.push_back(packing.tilt.to_double());
+    }
     return out;
 }
 
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing) {
-    std::vector<Contact> out;
-    const Sweep sweep(packing);
-    const auto n = packing.radius.size();
-    for (std::size_t i = 0; i < n; ++i) {
-        const int disk = static_cast<int>(i);
-        for (int axis = 0; axis < 2; ++axis) {
-            const auto a = static_cast<std::size_t>(axis);
-            for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-                const bool lower = kind == ContactKind::lower_wall;
-                const WallKind wall = lower ? packing.walls.lower[a] : packing.walls.upper[a];
-                if (wall == WallKind::absent) {
-                    continue;
-                }
-                const bool moves = wall == WallKind::movable || !packing.is_fixed(disk);
-                const Number& c = packing.centre[i][a];
-                const Number gap = (lower ? c : packing.length[a] - c) - packing.radius[i];
-                const Contact contact{kind, disk, axis};
-                if (gap.sign() < 0) {
-                    return failed(FailureKind::overlap, "{} overlaps the wall of contact {}: gap = {}",
-                                  describe(packing, disk), named<2>(contact), gap.text());
-                }
-                if (gap.is_zero() && moves) {
-                    out.push_back(contact);
-                }
-            }
-        }
+    const Packing<2> rounded = approximate(packing);
+    Touching touching(packing, rounded);
+    if (auto failure = take_walls(touching)) {
+        return *failure;
     }
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto left = [&](std::size_t i) { return std::nextafter(sweep.x[i].lower - sweep.r[i].upper, -HUGE_VAL); };
-    const auto right = [&](std::size_t i) { return std::nextafter(sweep.x[i].upper + sweep.r[i].upper, HUGE_VAL); };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
-    for (std::size_t s = 0; s < n; ++s) {
-        for (std::size_t t = s + 1; t < n && left(order[t]) <= right(order[s]); ++t) {
-            const std::size_t i = std::min(order[s], order[t]);
-            const std::size_t j = std::max(order[s], order[t]);
-            const int a = static_cast<int>(i);
-            const int b = static_cast<int>(j);
-            if (sweep.apart(i, j)) {
-                continue;
-            }
-            const bool moves = !packing.is_fixed(a) || !packing.is_fixed(b);
-            const Number defect = sweep.defect(i, j);
-            if (defect.sign() < 0) {
-                return failed(FailureKind::overlap, "{} and {} overlap: distance^2 - (sum of radii)^2 = {}",
-                              describe(packing, a), describe(packing, b), defect.text());
-            }
-            if (defect.is_zero() && moves) {
-                out.push_back({ContactKind::disk_disk, a, b});
-            }
-        }
+    if (auto failure = packing.cell.any() ? take_images(touching, rounded) : take_pairs(touching)) {
+        return *failure;
     }
-    std::sort(out.begin(), out.end());
-    return out;
+    std::sort(touching.contacts.begin(), touching.contacts.end());
+    return std::move(touching.contacts);
 }
 
 exact::NumberMatrix exact_contact_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
@@ -200,6 +265,9 @@ std::vector<Number> external_force(const ExactPacking& packing, const DofMap<2>&
     }
     for (std::size_t a = 0; a < 2; ++a) {
         add(2 * packing.radius.size() + a, -packing.load->wall[a]);
+    }
+    if (packing.cell.any()) {
+        add(2 * packing.radius.size() + 2, -packing.load->tilt);
     }
     return out;
 }

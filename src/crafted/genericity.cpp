@@ -19,9 +19,18 @@ namespace isostat::crafted {
 namespace {
 
 void check(const Packing<2>& packing, const GenericityOptions& options) {
-    if (!(packing.walls == Walls<2>::box()) || std::count(packing.fixed.begin(), packing.fixed.end(), 1) > 0) {
+    bool gives_way = std::count(packing.fixed.begin(), packing.fixed.end(), 1) == 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+        const bool box = packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::movable;
+        gives_way = gives_way && (packing.cell.periodic[a] ? packing.cell.period_moves[a] : box);
+    }
+    if (!gives_way) {
         throw Error(ErrorKind::bad_input,
-                    "genericity: expected two fixed lower walls, two movable upper walls and no fixed disk");
+                    "genericity: expected along each axis a fixed lower and a movable upper wall, "
+                    "or a period that moves, and no fixed disk");
+    }
+    if (options.tilt && !packing.cell.all()) {
+        throw Error(ErrorKind::bad_input, "genericity: the tilt is to be perturbed: expected two periods");
     }
     const auto require = [](bool holds, const char* field, const std::string& found, const char* wanted) {
         if (!holds) {
@@ -32,24 +41,39 @@ void check(const Packing<2>& packing, const GenericityOptions& options) {
     require(options.samples >= 1, "samples", std::to_string(options.samples), "at least 1");
     require(options.size >= 0 && options.size < 0.5, "size", std::to_string(options.size),
             "a number from 0 to below 0.5");
+    if (options.tilt) {
+        const double shear = options.size * packing.lattice(0, 0) / packing.lattice(1, 1);
+        require(shear < 0.5, "shear of the cell, size times L_x / L_y,", std::to_string(shear), "a number below 0.5");
+    }
     require(options.stress > 0 && std::isfinite(options.stress), "stress", std::to_string(options.stress),
             "a positive number");
 }
 
-std::vector<double> perturbed(const std::vector<double>& radius, const GenericityOptions& options, std::uint64_t seed) {
+/// The radii, and the tilt if it is asked for.
+void perturb(Packing<2>& packing, const GenericityOptions& options, std::uint64_t seed) {
     std::mt19937_64 random(seed);
+    const auto change = [&] { return options.size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
     std::map<double, double> factor_of; // of a class of equal radii
-    std::vector<double> out;
-    for (const double r : radius) {
+    for (double& r : packing.radius) {
         const auto known = factor_of.find(r);
         double factor = known == factor_of.end() ? 0 : known->second;
         if (known == factor_of.end() || !options.keep_equal) {
-            factor = 1 + options.size * (static_cast<double>(random() >> 11) * 0x1p-52 - 1);
+            factor = 1 + change();
             factor_of[r] = factor;
         }
-        out.push_back(r * factor);
+        r *= factor;
     }
-    return out;
+    if (options.tilt) {
+        packing.q[packing.tilt_at(0, 1)] += change() * packing.lattice(0, 0);
+    }
+    if (packing.cell.any()) {
+        // Everything farther apart, so that no disk overlaps its own image: a period vector (p along y) became shorter
+        // by p size L_x at most, and p L_y is not longer than it.
+        const double shorter = options.tilt ? options.size * packing.lattice(0, 0) / packing.lattice(1, 1) : 0;
+        for (double& x : packing.q) {
+            x *= (1 + options.size) / (1 - shorter);
+        }
+    }
 }
 
 /// The claims of the certificate in figures; the reason when one that makes an isostatic equilibrium is missing.
@@ -94,7 +118,7 @@ GenericitySample sampled(const Packing<2>& packing, const std::vector<Contact>& 
     GenericitySample sample;
     sample.seed = seed;
     Packing<2> start = packing;
-    start.radius = perturbed(packing.radius, options, seed);
+    perturb(start, options, seed);
     PreparationOptions preparation;
     preparation.seed = seed;
     preparation.stress = options.stress;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// What becomes of a crafted packing when its radii are perturbed.
+/// What becomes of a crafted packing when its radii, or its radii and the tilt of its cell, are perturbed.
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/result.hpp>
@@ -23,6 +23,9 @@ struct GenericityOptions {
     double stress = 1; ///< isotropic
     /// Disks of equal radius get the same u and stay equal: the theorem on generic radii (T7) then says nothing.
     bool keep_equal = false;
+    /// The tilt of a cell is perturbed too: the first period times size * u is added to it, with another u of the same
+    /// stream. Where it does not move it is a datum of the packing, as the radii are (T7p).
+    bool tilt = false;
 };
 
 /// One perturbed packing, taken downhill to its vertex by `find_vertex`; everything is proved by `certify`, of the true
@@ -34,7 +37,7 @@ struct GenericitySample {
     /// no bound. Others: no vertex was found.
     std::optional<Failure> failure;
     std::vector<Contact> contacts; ///< N = N_f of them, rank proved, every other gap proved positive: h = k = 0
-    std::vector<Contact> carrying; ///< those that carry a force of the applied stress: 2 (n - rattlers) + 2 of them
+    std::vector<Contact> carrying; ///< those that carry a force of the applied stress: N_f - 2 rattlers of them
     int rattlers = 0;
     double min_force = 0;   ///< proved lower bound of the smallest backbone force
     double min_gap = 0;     ///< proved lower bound of the smallest gap of a pair that is not a contact
@@ -60,10 +63,10 @@ struct Genericity {
     int failed = 0;    ///< the others
 };
 
-/// \p packing has two fixed lower and two movable upper walls and no fixed disk (throws `Error(bad_input)` otherwise,
-/// and for options out of range); \p original are its contacts. The samples are independent; only proved vertices
-/// count. A failure says nothing of the perturbed packing's vertex but that it was not proved. Cost: one `find_vertex`
-/// and one `certify` per sample.
+/// \p packing has along each axis a fixed lower and a movable upper wall or a period that moves, and no fixed disk
+/// (throws `Error(bad_input)` otherwise, and for options out of range); \p original are its contacts. The samples are
+/// independent; only proved vertices count. A failure says nothing of the perturbed packing's vertex but that it was
+/// not proved. Cost: one `find_vertex` and one `certify` per sample.
 Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& original,
                       const GenericityOptions& options);
 

@@ -1,6 +1,7 @@
 #include "crafted/hold.hpp"
 #include "crafted/rigid_motions.hpp"
 #include "crafted/second_order.hpp"
+#include "rigidity/strained_matrix.hpp"
 
 #include <isostat/core/machine.hpp>
 #include <isostat/crafted/inspection.hpp>
@@ -11,8 +12,8 @@ namespace isostat::crafted {
 
 namespace {
 
-/// The contact matrix of the same contact graph with the disks at random integer points, columns scaled by the
-/// distance.
+/// The contact matrix of the same contact graph with the disks, and the periods and tilt of a cell, at random integers;
+/// columns scaled by the distance.
 exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap<2>& dofs,
                                    const std::vector<Contact>& contacts) {
     ExactPacking random = packing;
@@ -27,7 +28,31 @@ exact::NumberMatrix generic_matrix(const ExactPacking& packing, const DofMap<2>&
         random.centre[i] = {next(), next()};
         random.radius[i] = Number(1) / Number(2);
     }
+    for (std::size_t a = 0; a < 2 && packing.cell.any(); ++a) {
+        random.length[a] = packing.cell.periodic[a] ? next() : random.length[a];
+    }
+    if (packing.cell.all()) {
+        random.tilt = next();
+    }
     return exact_contact_matrix(random, dofs, contacts);
+}
+
+/// Counts for each way to strain the cell, of all pairs that touch.
+StrainCounts exact_strains(const ExactPacking& packing, const std::vector<Contact>& touching) {
+    const Packing<2> rounded = approximate(packing);
+    StrainCounts counts;
+    std::transform(strains.begin(), strains.end(), counts.begin(), [&](Strain strain) {
+        return count_matrix(strained_matrix<2>(
+            rounded, [&](std::size_t k) { return packing.coordinate(k); }, touching, strain));
+    });
+    return counts;
+}
+
+/// The same packing, with a cell of which everything moves.
+ExactPacking loose_cell(ExactPacking packing) {
+    packing.cell.period_moves.fill(true);
+    packing.cell.tilt_moves.fill(true);
+    return packing;
 }
 
 class Inspector {
@@ -37,7 +62,7 @@ class Inspector {
         out_.contacts = std::move(contacts);
         matrix_ = exact_contact_matrix(packing_, dofs_, out_.contacts);
         out_.dof_count = dofs_.dof_count();
-        out_.rigid_motions = rigid_motions(packing_.walls, packing_.fixed, packing_.disk_count());
+        out_.rigid_motions = rigid_motions(approximate(packing_), packing_.disk_count());
     }
 
     Inspection run() {
@@ -255,13 +280,21 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
     if (!contacts.ok()) {
         return contacts.failure();
     }
-    return Inspector(packing, limits, std::move(contacts.value())).run();
+    Inspection out = Inspector(packing, limits, std::move(contacts.value())).run();
+    if (packing.cell.all()) {
+        out.strains = exact_strains(packing, exact_contacts(loose_cell(packing)).value());
+    }
+    return out;
 }
 
-Inspection inspect_contacts(const ExactPacking& packing, std::vector<Contact> contacts,
+Inspection inspect_contacts(const ExactPacking& packing, const std::vector<Contact>& contacts,
                             const InspectionLimits& limits) {
     require_floating_point();
-    return Inspector(packing, limits, std::move(contacts)).run();
+    Inspection out = Inspector(packing, limits, contacts).run();
+    if (packing.cell.all()) {
+        out.strains = exact_strains(packing, contacts);
+    }
+    return out;
 }
 
 } // namespace isostat::crafted

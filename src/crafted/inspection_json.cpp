@@ -42,6 +42,14 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["verdict"] = inspection.verdict();
     out["generic_rank"] = inspection.generic_rank;
     out["special"] = to_string(inspection.special_position);
+    if (inspection.strains) {
+        for (std::size_t k = 0; k < strains.size(); ++k) {
+            const Counting& c = (*inspection.strains)[k];
+            out["strains"][to_string(strains[k])] = {{"N_f", c.dof_count},    {"N", c.contact_count},
+                                                     {"rank", c.rank},        {"rank_exact", to_string(c.rank_exact)},
+                                                     {"h", c.hyperstaticity}, {"k", c.mechanisms}};
+        }
+    }
     out["contacts"] = contacts;
     out["hold"] = Json::array();
     for (const DiskHold hold : inspection.hold) {

@@ -131,6 +131,12 @@ class InspectionTable {
         line("verdict", inspection_.verdict());
         line("generic rank", fmt::format("{} (same contact graph, random coordinates)", inspection_.generic_rank));
         line("special position", std::string(to_string(inspection_.special_position)));
+        for (std::size_t k = 0; inspection_.strains && k < strains.size(); ++k) {
+            const Counting& c = (*inspection_.strains)[k];
+            const char* bound = c.rank_exact == Verdict::proved ? "" : "<= ";
+            line(to_string(strains[k]), fmt::format("N_f = {}, N = {}, h = {}{}, k = {}{}", c.dof_count,
+                                                    c.contact_count, bound, c.hyperstaticity, bound, c.mechanisms));
+        }
     }
 
     void grains() {
@@ -214,9 +220,13 @@ class Comparison {
             for (const auto& row : entry.values) {
                 check_force(entry, row);
             }
+        } else if (entry.key == "strains") {
+            for (const auto& row : entry.values) {
+                check_strain(entry, row);
+            }
         } else {
             bad(entry, "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
-                       "forces, rattlers, bridges, without_force, structural_zeros, "
+                       "forces, strains, rattlers, bridges, without_force, structural_zeros, "
                        "one_sign, support, second_order or stable");
         }
     }
@@ -331,6 +341,25 @@ class Comparison {
         }
         if (!holds) {
             mismatch(entry, row[0] + " = " + wanted.text(), found);
+        }
+    }
+
+    void check_strain(const ExpectedEntry& entry, const std::vector<std::string>& row) {
+        const auto* const known = std::find_if(
+            strains.begin(), strains.end(), [&](Strain strain) { return !row.empty() && row[0] == to_string(strain); });
+        if (row.size() != 5 || known == strains.end()) {
+            bad(entry, "rows [\"fixed cell\", \"isotropic\", \"diagonal\" or \"full strain\", N_f, N, h, k]");
+        }
+        std::string found = "no cell whose axes all repeat";
+        if (inspection_.strains) {
+            const Counting& c = (*inspection_.strains)[static_cast<std::size_t>(known - strains.begin())];
+            found = c.rank_exact == Verdict::proved
+                        ? fmt::format("{}, {}, {}, {}", c.dof_count, c.contact_count, c.hyperstaticity, c.mechanisms)
+                        : "undecided";
+        }
+        const std::string wanted = fmt::format("{}, {}, {}, {}", row[1], row[2], row[3], row[4]);
+        if (wanted != found) {
+            mismatch(entry, row[0] + " = " + wanted, found);
         }
     }
 

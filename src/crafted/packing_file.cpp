@@ -1,3 +1,4 @@
+#include "contact/images.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
 
@@ -53,7 +54,7 @@ class Reader {
         : source_(text), name_(name), root_(parse_toml(text, name)) {}
 
     PackingFile read() {
-        allow(root_, "", {"format", "title", "source", "note", "disks", "disk", "box", "load", "expected"});
+        allow(root_, "", {"format", "title", "source", "note", "disks", "disk", "box", "cell", "load", "expected"});
         const std::string format = string(required(root_, "format"), "format");
         if (format != "isostat-packing 1") {
             fail(*root_.get("format"), "format", "\"" + format + "\"", "\"isostat-packing 1\"");
@@ -65,6 +66,7 @@ class Reader {
             }
         }
         disks();
+        cell();
         box();
         load();
         expected();
@@ -203,8 +205,11 @@ class Reader {
         }
     }
 
-    [[nodiscard]] WallKind wall(const toml::node& node, const std::string& key, bool may_move) const {
+    [[nodiscard]] WallKind wall(const toml::node& node, const std::string& key, std::size_t axis, bool may_move) const {
         const std::string kind = string(node, key);
+        if (kind != "absent" && out_.packing.cell.periodic[axis]) {
+            fail(node, key, "\"" + kind + "\"", fmt::format("\"absent\": {} repeats (cell.period)", "xy"[axis]));
+        }
         if (kind == "absent") {
             return WallKind::absent;
         }
@@ -218,6 +223,81 @@ class Reader {
              may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");
     }
 
+    /// Which axes repeat, and what moves of the cell.
+    void cell() {
+        const toml::node* node = root_.get("cell");
+        if (node == nullptr) {
+            return;
+        }
+        const toml::table& cell = table(*node, "cell");
+        allow(cell, "cell.", {"period", "tilt", "moves", "pin"});
+        ExactPacking& packing = out_.packing;
+        const toml::array& period = array(required(cell, "period", "cell."), "cell.period", 2);
+        for (std::size_t a = 0; a < 2; ++a) {
+            packing.cell.periodic[a] = !(period[a].is_string() && period[a].as_string()->get() == "none");
+            if (packing.cell.periodic[a]) {
+                packing.length[a] = positive(period[a], "cell.period");
+            }
+        }
+        if (!packing.cell.any()) {
+            fail(period, "cell.period", "[\"none\", \"none\"]", "one period at least: a box has no [cell]");
+        }
+        if (const toml::node* tilt = cell.get("tilt")) {
+            packing.tilt = number(*tilt, "cell.tilt");
+            if (!packing.tilt.is_zero() && !packing.cell.all()) {
+                fail(*tilt, "cell.tilt", packing.tilt.text(), "0, as one axis does not repeat");
+            }
+        }
+        for (const toml::node& moved : array(required(cell, "moves", "cell."), "cell.moves")) {
+            moves(moved);
+        }
+        if (const toml::node* pin = cell.get("pin")) {
+            packing.cell.pin = index(*pin, "cell.pin");
+        }
+        if (std::find(packing.fixed.begin(), packing.fixed.end(), 1) != packing.fixed.end()) {
+            fail(*node, "disk.fixed", "true",
+                 "no fixed disk where an axis repeats: the pinned one says where the "
+                 "origin is");
+        }
+        fits(period);
+    }
+
+    void moves(const toml::node& moved) {
+        Cell<2>& cell = out_.packing.cell;
+        const std::string word = string(moved, "cell.moves");
+        const int axis = word == "x" ? 0 : (word == "y" ? 1 : 2);
+        bool& flag = axis < 2 ? cell.period_moves[static_cast<std::size_t>(axis)] : cell.tilt_moves[0];
+        const bool there = axis < 2 ? cell.periodic[static_cast<std::size_t>(axis)] : word == "xy" && cell.all();
+        if (!there || flag) {
+            fail(moved, "cell.moves", "\"" + word + "\"",
+                 "\"x\", \"y\" of an axis that repeats, or \"xy\" where both do, each once");
+        }
+        flag = true;
+    }
+
+    /// No disk is wider than a period vector, or so far away that its images would not be found.
+    void fits(const toml::array& period) const {
+        const ExactPacking& packing = out_.packing;
+        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+            const Number diameter = packing.radius[i] + packing.radius[i];
+            for (std::size_t a = 0; a < 2; ++a) {
+                const Number& length = packing.length[a];
+                const Number lean = a == 1 ? packing.tilt : Number(0);
+                if (packing.cell.periodic[a] && (length * length + lean * lean - diameter * diameter).sign() < 0) {
+                    fail(period[a], "cell.period", length.text(),
+                         fmt::format("a period vector at least as long as the diameter {} of disk {}, which overlaps "
+                                     "its own image",
+                                     diameter.text(), i));
+                }
+            }
+        }
+        const Packing<2> rounded = approximate(packing);
+        validate(rounded, fmt::format("{}:{}", name_, period.source().begin.line));
+        if (const auto beyond = disk_beyond(rounded, 0, farthest_disk)) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", name_, period.source().begin.line, *beyond));
+        }
+    }
+
     void box() {
         const toml::node* node = root_.get("box");
         if (node == nullptr) {
@@ -225,14 +305,22 @@ class Reader {
         }
         const toml::table& box = table(*node, "box");
         allow(box, "box.", {"length", "lower", "upper"});
-        out_.packing.walls = Walls<2>::box();
+        for (std::size_t a = 0; a < 2; ++a) {
+            const bool repeats = out_.packing.cell.periodic[a];
+            out_.packing.walls.lower[a] = repeats ? WallKind::absent : WallKind::fixed;
+            out_.packing.walls.upper[a] = repeats ? WallKind::absent : WallKind::movable;
+        }
         if (const toml::node* lower = box.get("lower")) {
             const toml::array& kinds = array(*lower, "box.lower", 2);
-            out_.packing.walls.lower = {wall(kinds[0], "box.lower", false), wall(kinds[1], "box.lower", false)};
+            for (std::size_t a = 0; a < 2; ++a) {
+                out_.packing.walls.lower[a] = wall(kinds[a], "box.lower", a, false);
+            }
         }
         if (const toml::node* upper = box.get("upper")) {
             const toml::array& kinds = array(*upper, "box.upper", 2);
-            out_.packing.walls.upper = {wall(kinds[0], "box.upper", true), wall(kinds[1], "box.upper", true)};
+            for (std::size_t a = 0; a < 2; ++a) {
+                out_.packing.walls.upper[a] = wall(kinds[a], "box.upper", a, true);
+            }
         }
         const auto& upper = out_.packing.walls.upper;
         if (upper[0] == WallKind::absent && upper[1] == WallKind::absent && box.get("length") == nullptr) {
@@ -254,30 +342,54 @@ class Reader {
             return;
         }
         const toml::table& load = table(*node, "load");
-        allow(load, "load.", {"wall", "disk"});
+        allow(load, "load.", {"wall", "tilt", "disk"});
         ExactLoad out;
         if (const toml::node* walls = load.get("wall")) {
             const toml::array& forces = array(*walls, "load.wall", 2);
             for (std::size_t a = 0; a < 2; ++a) {
                 out.wall[a] = number(forces[a], "load.wall");
-                if (!out.wall[a].is_zero() && out_.packing.walls.upper[a] != WallKind::movable) {
-                    fail(forces[a], "load.wall", out.wall[a].text(), "0: the upper wall of this axis is not movable");
+                if (!out.wall[a].is_zero() && out_.packing.walls.upper[a] != WallKind::movable &&
+                    !out_.packing.cell.period_moves[a]) {
+                    fail(forces[a], "load.wall", out.wall[a].text(),
+                         out_.packing.cell.periodic[a] ? "0: the period along this axis does not move"
+                                                       : "0: the upper wall of this axis is not movable");
                 }
+            }
+        }
+        if (const toml::node* tilt = load.get("tilt")) {
+            out.tilt = number(*tilt, "load.tilt");
+            if (!out.tilt.is_zero() && !out_.packing.cell.tilt_moves[0]) {
+                fail(*tilt, "load.tilt", out.tilt.text(), "0: no tilt of a cell moves");
             }
         }
         if (const toml::node* disks = load.get("disk")) {
-            out.disk.resize(2 * out_.packing.radius.size());
-            for (const toml::node& entry : array(*disks, "load.disk")) {
-                const toml::array& row = array(entry, "load.disk", 3);
-                const int disk = index(row[0], "load.disk");
-                if (out_.packing.is_fixed(disk)) {
-                    fail(row[0], "load.disk", std::to_string(disk), "a disk that is not fixed");
-                }
-                out.disk[2 * static_cast<std::size_t>(disk)] += number(row[1], "load.disk");
-                out.disk[2 * static_cast<std::size_t>(disk) + 1] += number(row[2], "load.disk");
-            }
+            out.disk = disk_forces(*disks);
         }
         out_.packing.load = std::move(out);
+    }
+
+    [[nodiscard]] std::vector<Number> disk_forces(const toml::node& node) const {
+        std::vector<Number> out(2 * out_.packing.radius.size());
+        for (const toml::node& entry : array(node, "load.disk")) {
+            const toml::array& row = array(entry, "load.disk", 3);
+            const int disk = index(row[0], "load.disk");
+            if (out_.packing.is_fixed(disk)) {
+                fail(row[0], "load.disk", std::to_string(disk), "a disk that is not fixed");
+            }
+            out[2 * static_cast<std::size_t>(disk)] += number(row[1], "load.disk");
+            out[2 * static_cast<std::size_t>(disk) + 1] += number(row[2], "load.disk");
+        }
+        for (std::size_t a = 0; a < 2; ++a) {
+            Number sum;
+            for (std::size_t k = a; k < out.size(); k += 2) {
+                sum += out[k];
+            }
+            if (out_.packing.cell.periodic[a] && !sum.is_zero()) {
+                fail(node, "load.disk", "forces that sum to " + sum.text(),
+                     fmt::format("0 along {}, which repeats: the pinned disk would bear the rest", "xy"[a]));
+            }
+        }
+        return out;
     }
 
     /// A single value of `[expected]` as text: strings as they are, numbers exactly.

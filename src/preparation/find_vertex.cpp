@@ -60,7 +60,9 @@ template <int Dim> int best_held(const Packing<Dim>& packing) {
     std::vector<int> touching(packing.radius.size(), 0);
     for (const Contact& c : near_contacts(packing, near_enough * packing.min_radius(), 0)) {
         ++touching[static_cast<std::size_t>(c.i)];
-        ++touching[static_cast<std::size_t>(c.j)];
+        if (c.kind == ContactKind::disk_disk) {
+            ++touching[static_cast<std::size_t>(c.j)];
+        }
     }
     return static_cast<int>(std::max_element(touching.begin(), touching.end()) - touching.begin());
 }
@@ -73,15 +75,17 @@ template <int Dim> void require_sensible(const Packing<Dim>& start, const Prepar
     validate(checked, "start of the linear programmes");
     const auto is_fixed = [](unsigned char flag) { return flag != 0; };
     const Cell<Dim>& cell = start.cell;
-    const bool repeats = cell.all() && cell.period_moves == cell.periodic;
-    if (!(start.walls == Walls<Dim>::box() || repeats) ||
-        std::any_of(start.fixed.begin(), start.fixed.end(), is_fixed)) {
-        throw Error(ErrorKind::bad_input,
-                    "start of the linear programmes: expected a box with two fixed and two movable walls, or a "
-                    "periodic cell whose periods move, and no fixed disk");
+    bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);
+    for (std::size_t a = 0; a < Dim; ++a) {
+        const bool box = start.walls.lower[a] == WallKind::fixed && start.walls.upper[a] == WallKind::movable;
+        gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] : box);
+    }
+    if (!gives_way) {
+        throw Error(ErrorKind::bad_input, "start of the linear programmes: expected along each axis a fixed and a "
+                                          "movable wall, or a period that moves, and no fixed disk");
     }
     const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
-    if (repeats && (start.disk_count() > options.large_above || (shears && options.load != LoadKind::nominal))) {
+    if (cell.any() && (start.disk_count() > options.large_above || (shears && options.load != LoadKind::nominal))) {
         throw Error(ErrorKind::bad_input, fmt::format("start of the linear programmes: expected at most {} disks in a "
                                                       "periodic cell, and nominal stresses where its tilt moves",
                                                       options.large_above));

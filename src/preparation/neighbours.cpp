@@ -122,8 +122,10 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
     }
 }
 
-template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach) {
-    if (packing.cell.all()) {
+namespace {
+
+template <int Dim> std::vector<Contact> near_disks(const Packing<Dim>& packing, double reach, double upper_reach) {
+    if (packing.cell.any()) {
         std::vector<Contact> all = near_pairs(packing, reach + upper_reach).pairs;
         std::erase_if(all, [&](const Contact& c) { return c.image.is_here() && !(gap(packing, c) < reach); });
         return all;
@@ -138,10 +140,20 @@ template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packin
             near.push_back({ContactKind::disk_disk, i, pairs.partner[static_cast<std::size_t>(p)]});
         }
     }
+    return near;
+}
+
+} // namespace
+
+template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach) {
+    std::vector<Contact> near = near_disks(packing, reach, upper_reach);
     for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
-        for (int i = 0; i < n; ++i) {
+        for (int i = 0; i < packing.disk_count(); ++i) {
             for (int a = 0; a < Dim; ++a) {
                 const Contact wall{kind, i, a};
+                if (packing.cell.periodic[static_cast<std::size_t>(a)]) {
+                    continue;
+                }
                 if (gap(packing, wall) < (kind == ContactKind::upper_wall ? upper_reach : reach)) {
                     near.push_back(wall);
                 }

@@ -21,14 +21,12 @@ template <int Dim, class Number> struct Arms {
     std::array<Number, static_cast<std::size_t>(Dim)> period; ///< A m
 };
 
-template <int Dim, class Number, class Of, class Minus>
-Arms<Dim, Number> arms_of(const Packing<Dim>& packing, const Contact& contact, Of of, Minus minus) {
-    const auto at = [&](std::size_t k) -> Number { return of(packing.q[k]); };
+template <int Dim, class Number, class At, class Minus>
+Arms<Dim, Number> arms_of(const Contact& contact, int disks, At at, Minus minus) {
     Arms<Dim, Number> arms;
-    arms.r = Separation<Dim>(contact, packing.disk_count()).of_disks(at, minus);
+    arms.r = Separation<Dim>(contact, disks).of_disks(at, minus);
     // A disk and its own image are A m apart.
-    arms.period =
-        Separation<Dim>(Contact(ContactKind::disk_disk, 0, 0, contact.image), packing.disk_count()).of_disks(at, minus);
+    arms.period = Separation<Dim>(Contact(ContactKind::disk_disk, 0, 0, contact.image), disks).of_disks(at, minus);
     return arms;
 }
 
@@ -86,21 +84,25 @@ struct NumberRing {
     static Number sum(const Number& a, const Number& b) { return a + b; }
 };
 
-template <int Dim>
-exact::NumberMatrix number_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Strain strain) {
-    const DofMap<Dim> dofs(in_fixed_cell(packing));
-    exact::NumberMatrix matrix;
-    matrix.rows = dofs.dof_count() + strain_count<Dim>(strain);
-    for (const Contact& contact : contacts) {
-        const auto arms = arms_of<Dim, exact::Number>(packing, contact, exact::Number::from_double, std::minus<>());
-        auto& column = matrix.column.emplace_back();
-        for_each_strained_entry(dofs, contact, arms, strain, NumberRing(), [&](int row, const exact::Number& entry) {
-            if (!entry.is_zero()) {
-                column.emplace_back(row, entry);
-            }
-        });
+Counting counted(int rows, int columns, int rank) {
+    Counting counting;
+    counting.dof_count = rows;
+    counting.contact_count = columns;
+    counting.rank = rank;
+    counting.rank_exact = rank == std::min(rows, columns) ? Verdict::proved : Verdict::undecided;
+    return counting;
+}
+
+/// With the rank of the matrix where the one mod p leaves it open.
+Counting settled(Counting counting, const std::function<exact::NumberMatrix()>& matrix) {
+    if (counting.rank_exact != Verdict::proved) {
+        const exact::Kernel kernel = exact::kernel(matrix());
+        counting.rank = std::max(counting.rank, kernel.rank);
+        counting.rank_exact = kernel.exact;
     }
-    return matrix;
+    counting.hyperstaticity = counting.contact_count - counting.rank;
+    counting.mechanisms = counting.dof_count - counting.rank;
+    return counting;
 }
 
 } // namespace
@@ -125,7 +127,8 @@ sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing,
     matrix.cols = static_cast<int>(contacts.size());
     matrix.start.push_back(0);
     for (const Contact& contact : contacts) {
-        const auto arms = arms_of<Dim, Residue>(packing, contact, exact::residue, ResidueRing::difference);
+        const auto at = [&](std::size_t k) -> Residue { return exact::residue(packing.q[k]); };
+        const auto arms = arms_of<Dim, Residue>(contact, packing.disk_count(), at, ResidueRing::difference);
         for_each_strained_entry(dofs, contact, arms, strain, ResidueRing(), [&](int row, Residue entry) {
             matrix.row.push_back(row);
             matrix.value.push_back(entry);
@@ -136,22 +139,36 @@ sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing,
 }
 
 template <int Dim>
+exact::NumberMatrix strained_matrix(const Packing<Dim>& packing, const std::function<exact::Number(std::size_t)>& at,
+                                    const std::vector<Contact>& contacts, Strain strain) {
+    assert(packing.cell.all());
+    const DofMap<Dim> dofs(in_fixed_cell(packing));
+    exact::NumberMatrix matrix;
+    matrix.rows = dofs.dof_count() + strain_count<Dim>(strain);
+    for (const Contact& contact : contacts) {
+        const auto arms = arms_of<Dim, exact::Number>(contact, packing.disk_count(), at, std::minus<>());
+        auto& column = matrix.column.emplace_back();
+        for_each_strained_entry(dofs, contact, arms, strain, NumberRing(), [&](int row, const exact::Number& entry) {
+            if (!entry.is_zero()) {
+                column.emplace_back(row, entry);
+            }
+        });
+    }
+    return matrix;
+}
+
+template <int Dim>
 Counting count_strained(const Packing<Dim>& packing, const std::vector<Contact>& contacts, Strain strain) {
     const auto matrix = exact_strained_matrix(packing, contacts, strain);
-    Counting counting;
-    counting.dof_count = matrix.rows;
-    counting.contact_count = matrix.cols;
-    counting.rank = matrix.rows == 0 || matrix.cols == 0 ? 0 : exact::rank(matrix);
-    if (counting.rank < std::min(matrix.rows, matrix.cols)) {
-        const exact::Kernel kernel = exact::kernel(number_matrix(packing, contacts, strain));
-        counting.rank = std::max(counting.rank, kernel.rank);
-        counting.rank_exact = kernel.exact;
-    } else {
-        counting.rank_exact = Verdict::proved;
-    }
-    counting.hyperstaticity = counting.contact_count - counting.rank;
-    counting.mechanisms = counting.dof_count - counting.rank;
-    return counting;
+    const int rank = matrix.rows == 0 || matrix.cols == 0 ? 0 : exact::rank(matrix);
+    return settled(counted(matrix.rows, matrix.cols, rank), [&] {
+        return strained_matrix<Dim>(
+            packing, [&](std::size_t k) { return exact::Number::from_double(packing.q[k]); }, contacts, strain);
+    });
+}
+
+Counting count_matrix(const exact::NumberMatrix& matrix) {
+    return settled(counted(matrix.rows, matrix.cols(), exact::rank_bound(matrix).rank), [&] { return matrix; });
 }
 
 template <int Dim> StrainCounts count_strains(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
@@ -183,6 +200,8 @@ template <int Dim> Packing<Dim> without_disks(Packing<Dim> packing, const std::v
     return packing;
 }
 
+template exact::NumberMatrix strained_matrix<2>(const Packing<2>&, const std::function<exact::Number(std::size_t)>&,
+                                                const std::vector<Contact>&, Strain);
 template sparse::Matrix<std::uint64_t> exact_strained_matrix<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
 template Counting count_strained<2>(const Packing<2>&, const std::vector<Contact>&, Strain);
 template StrainCounts count_strains<2>(const Packing<2>&, const std::vector<Contact>&);

@@ -4,9 +4,11 @@
 
 #include "sparse/pattern.hpp"
 
+#include <isostat/exact/kernel.hpp>
 #include <isostat/rigidity/counting.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace isostat {
@@ -18,6 +20,17 @@ template <int Dim>
 sparse::Matrix<std::uint64_t> exact_strained_matrix(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
                                                     Strain strain);
 
+/// The same matrix in the field, of coordinates `at(k)`, k as in `Packing::q`; `packing` says which there are.
+template <int Dim>
+exact::NumberMatrix strained_matrix(const Packing<Dim>& packing, const std::function<exact::Number(std::size_t)>& at,
+                                    const std::vector<Contact>& contacts, Strain strain);
+
+/// What the matrix counts: its kernel is sought where its rank mod p is not as high as rows and columns allow.
+Counting count_matrix(const exact::NumberMatrix& matrix);
+
+extern template exact::NumberMatrix strained_matrix<2>(const Packing<2>&,
+                                                       const std::function<exact::Number(std::size_t)>&,
+                                                       const std::vector<Contact>&, Strain);
 extern template sparse::Matrix<std::uint64_t> exact_strained_matrix<2>(const Packing<2>&, const std::vector<Contact>&,
                                                                        Strain);
 

@@ -365,4 +365,42 @@ BOOST_AUTO_TEST_CASE(soft_frames_of_a_cell_snap_with_their_contacts_and_forces) 
     }
 }
 
+BOOST_AUTO_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_said) {
+    const std::string packings = std::string(ISOSTAT_EXAMPLES) + "/packings/";
+    const scratch::Folder folder;
+    const std::string state = (folder / "state.json").string();
+    const auto says = [](const std::vector<std::string>& command, const char* words) {
+        const auto outcome = run(command);
+        expect(outcome, 0);
+        BOOST_TEST(contains(outcome.out, words), words << " is not in " << outcome.out);
+    };
+    for (const char* name : {"channel_two_disks_low", "channel_two_disks_high", "cell_one_disk_tilted"}) {
+        says({"import", packings + name + ".toml", "-o", state}, "those of the crafted packing, exactly");
+        says({"inspect", state}, "isostatic equilibrium    proved");
+    }
+    // The shear stress of the file is that of the state: F2/sqrt(3) + T, F2/sqrt(3) - T.
+    const auto forces = isostat::read_any_state<2>(state).state.load;
+    BOOST_TEST(std::abs(forces.shear[0] * forces.reference_length[0] - 0.5) < 1e-15);
+    expect(run({"import", packings + "cell_hexagonal_largest.toml", "-o", state}), 1, {"h = 5, k = 0"});
+    expect(run({"import", packings + "cell_one_disk_tilted.toml", "-o", state, "--cell", "tilted"}), 64, {"no --cell"});
+    expect(run({"plan", packings + "cell_one_disk_tilted.toml"}), 65, {"is a crafted packing"});
+    says({"inspect", packings + "cell_hexagonal_saddle.toml"}, "isotropic              N_f = 5, N = 6, h = 2, k = 1");
+    const auto json = nlohmann::json::parse(run({"inspect", packings + "cell_two_disks_tilted.toml", "--json"}).out);
+    BOOST_TEST(json.at("strains").at("diagonal").at("h") == 1);
+    BOOST_TEST(json.at("strains").at("full strain").at("h") == 0);
+}
+
+BOOST_AUTO_TEST_CASE(genericity_of_radii_and_tilt) {
+    const std::string two = std::string(ISOSTAT_EXAMPLES) + "/packings/counterexample_t7_centred_rectangle.toml";
+    const auto radii = run({"genericity", two, "--samples", "2", "--size", "1e-3", "--json"});
+    expect(radii, 2);
+    BOOST_TEST(contains(radii.out, "\"ties\":2"));
+    const auto both = run({"genericity", two, "--samples", "2", "--size", "1e-3", "--tilt", "--json"});
+    expect(both, 0);
+    BOOST_TEST(contains(both.out, "\"proved_isostatic\":2"));
+    expect(run({"genericity", rectangle, "--samples", "2", "--size", "1e-9"}), 0);
+    expect(run({"genericity", std::string(ISOSTAT_EXAMPLES) + "/packings/two_disks.toml", "--tilt"}), 65,
+           {"two periods"});
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -7,6 +7,8 @@
 
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
+
 namespace {
 
 using namespace isostat::crafted;
@@ -15,14 +17,26 @@ ExactPacking example(const std::string& name) {
     return read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
 }
 
-Genericity perturbed(const std::string& name, int samples, double size) {
-    const ExactPacking exact = example(name);
+Genericity perturbed(const ExactPacking& exact, int samples, double size, bool tilt = false) {
     const auto contacts = exact_contacts(exact);
     BOOST_REQUIRE(contacts.ok());
     GenericityOptions options;
     options.samples = samples;
     options.size = size;
+    options.tilt = tilt;
     return genericity(approximate(exact), contacts.value(), options);
+}
+
+Genericity perturbed(const std::string& name, int samples, double size) {
+    return perturbed(example(name), samples, size);
+}
+
+/// Force-carrying contacts of every proved sample: as many as degrees of freedom without the rattlers.
+bool all_isostatic(const Genericity& answer, const ExactPacking& exact) {
+    const int dofs = isostat::DofMap<2>(approximate(exact)).dof_count();
+    return std::all_of(answer.samples.begin(), answer.samples.end(), [&](const GenericitySample& sample) {
+        return !sample.failure && static_cast<int>(sample.carrying.size()) == dofs - 2 * sample.rattlers;
+    });
 }
 
 } // namespace
@@ -112,6 +126,33 @@ BOOST_AUTO_TEST_CASE(equal_radii_that_stay_equal_are_never_called_isostatic) {
     }
 }
 
+// T7p: with a tilt that moves, and in channels, generic radii are enough.
+BOOST_AUTO_TEST_CASE(lattices_in_channels_and_cells_with_a_tilt_become_isostatic) {
+    for (const char* name :
+         {"cell_triangular_lattice_6.toml", "cell_square_lattice_2.toml", "channel_square_lattice_3.toml",
+          "cell_two_disks_tilted.toml", "cell_one_disk_tilted.toml", "channel_two_disks_low.toml"}) {
+        ExactPacking exact = example(name);
+        exact.cell.tilt_moves = {exact.cell.all()};
+        for (const double size : {1e-2, 1e-5}) {
+            BOOST_TEST(all_isostatic(perturbed(exact, 5, size), exact), name);
+        }
+    }
+}
+
+// T7 is false in rectangles: two disks tie for all radii. The tilt is what is not generic.
+BOOST_AUTO_TEST_CASE(two_disks_of_a_rectangle_tie_for_all_radii_and_no_longer_with_another_tilt) {
+    ExactPacking exact = example("counterexample_t7_centred_rectangle.toml");
+    for (const double size : {1e-2, 1e-5}) {
+        const Genericity radii = perturbed(exact, 5, size);
+        BOOST_TEST(radii.proved == 0);
+        BOOST_TEST(radii.ties == 5);
+        const Genericity both = perturbed(exact, 5, size, true);
+        BOOST_TEST(all_isostatic(both, exact));
+    }
+    exact.cell.tilt_moves = {true};
+    BOOST_TEST(all_isostatic(perturbed(exact, 5, 1e-2), exact));
+}
+
 BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_samples) {
     const Genericity a = perturbed("triangular_patch_2x3.toml", 5, 1e-3),
                      b = perturbed("triangular_patch_2x3.toml", 5, 1e-3);
@@ -130,6 +171,11 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
         options.size = size;
         BOOST_CHECK_THROW((void)genericity(box, {}, options), isostat::Error);
     }
+    GenericityOptions tilt;
+    tilt.tilt = true;
+    BOOST_CHECK_THROW((void)genericity(box, {}, tilt), isostat::Error);
+    BOOST_CHECK_THROW((void)genericity(approximate(example("channel_one_disk.toml")), {}, tilt), isostat::Error);
+    BOOST_CHECK_THROW((void)genericity(approximate(example("cell_hexagonal_row.toml")), {}, {}), isostat::Error);
     GenericityOptions none;
     none.samples = 0;
     BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);

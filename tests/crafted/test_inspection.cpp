@@ -97,6 +97,38 @@ BOOST_AUTO_TEST_CASE(bad_files_are_refused_with_line_and_what_was_expected) {
     BOOST_TEST(refused(head + "disks = [[0, 0, 1]]\n[load]\ndisk = [[1, 0, 0]]\n", 4, "0 to 0"));
 }
 
+BOOST_AUTO_TEST_CASE(bad_cells_are_refused_with_line_and_what_was_expected) {
+    const std::string disk = head + "disks = [[0, 0, 1]]\n";
+    const std::string cell = disk + "[cell]\nmoves = [\"x\", \"y\"]\n";
+    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, 3]\n", 3, "\"cell.moves\" is missing"));
+    BOOST_TEST(refused(cell, 3, "\"cell.period\" is missing"));
+    BOOST_TEST(refused(cell + "period = [3, 0]\n", 5, "above 0"));
+    BOOST_TEST(refused(cell + "period = [3, \"-sqrt(3)\"]\n", 5, "above 0"));
+    BOOST_TEST(refused(cell + "period = [3]\n", 5, "an array of 2"));
+    BOOST_TEST(refused(cell + "period = [\"none\", \"none\"]\n", 5, "a box has no [cell]"));
+    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, 3]\nmoves = [\"xy\", \"xy\"]\n", 5, "each once"));
+    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, \"none\"]\nmoves = [\"y\"]\n", 5, "that repeats"));
+    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, \"none\"]\nmoves = [\"xy\"]\n", 5, "that repeats"));
+    BOOST_TEST(refused(disk + "[cell]\nperiod = [3, \"none\"]\nmoves = []\ntilt = 1\n", 6, "0, as one axis"));
+    BOOST_TEST(refused(cell + "period = [3, 3]\npin = 1\n", 6, "0 to 0"));
+    // A grain wider than the cell overlaps its own image; exactly as wide is allowed.
+    BOOST_TEST(refused(cell + "period = [\"2 - 1e-30\", 3]\n", 5, "overlaps its own image"));
+    BOOST_TEST(refused(cell + "period = [3, \"sqrt(3) - 1e-30\"]\ntilt = 1\n", 5, "overlaps its own image"));
+    BOOST_TEST(!refused(cell + "period = [2, \"sqrt(3)\"]\ntilt = 1\n", 5, ""));
+    BOOST_TEST(
+        refused(head + "disks = [[100, 0, 1]]\n[cell]\nmoves = []\nperiod = [3, 3]\n", 5, "put it into the cell"));
+    BOOST_TEST(refused(head + "[[disk]]\nx = 0\ny = 0\nr = 1\nfixed = true\n[cell]\nperiod = [3, 3]\nmoves = []\n", 7,
+                       "no fixed disk"));
+    const std::string walls = cell + "period = [3, 3]\n[box]\n";
+    BOOST_TEST(refused(walls + "lower = [\"absent\", \"fixed\"]\n", 7, "y repeats"));
+    BOOST_TEST(refused(walls + "upper = [\"movable\", \"absent\"]\n", 7, "x repeats"));
+    BOOST_TEST(refused(walls + "length = [3, 3]\n", 7, "\"none\" for an absent wall"));
+    BOOST_TEST(refused(cell + "period = [3, 3]\n[load]\ntilt = 1\n", 7, "no tilt of a cell moves"));
+    BOOST_TEST(refused(disk + "[cell]\nmoves = [\"x\"]\nperiod = [3, 3]\n[load]\nwall = [1, 1]\n", 7,
+                       "the period along this axis does not move"));
+    BOOST_TEST(refused(cell + "period = [3, 3]\n[load]\ndisk = [[0, 0, 1]]\n", 7, "0 along y"));
+}
+
 BOOST_AUTO_TEST_CASE(floats_are_read_from_their_source_text) {
     const PackingFile file = parse_packing(head + "disks = [[0.1, 1_000.5, 1e-3], [ -2.5e+1,3.0 , 0.3]]\n", "f");
     BOOST_TEST((file.packing.centre[0][0] == n("1/10")));
@@ -116,7 +148,8 @@ BOOST_AUTO_TEST_CASE(floats_are_read_from_their_source_text) {
 BOOST_AUTO_TEST_CASE(mutated_files_are_refused_or_inspected_and_never_crash) {
     std::mt19937_64 random(17);
     const std::vector<std::string> seeds = {contents("two_disks.toml"), contents("arch.toml"),
-                                            contents("wedged_between_three.toml")};
+                                            contents("wedged_between_three.toml"), contents("cell_two_disks_tie.toml"),
+                                            contents("channel_two_disks_low.toml")};
     const std::string alphabet = "0123456789.-+*/[]\"=,#\n qrst_e\xC3\xA9\t{}";
     int accepted = 0;
     for (int k = 0; k < 3000; ++k) {
@@ -144,23 +177,25 @@ BOOST_AUTO_TEST_CASE(mutated_files_are_refused_or_inspected_and_never_crash) {
 }
 
 BOOST_AUTO_TEST_CASE(each_wrong_expectation_is_reported) {
-    PackingFile file = parse_packing(contents("three_disks_and_a_rattler.toml"), "three");
-    const Inspection inspection = inspected_alone(file.packing);
-    BOOST_REQUIRE(check_expected(inspection, file, "three").empty());
-    for (std::size_t e = 0; e < file.expected.size(); ++e) {
-        PackingFile wrong = file;
-        auto& entry = wrong.expected[e];
-        if (entry.values.empty()) {
-            entry.values.push_back({"0"});
-        } else {
-            entry.values.back().back() = "12345";
+    for (const char* name : {"three_disks_and_a_rattler.toml", "cell_two_disks_tilted.toml"}) {
+        PackingFile file = parse_packing(contents(name), "three");
+        const Inspection inspection = inspected_alone(file.packing);
+        BOOST_REQUIRE(check_expected(inspection, file, "three").empty());
+        for (std::size_t e = 0; e < file.expected.size(); ++e) {
+            PackingFile wrong = file;
+            auto& entry = wrong.expected[e];
+            if (entry.values.empty()) {
+                entry.values.push_back({"0"});
+            } else {
+                entry.values.back().back() = "12345";
+            }
+            const auto messages = check_expected(inspection, wrong, "three");
+            BOOST_TEST(messages.size() == 1u, entry.key);
         }
-        const auto messages = check_expected(inspection, wrong, "three");
-        BOOST_TEST(messages.size() == 1u, entry.key);
+        PackingFile unknown = file;
+        unknown.expected.push_back({"colour", {{"red"}}, 99});
+        BOOST_CHECK_THROW((void)check_expected(inspection, unknown, "three"), Error);
     }
-    PackingFile unknown = file;
-    unknown.expected.push_back({"colour", {{"red"}}, 99});
-    BOOST_CHECK_THROW((void)check_expected(inspection, unknown, "three"), Error);
 }
 
 BOOST_AUTO_TEST_CASE(overlap_is_named_however_small) {
@@ -236,8 +271,8 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
             label[i] = i;
         }
         std::shuffle(label.begin(), label.end(), random);
-        const bool walls = !(packing.walls == isostat::Walls<2>::none());
-        const Number scale = n("7/3"), c = walls ? Number(1) : n("3/5"), s = walls ? Number(0) : n("4/5");
+        const bool turns = packing.walls == isostat::Walls<2>::none() && !packing.cell.any();
+        const Number scale = n("7/3"), c = turns ? n("3/5") : Number(1), s = turns ? n("4/5") : Number(0);
         const auto turned = [&](const Number& x, const Number& y) {
             return std::array<Number, 2>{c * x - s * y, s * x + c * y};
         };
@@ -256,6 +291,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
             }
         }
         other.length = {scale * packing.length[0], scale * packing.length[1]};
+        other.tilt = scale * packing.tilt;
         const Inspection after = inspected_alone(other);
         BOOST_TEST_CONTEXT(path) {
             BOOST_TEST(after.dof_count == before.dof_count);

@@ -6,6 +6,7 @@
 #include <isostat/certificate/certify.hpp>
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
@@ -97,6 +98,26 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_found_again_in_its_cell) {
     BOOST_TEST(std::abs(again.value().packing.length(0) - state.packing.length(0)) < 1e-11);
     BOOST_TEST(std::abs(again.value().packing.length(1) - state.packing.length(1)) < 1e-11);
     soft.cell.period_moves = {true, false};
+    BOOST_CHECK_THROW((void)find_vertex(soft, options, report), Error);
+}
+
+BOOST_AUTO_TEST_CASE(a_vertex_is_found_in_a_channel) {
+    Packing<2> soft = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/channel_16.json").state.packing;
+    for (double& x : soft.q) {
+        x *= 1 - 1e-6;
+    }
+    PreparationOptions options = periodic(16, 1);
+    PreparationReport<2> report;
+    const Result<State<2>> found = find_vertex(soft, options, report);
+    BOOST_REQUIRE_MESSAGE(found.ok(), (found.ok() ? "" : found.failure().message()));
+    const State<2>& state = found.value();
+    BOOST_TEST(state.contacts.size() == 2 * state.packing.radius.size() + 1);
+    BOOST_TEST((certify(state).verdict == Verdict::proved));
+    const auto some = [&](auto holds) { return std::any_of(state.contacts.begin(), state.contacts.end(), holds); };
+    BOOST_TEST(some([](const Contact& c) { return !c.image.is_here(); }));
+    BOOST_TEST(some([](const Contact& c) { return c.kind == ContactKind::upper_wall; }));
+    BOOST_TEST(some([](const Contact& c) { return c.kind == ContactKind::lower_wall; }));
+    soft.cell.period_moves = {false, false};
     BOOST_CHECK_THROW((void)find_vertex(soft, options, report), Error);
 }
 

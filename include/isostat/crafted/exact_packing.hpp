@@ -20,23 +20,28 @@ using exact::Number;
 
 /// Dead external forces, exact.
 struct ExactLoad {
-    std::array<Number, 2> wall{}; ///< inward force on the upper wall of each axis (0 unless that wall is movable)
-    std::vector<Number> disk;     ///< empty, or 2 n components
+    /// Inward force on the upper wall of each axis, or on its period (0 unless it moves).
+    std::array<Number, 2> wall{};
+    std::vector<Number> disk{}; ///< empty, or 2 n components
+    Number tilt{};              ///< as `wall`, on the tilt: positive, it makes the tilt smaller (`Load::shear`)
 };
 
-/// Disks, walls and coordinates as in `Packing<2>`, with exact numbers. Lengths in the user's unit.
+/// Disks, walls, cell and coordinates as in `Packing<2>`, with exact numbers. Lengths in the user's unit.
 struct ExactPacking {
     std::vector<Number> radius;
     std::vector<std::array<Number, 2>> centre;
     std::vector<unsigned char> fixed; ///< empty, or n flags
     Walls<2> walls = Walls<2>::none();
-    std::array<Number, 2> length{}; ///< positions of the upper walls that exist
+    Cell<2> cell;
+    std::array<Number, 2> length{}; ///< positions of the upper walls that exist, and periods
+    Number tilt;                    ///< A_xy of a cell
     std::optional<ExactLoad> load;
 
     [[nodiscard]] int disk_count() const { return static_cast<int>(radius.size()); }
     /// What stands at a coordinate index of `Packing<2>`.
     [[nodiscard]] const Number& coordinate(std::size_t k) const {
-        return k < 2 * centre.size() ? centre[k / 2][k % 2] : length[k - 2 * centre.size()];
+        const std::size_t lengths = 2 * centre.size();
+        return k < lengths ? centre[k / 2][k % 2] : (k < lengths + 2 ? length[k - lengths] : tilt);
     }
     [[nodiscard]] bool is_fixed(int disk) const { return !fixed.empty() && fixed[static_cast<std::size_t>(disk)] != 0; }
 };
@@ -49,9 +54,11 @@ Packing<2> approximate(const ExactPacking& packing);
 
 /// Every pair at gap exactly 0, sorted. The sign of each gap is decided: that of |x_j - x_i|^2 - (R_i + R_j)^2, by
 /// double enclosures where they exclude 0 and in the field otherwise. Pairs without a degree of freedom (two fixed
-/// disks, a fixed disk and a fixed wall) may touch without being contacts, but not overlap (proofs/definition.md).
-/// `overlap` names the first overlapping pair with its squared-distance defect. Cost: sweep along x, O(n sqrt n) pairs
-/// for a compact packing.
+/// disks, a fixed disk and a fixed wall, a disk and its own image in a cell that does not move) may touch without being
+/// contacts, but not overlap (proofs/definition.md). `overlap` names the first overlapping pair with its
+/// squared-distance defect. In a cell: pairs with every image, as near as `near_pairs` finds them in the rounded
+/// packing (proofs/cells.md, C3); throws `Error(bad_input)` where it does. Cost: sweep along x, O(n sqrt n) pairs for a
+/// compact packing.
 Result<std::vector<Contact>> exact_contacts(const ExactPacking& packing);
 
 /// The contact matrix H in the field, rows = degrees of freedom, unit normals: at a contact the distance of the centres
@@ -88,8 +95,15 @@ struct ExpectedEntry {
 ///     lower  = ["fixed", "fixed"]                  # or "absent"
 ///     upper  = ["movable", "movable"]              # or "fixed", "absent"
 ///
+///     [cell]                                       # optional: axes that repeat; along the others [box] has walls
+///     period = [2, "sqrt(3)"]                      # "none" along an axis that does not repeat
+///     tilt   = 1                                   # optional, 0: x of the second period
+///     moves  = ["x", "y", "xy"]                    # the periods and the tilt that are degrees of freedom
+///     pin    = 0                                   # optional: the disk that stays where it is
+///
 ///     [load]                                       # optional
-///     wall = [1, 1]                                # inward forces on the right and top wall
+///     wall = [1, 1]                                # inward forces on the right and top wall, or on the periods
+///     tilt = "1/2"                                 # the same on the tilt
 ///     disk = [[0, 0, -1]]                          # disk, F_x, F_y
 ///
 ///     [expected]                                   # optional: see `check_expected`
@@ -102,8 +116,8 @@ struct PackingFile {
 };
 
 /// Throws `Error(bad_input)` with file, line, key, the value found and what was expected: syntax, unknown keys, missing
-/// keys, wrong types, radii that are not positive, lengths that are not positive, forces on walls that cannot move.
-/// Overlaps are found by `exact_contacts`, not here.
+/// keys, wrong types, radii that are not positive, lengths that are not positive, forces on walls that cannot move,
+/// disks wider than a period or far outside the cell. Overlaps are found by `exact_contacts`, not here.
 PackingFile parse_packing(const std::string& text, const std::string& source);
 
 /// The same from a file. Throws `Error(bad_input)` when it cannot be read.

@@ -5,7 +5,9 @@
 #include <isostat/core/verdict.hpp>
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/exact/kernel.hpp>
+#include <isostat/rigidity/counting.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +62,10 @@ struct Inspection {
     /// coordinates need not be tangent disks.
     Verdict special_position = Verdict::undecided;
 
+    /// Where every axis is periodic: the same counts for each way to strain the cell, whatever moves of this one, with
+    /// every pair that touches as a contact.
+    std::optional<StrainCounts> strains;
+
     Verdict bases_exact = Verdict::undecided;       ///< `proved`: the two bases are complete and verified in the field
     std::vector<std::vector<Number>> self_stresses; ///< h vectors of N forces (unit normals)
     std::vector<std::vector<Number>> motions;       ///< k vectors of N_f velocities (rigid motions included)
@@ -103,7 +109,7 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
 /// force differs from the true one by the factor 1 + gap / (R_i + R_j)), and says nothing of a true configuration near
 /// it; gaps and overlaps are not looked at. Without a load, full rank costs one elimination; forces of generic 53-bit
 /// coordinates have thousands of digits (some 10 s at 100 disks).
-Inspection inspect_contacts(const ExactPacking& packing, std::vector<Contact> contacts,
+Inspection inspect_contacts(const ExactPacking& packing, const std::vector<Contact>& contacts,
                             const InspectionLimits& limits = {});
 
 /// Lines for a terminal.
@@ -116,7 +122,8 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing);
 
 /// Compares with `[expected]`; one message per entry that does not hold, empty = all hold. Keys: N_f, N, rank, h, k,
 /// rigid_motions, generic_rank, special, verdict, contacts = ["0-1", "0-left", ..], forces = [["0-1", "1/2"], ..] (any
-/// subset; they must be unique), rattlers = [3], bridges, without_force, one_sign, support, second_order, stable.
+/// subset; they must be unique), strains = [["isotropic", N_f, N, h, k], ..], rattlers = [3], bridges, without_force,
+/// one_sign, support, second_order, stable.
 /// Throws `Error(bad_input)` with file and line for an unknown key.
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source);

@@ -144,10 +144,11 @@ template <int Dim> struct PreparationReport {
 /// tests/bench/preparation.cpp; the dynamics takes most of it.
 template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report);
 
-/// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or in a
-/// periodic cell whose periods move (small overlaps are allowed). In the cell the disk with the most overlaps or
-/// contacts is pinned, and N_f = 2n, or 2n + 1 with a tilt that moves; no shear stress is on it. A tilt that does not
-/// move changes only where overlaps need a dilation of everything.
+/// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or with
+/// periods that move instead of them along one axis (a channel) or both (small overlaps are allowed). In a cell the
+/// disk with the most overlaps or contacts is pinned, and N_f = 2n + 1 in a channel, 2n with two periods, 2n + 1 with a
+/// tilt that moves; no shear stress is on it. A tilt that does not move changes only where overlaps need a dilation of
+/// everything.
 ///
 /// Sequential linear programming: minimise F1 dLx + F2 dLy - eps g.dx, with F1 = sigma_1 Ly, F2 = sigma_2 Lx of the
 /// current box, subject to h_l + n_l.(dx_j - dx_i) >= 0 for *all* pairs that a step within the trust bounds can bring

@@ -1,0 +1,204 @@
+// Crafted packings in cells: contacts through images, and what may not matter for them.
+
+#include "examples.hpp"
+
+#include <isostat/crafted/inspection.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <algorithm>
+#include <random>
+#include <string>
+
+BOOST_AUTO_TEST_SUITE(crafted_cells)
+
+namespace {
+
+using namespace isostat::crafted;
+using isostat::Contact;
+using isostat::StrainCounts;
+using isostat::Verdict;
+
+Number n(const std::string& text) {
+    return Number::parse(text);
+}
+
+ExactPacking example(const std::string& name) {
+    return read_packing(std::string(ISOSTAT_EXAMPLES) + "/packings/" + name).packing;
+}
+
+Inspection inspected(const ExactPacking& packing) {
+    const auto result = inspect(packing);
+    BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? "" : result.failure().message()));
+    return result.value();
+}
+
+/// x_j - x_i + A m for every m of a few periods, compared with the sum of the radii.
+std::vector<Contact> by_force(const ExactPacking& packing, int most) {
+    std::vector<Contact> out;
+    const bool x = packing.cell.periodic[0], y = packing.cell.periodic[1];
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        for (int j = i; j < packing.disk_count(); ++j) {
+            const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+            for (int m = x ? -most : 0; m <= (x ? most : 0); ++m) {
+                for (int p = y ? -most : 0; p <= (y ? most : 0); ++p) {
+                    const isostat::Image image{{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}};
+                    const Number dx = packing.centre[b][0] - packing.centre[a][0] + Number(m) * packing.length[0] +
+                                      Number(p) * packing.tilt;
+                    const Number dy = packing.centre[b][1] - packing.centre[a][1] + Number(p) * packing.length[1];
+                    const Number d = packing.radius[a] + packing.radius[b];
+                    if ((i != j || image > isostat::Image{}) && (dx * dx + dy * dy - d * d).is_zero()) {
+                        out.push_back(isostat::pair_of(i, j, image));
+                    }
+                }
+            }
+        }
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+std::vector<std::string> sorted(const std::vector<Number>& numbers) {
+    std::vector<std::string> out;
+    for (const Number& number : numbers) {
+        out.push_back(number.text());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+bool same(const StrainCounts& a, const StrainCounts& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), [](const isostat::Counting& one, const isostat::Counting& other) {
+        return one.dof_count == other.dof_count && one.contact_count == other.contact_count && one.rank == other.rank &&
+               one.rank_exact == other.rank_exact;
+    });
+}
+
+/// The disk at another of its images.
+void move(ExactPacking& packing, std::size_t disk, int m, int p) {
+    packing.centre[disk][0] += Number(m) * packing.length[0] + Number(p) * packing.tilt;
+    packing.centre[disk][1] += Number(p) * packing.length[1];
+}
+
+} // namespace
+
+// Any representatives and any pin: a gauge. All contacts are found, wherever the disks are stored.
+BOOST_AUTO_TEST_CASE(representatives_and_the_pinned_disk_do_not_matter) {
+    std::mt19937_64 random(3);
+    int cells = 0;
+    for (const std::string& path : packing_files()) {
+        const ExactPacking packing = read_packing(path).packing;
+        if (!packing.cell.any()) {
+            continue;
+        }
+        ++cells;
+        const Inspection before = inspected(packing);
+        for (int k = 0; k < 3; ++k) {
+            ExactPacking other = packing;
+            for (std::size_t i = 0; i < other.radius.size(); ++i) {
+                const auto periods = [&](bool repeats) { return repeats ? static_cast<int>(random() % 5) - 2 : 0; };
+                const int m = periods(packing.cell.periodic[0]);
+                move(other, i, m, periods(packing.cell.periodic[1]));
+            }
+            other.cell.pin = static_cast<int>(random() % other.radius.size());
+            const Inspection after = inspected(other);
+            BOOST_TEST_CONTEXT(path) {
+                std::vector<Contact> pairs;
+                for (const Contact& contact : after.contacts) {
+                    if (contact.kind == isostat::ContactKind::disk_disk) {
+                        pairs.push_back(contact);
+                    }
+                }
+                BOOST_TEST((pairs == by_force(other, 7)));
+                BOOST_TEST(after.rank == before.rank);
+                BOOST_TEST(after.generic_rank == before.generic_rank);
+                BOOST_TEST((after.hold == before.hold));
+                BOOST_TEST((after.stable == before.stable));
+                BOOST_TEST((after.second_order == before.second_order));
+                BOOST_TEST(after.strains.has_value() == packing.cell.all());
+                BOOST_TEST((!after.strains || same(*after.strains, *before.strains)));
+                if (before.forces_unique) {
+                    BOOST_TEST((sorted(after.forces) == sorted(before.forces)));
+                }
+            }
+        }
+    }
+    BOOST_TEST(cells >= 13);
+}
+
+// The second period vector plus the first one: the same lattice. W = F1 L + F2 L' + T t, and t is t' - L.
+BOOST_AUTO_TEST_CASE(another_basis_of_the_lattice_gives_the_same_forces) {
+    for (const char* name : {"cell_two_disks_tilted.toml", "cell_one_disk_tilted.toml", "cell_two_disks_tie.toml"}) {
+        const ExactPacking packing = example(name);
+        ExactPacking other = packing;
+        other.tilt += packing.length[0];
+        other.load->wall[0] -= packing.load->tilt;
+        const Inspection before = inspected(packing), after = inspected(other);
+        BOOST_TEST((after.contacts != before.contacts));
+        BOOST_TEST((sorted(after.forces) == sorted(before.forces)));
+        BOOST_TEST((after.support == before.support));
+        BOOST_TEST(same(*after.strains, *before.strains));
+    }
+}
+
+// T7 is false in rectangles, for an open set of radii: X = 4/5 D, Y = 3/5 D, both larger than the radii.
+BOOST_AUTO_TEST_CASE(two_disks_of_a_centred_rectangle_bear_a_shear_whatever_their_radii) {
+    for (const char* r : {"1", "9/10", "7/10", "sqrt(1/2)", "0.99999"}) {
+        ExactPacking packing = example("counterexample_t7_centred_rectangle.toml");
+        packing.radius[1] = n(r);
+        const Number d = Number(1) + n(r);
+        packing.centre[1] = {n("4/5") * d, n("3/5") * d};
+        packing.length = {n("8/5") * d, n("6/5") * d};
+        const Inspection rectangle = inspected(packing);
+        BOOST_TEST(rectangle.hyperstaticity == 1);
+        BOOST_TEST(rectangle.mechanisms == 1);
+        BOOST_TEST((rectangle.special_position == Verdict::proved));
+        packing.cell.tilt_moves = {true};
+        const Inspection tilted = inspected(packing);
+        BOOST_TEST(tilted.hyperstaticity == 0);
+        BOOST_TEST((tilted.rank_exact == Verdict::proved));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_force_vanishes_at_the_load_that_the_closed_form_says) {
+    ExactPacking packing = example("cell_one_disk_tilted.toml");
+    packing.load->tilt = n("1"); // F2 / sqrt(3)
+    BOOST_TEST((inspected(packing).support == Support::with_zeros));
+    packing.load->tilt = n("1 + 1e-40");
+    BOOST_TEST((inspected(packing).stable == Verdict::refuted));
+    packing.load->tilt = n("-1 + 1e-40"); // the other contact
+    BOOST_TEST((inspected(packing).support == Support::positive));
+}
+
+BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_named_however_small) {
+    for (const char* depth : {"1e-3", "1e-16", "1e-200"}) {
+        ExactPacking packing = example("channel_two_disks_low.toml");
+        packing.length[0] = n(std::string("4*sqrt(2) - ") + depth); // disk 1 stays where it touches disk 0
+        const auto overlap = exact_contacts(packing);
+        BOOST_REQUIRE(!overlap.ok());
+        BOOST_TEST(overlap.failure().message().find("pair 0-1(-1,0)") != std::string::npos);
+        packing.length[0] = n(std::string("4*sqrt(2) + ") + depth);
+        BOOST_TEST(exact_contacts(packing).value().size() == 4U);
+        // A disk and its own image one period away, askew.
+        packing = example("cell_one_disk_tilted.toml");
+        packing.tilt = n(std::string("1 - ") + depth);
+        const auto own = exact_contacts(packing);
+        BOOST_REQUIRE(!own.ok());
+        BOOST_TEST(own.failure().message().find("pair 0-0(0,1)") != std::string::npos);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_stored_state_has_the_counts_of_its_stored_numbers) {
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        const isostat::State<2> state =
+            isostat::read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+        const Inspection exact = inspect_contacts(exact_copy(state.packing), state.contacts);
+        const StrainCounts stored = isostat::count_strains(state.packing, state.contacts);
+        BOOST_REQUIRE(exact.strains.has_value());
+        BOOST_TEST(same(*exact.strains, stored));
+        BOOST_TEST(exact.rank == static_cast<int>(state.contacts.size()));
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -150,8 +150,7 @@ class Walk {
                 continue;
             }
             if (met.end) {
-                Followed there = arrive(next, *met.end);
-                return there.end ? there : arrive_slowly();
+                return nearer(arrive(next, *met.end));
             }
             if (!turns_ && (passes(next) || dips(next))) {
                 if (Followed there = arrive_slowly(); there.end) {
@@ -275,6 +274,19 @@ class Walk {
             return {};
         }
         return {false, before > 0 ? before / (before - after) : 1, {}};
+    }
+
+    /// Two ends may be near each other: the one that moved as far as the record says.
+    [[nodiscard]] Followed nearer(Followed there) const {
+        const auto off = [this](const Followed& end) {
+            return end.end ? std::abs(displacement(*end.end) - motion_.displacement)
+                           : std::numeric_limits<double>::infinity();
+        };
+        if (off(there) <= 1e-6 * motion_.displacement) {
+            return there;
+        }
+        Followed other = arrive_slowly();
+        return off(other) < off(there) ? other : there;
     }
 
     /// For the first time so far as the record says: a gap that grazes is 0 nowhere.

@@ -134,8 +134,20 @@ template <int Dim> LadderOptions Prover<Dim>::ladder() const {
 template <int Dim>
 Result<OpeningDecision> Prover<Dim>::decide(Vertex<Dim>& vertex, double stress, const ZeroHolds& zero,
                                             long step) const {
-    return decide_opening(vertex.statics, stress, options_->rule, zero, bits_for(options_->rule_seed, step),
-                          vertex.first_order());
+    auto decision = decide_opening(vertex.statics, stress, options_->rule, zero, bits_for(options_->rule_seed, step),
+                                   vertex.first_order());
+    if (!decision.ok() || !decision.value().opening) {
+        return decision;
+    }
+    Opening& opening = *decision.value().opening;
+    Statics<Dim>& statics = vertex.statics;
+    if (statics.structure().contacts()[opening.contact.index()].kind != ContactKind::held) {
+        while (says_too_little(statics, opening.force, stress, opening.infinitesimal) && statics.climb()) {
+            opening.force =
+                opening.infinitesimal ? statics.infinitesimal(opening.contact) : statics.force(opening.contact, stress);
+        }
+    }
+    return decision;
 }
 
 template <int Dim>

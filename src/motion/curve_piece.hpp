@@ -52,6 +52,7 @@ template <int Dim> class CurvePiece : public CurvePolynomial<Dim> {
   private:
     void bound_coefficients();
     void bound_coefficients_of(std::size_t l);
+    void shift_residual_of(std::size_t l);
     void shorten_reach();
     /// |sum_k s^k (difference of a_k)| / D of every kept disk contact, for all |s| <= h.
     [[nodiscard]] std::vector<double> stretch(double h) const;
@@ -73,7 +74,10 @@ template <int Dim> class CurvePiece : public CurvePolynomial<Dim> {
     [[nodiscard]] std::vector<double> away(const std::vector<double>& x, double s) const;
 
     std::vector<double> relative_; ///< |difference of a_k over contact l|, K per contact (rounded)
-    std::vector<double> residual_; ///< bound of coefficient k = 0 ... 2K of F_l along p
+    std::vector<double> residual_; ///< bound of coefficient k = 0 ... 2K of F_l along p + a_0
+    std::vector<double> shifted_;  ///< |difference of a_0 over contact l|
+    double shift_norm_ = 0;        ///< |a_0|
+    double rounded_ = 0;           ///< sum of the squares of what the centre misses
     double reach_ = 0;
     double proved_ = 0;
     double radius_ = 0;

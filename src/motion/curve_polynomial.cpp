@@ -4,6 +4,7 @@
 #include "core/roundoff.hpp"
 #include "motion/common_grid.hpp"
 #include "motion/geometry.hpp"
+#include "motion/shifted_gap.hpp"
 #include "verified/vertex_bounds.hpp"
 
 #include <algorithm>
@@ -102,10 +103,29 @@ template <int Dim> void CurvePolynomial<Dim>::choose_reach(const std::vector<std
     reach_ = turning > 0 ? std::min(share / (inverse_ * turning), longest) : longest;
 }
 
+/// One step of Newton's method from the centre, with gaps in double-double.
+template <int Dim> void CurvePolynomial<Dim>::find_shift() {
+    std::vector<double> rhs(curve_->contacts.size(), 0.0);
+    for (std::size_t l = 0; l < rhs.size(); ++l) {
+        if (l != curve_->slot) {
+            rhs[l] = shifted_equation<Dim>(*curve_->start, centre(), curve_->contacts[l], {}).value;
+        }
+    }
+    shift_ = solved(std::move(rhs));
+    if (largest(shift_) < infinity) {
+        put_on_grid(shift_);
+    } else {
+        shift_.clear();
+    }
+}
+
 /// Coefficient k of |d|^2 = D^2 along p: 2 line . a_k + sum of a_i . a_(k-i) = 0 over every kept disk contact.
 template <int Dim> void CurvePolynomial<Dim>::expand() {
     if (!first_coefficient()) {
         return;
+    }
+    if (centre().cell.any()) {
+        find_shift();
     }
     const auto& contacts = curve_->contacts;
     const std::size_t n = contacts.size();

@@ -44,10 +44,14 @@ template <int Dim> class CurvePolynomial {
     [[nodiscard]] const Factorisation& factorisation() const { return at_->factorisation(); }
     /// a_1 ... a_K on all coordinates (0 at rest). In a cell on a grid of their own: separations of them are exact.
     [[nodiscard]] const std::vector<std::vector<double>>& coefficients() const { return a_; }
+    /// a_0: p + a_0 meets the equations at s = 0 far better than the centre, which is rounded to a grid. Of cells,
+    /// whose grid is coarse; empty: 0.
+    [[nodiscard]] const std::vector<double>& shift() const { return shift_; }
 
   private:
     [[nodiscard]] std::vector<double> solved(std::vector<double> rhs) const;
     void expand();
+    void find_shift();
     bool first_coefficient();
     void choose_reach(const std::vector<std::array<double, Dim>>& first);
 
@@ -57,6 +61,7 @@ template <int Dim> class CurvePolynomial {
     double inverse_ = 0;
     GapGradient<Dim> row_;
     std::vector<std::vector<double>> a_;
+    std::vector<double> shift_;
     double reach_ = 0;
 };
 

@@ -1,4 +1,5 @@
 // Tubes against a curve that is known: the centre of a unit disk on a fixed one moves on the circle of radius 2.
+#include "contact/separation.hpp"
 #include "motion/curve_piece.hpp"
 #include "motion/gap_watch.hpp"
 #include "motion/power_watch.hpp"
@@ -298,6 +299,90 @@ BOOST_AUTO_TEST_CASE(a_power_of_the_polynomial_within_its_error_proves_nothing) 
         ArcCertificate certificate;
         watch.conclude(certificate, false);
         BOOST_TEST((certificate.power == Verdict::proved) == (turn != 0));
+    }
+}
+
+/// Newton's method in long double from `q` to a root of the equations of all contacts but one, whose row stays.
+void to_the_curve(const KeptCurve<2>& curve, const ArcCentre<2>& centre, std::vector<long double>& q) {
+    const auto minus = [](long double a, long double b) -> long double { return a - b; };
+    const DofMap<2>& dofs = centre.structure().dofs();
+    for (int round = 0; round < 8; ++round) {
+        std::vector<double> step(curve.contacts.size(), 0.0);
+        for (std::size_t l = 0; l < step.size(); ++l) {
+            const Contact& c = curve.contacts[l];
+            if (l == curve.slot) {
+                continue;
+            }
+            const auto r = Separation<2>(c, static_cast<int>(centre.packing().radius.size()))
+                               .of_disks([&](std::size_t k) { return q[k]; }, minus);
+            const auto& radius = centre.packing().radius;
+            const long double d =
+                static_cast<long double>(radius[static_cast<std::size_t>(c.i)]) + radius[static_cast<std::size_t>(c.j)];
+            step[l] = static_cast<double>((r[0] * r[0] + r[1] * r[1] - d * d) / (2 * d));
+        }
+        centre.factorisation().solve_velocities(step);
+        for (std::size_t mu = 0; mu < step.size(); ++mu) {
+            q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];
+        }
+    }
+}
+
+// The tube is around p + a_0, and its radius is counted from p: neither may be forgotten.
+BOOST_AUTO_TEST_CASE(the_true_curve_of_a_cell_lies_in_the_tube_of_a_shifted_polynomial) {
+    for (const char* name : {"tilt_16", "rect_16"}) {
+        for (const double off : {0.0, 0x1p-30, 0x1p-15}) { // how far the centre is from the curve, besides its rounding
+            State<2> state = read_any_state<2>(std::string(ISOSTAT_TEST_DATA) + "/cells/" + name + ".json").state;
+            for (std::size_t k = 2; k < state.packing.q.size(); k += 3) {
+                state.packing.q[k] += off;
+            }
+            snap_to_grid(state.packing);
+            const std::size_t slot = 3;
+            InverseBoundCache cache;
+            const auto centre = ArcCentre<2>::make(state.packing, state.contacts, cache);
+            BOOST_TEST_REQUIRE((centre != nullptr));
+            const KeptCurve<2> curve(state.packing, state.contacts, slot, 0.0);
+            CurvePiece<2> piece(curve, *centre, 1);
+            BOOST_TEST_REQUIRE(piece.shift().size() == state.packing.q.size());
+            double shift = 0;
+            for (const double x : piece.shift()) {
+                shift += x * x;
+            }
+            shift = std::sqrt(shift);
+            for (const double part : {1.0, 0.05, 1e-7}) {
+                const double h = part * piece.natural_reach();
+                BOOST_TEST_REQUIRE(piece.prove(h));
+                double farthest = 0, shifted = 0;
+                for (const double share : {-1.0, -0.4, 0.0, 0.3, 1.0}) {
+                    std::vector<long double> p(state.packing.q.begin(), state.packing.q.end());
+                    std::vector<long double> q = p;
+                    for (std::size_t k = 0; k < p.size(); ++k) {
+                        long double sum = 0;
+                        for (std::size_t order = piece.coefficients().size(); order > 0; --order) {
+                            sum = (sum + piece.coefficients()[order - 1][k]) * (share * h);
+                        }
+                        p[k] += sum;
+                        q[k] += sum + piece.shift()[k];
+                    }
+                    const std::vector<long double> middle = q;
+                    to_the_curve(curve, *centre, q);
+                    long double square = 0, around = 0;
+                    for (std::size_t k = 0; k < p.size(); ++k) {
+                        square += (q[k] - p[k]) * (q[k] - p[k]);
+                        around += (q[k] - middle[k]) * (q[k] - middle[k]);
+                    }
+                    const double rounding = 1e-17; // of long double at 16
+                    BOOST_TEST(static_cast<double>(std::sqrt(square)) <= piece.radius() + rounding);
+                    BOOST_TEST(static_cast<double>(std::sqrt(around)) <= piece.radius() - shift + rounding);
+                    farthest = std::max(farthest, static_cast<double>(std::sqrt(square)));
+                    shifted = std::max(shifted, static_cast<double>(std::sqrt(around)));
+                }
+                // The reach is such that p + a_0 misses the equations by a sixteenth of what the centre does; near the
+                // centre by next to nothing, what remains is a_0.
+                const double loose = part < 1 ? 1.05 : 4;
+                BOOST_TEST(piece.radius() < loose * farthest + 1e-13, piece.radius() << " for " << farthest);
+                BOOST_TEST(shifted < 0.1 * farthest, shifted << " of " << farthest);
+            }
+        }
     }
 }
 

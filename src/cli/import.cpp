@@ -193,7 +193,9 @@ ReadPacking read_imported(ImportArguments& a, bool crafted, bool own) {
     if (file.packing.cell.any() && !crafted) {
         set_cell(a, own, file.packing);
     } else {
-        take_cell({a.file, a.cell}, file.packing);
+        if (!crafted) { // a crafted packing says what moves
+            take_cell({a.file, a.cell}, file.packing);
+        }
         a.contacts = a.contacts.empty() ? "plateau" : a.contacts;
     }
     return file;

@@ -1,4 +1,5 @@
 #include "crafted/hold.hpp"
+#include "crafted/jamming.hpp"
 #include "crafted/rigid_motions.hpp"
 #include "crafted/second_order.hpp"
 #include "rigidity/strained_matrix.hpp"
@@ -283,6 +284,7 @@ Result<Inspection> inspect(const ExactPacking& packing, const InspectionLimits& 
     Inspection out = Inspector(packing, limits, std::move(contacts.value())).run();
     if (packing.cell.all()) {
         out.strains = exact_strains(packing, exact_contacts(loose_cell(packing)).value());
+        out.jamming = judge_jamming(packing, out.hold, limits);
     }
     return out;
 }

@@ -50,6 +50,11 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
                                                      {"h", c.hyperstaticity}, {"k", c.mechanisms}};
         }
     }
+    if (inspection.jamming) {
+        out["jammed"] = {{"disks", inspection.jamming->disks},
+                         {"collective", to_string(inspection.jamming->collective)},
+                         {"strict", to_string(inspection.jamming->strict)}};
+    }
     out["contacts"] = contacts;
     out["hold"] = Json::array();
     for (const DiskHold hold : inspection.hold) {

@@ -137,6 +137,11 @@ class InspectionTable {
             line(to_string(strains[k]), fmt::format("N_f = {}, N = {}, h = {}{}, k = {}{}", c.dof_count,
                                                     c.contact_count, bound, c.hyperstaticity, bound, c.mechanisms));
         }
+        if (inspection_.jamming) {
+            const std::string of = fmt::format(" ({} disks that are no rattlers)", inspection_.jamming->disks);
+            line("jammed collectively", std::string(to_string(inspection_.jamming->collective)) + of);
+            line("jammed strictly", std::string(to_string(inspection_.jamming->strict)) + of);
+        }
     }
 
     void grains() {
@@ -227,12 +232,15 @@ class Comparison {
         } else {
             bad(entry, "a known key: N_f, N, rank, h, k, rigid_motions, generic_rank, special, verdict, contacts, "
                        "forces, strains, rattlers, bridges, without_force, structural_zeros, "
-                       "one_sign, support, second_order or stable");
+                       "jammed_collectively, jammed_strictly, one_sign, support, second_order or stable");
         }
     }
     [[nodiscard]] std::vector<std::string> mismatches() && { return std::move(out_); }
 
   private:
+    static std::string jammed(const Inspection& inspection, Verdict Jamming::*how) {
+        return inspection.jamming ? std::string(to_string(*inspection.jamming.*how)) : "no cell whose axes all repeat";
+    }
     static std::map<std::string, std::string> words(const Inspection& inspection) {
         // A count that is only a bound matches nothing.
         const auto count = [&](int value) {
@@ -252,6 +260,8 @@ class Comparison {
             {"support", to_string(inspection.support)},
             {"second_order", to_string(inspection.second_order)},
             {"stable", std::string(to_string(inspection.stable))},
+            {"jammed_collectively", jammed(inspection, &Jamming::collective)},
+            {"jammed_strictly", jammed(inspection, &Jamming::strict)},
         };
     }
 

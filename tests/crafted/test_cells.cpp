@@ -117,6 +117,11 @@ BOOST_AUTO_TEST_CASE(representatives_and_the_pinned_disk_do_not_matter) {
                 BOOST_TEST((after.stable == before.stable));
                 BOOST_TEST((after.second_order == before.second_order));
                 BOOST_TEST(after.strains.has_value() == packing.cell.all());
+                if (after.jamming) {
+                    BOOST_TEST(after.jamming->disks == before.jamming->disks);
+                    BOOST_TEST((after.jamming->collective == before.jamming->collective));
+                    BOOST_TEST((after.jamming->strict == before.jamming->strict));
+                }
                 BOOST_TEST((!after.strains || same(*after.strains, *before.strains)));
                 if (before.forces_unique) {
                     BOOST_TEST((sorted(after.forces) == sorted(before.forces)));
@@ -187,6 +192,34 @@ BOOST_AUTO_TEST_CASE(an_overlap_with_an_image_is_named_however_small) {
         BOOST_REQUIRE(!own.ok());
         BOOST_TEST(own.failure().message().find("pair 0-0(0,1)") != std::string::npos);
     }
+}
+
+// Triangular lattice with a hole: its neighbours still carry, and a small disk in the hole is a rattler.
+BOOST_AUTO_TEST_CASE(rattlers_are_left_out_of_what_is_jammed) {
+    ExactPacking packing;
+    packing.cell.periodic = {true, true};
+    packing.length = {Number(8), n("4*sqrt(3)")};
+    for (int row = 0; row < 4; ++row) {
+        for (int k = 0; k < 4; ++k) {
+            packing.centre.push_back({Number(2 * k + row % 2), Number(row) * n("sqrt(3)")});
+            packing.radius.emplace_back(row == 1 && k == 1 ? n("1/2") : Number(1));
+        }
+    }
+    const Inspection hole = inspected(packing);
+    BOOST_TEST(hole.jamming->disks == 15);
+    BOOST_TEST((hole.jamming->collective == Verdict::proved));
+    BOOST_TEST((hole.jamming->strict == Verdict::proved));
+    // The pinned disk may be the rattler.
+    packing.cell.pin = 5;
+    BOOST_TEST((inspected(packing).jamming->strict == Verdict::proved));
+    // A dilated cell: nothing touches.
+    packing.length[0] = Number(9);
+    for (auto& centre : packing.centre) {
+        centre[0] *= n("9/8");
+        centre[1] *= Number(2);
+    }
+    packing.length[1] *= Number(2);
+    BOOST_TEST((inspected(packing).jamming->collective == Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_CASE(a_stored_state_has_the_counts_of_its_stored_numbers) {

@@ -41,6 +41,15 @@ const char* to_string(Support support);
 const char* to_string(SecondOrder answer);
 const char* to_string(exact::OneSign sign);
 
+/// Whether a packing in a cell is jammed, of its disks that are not rattlers by the position of the normals
+/// (proofs/cells.md, C12): `collective`: they cannot move in the fixed cell, but for a translation of all; `strict`:
+/// nor together with the cell, without making its area larger. `undecided`: the limits were reached.
+struct Jamming {
+    int disks = 0;
+    Verdict collective = Verdict::undecided;
+    Verdict strict = Verdict::undecided;
+};
+
 struct InspectionLimits {
     exact::KernelLimits kernel{};
     long long programme_cells = 20000; ///< (rows + 1) * columns beyond which no system of inequalities is solved
@@ -65,6 +74,7 @@ struct Inspection {
     /// Where every axis is periodic: the same counts for each way to strain the cell, whatever moves of this one, with
     /// every pair that touches as a contact.
     std::optional<StrainCounts> strains;
+    std::optional<Jamming> jamming; ///< there too, of `inspect` (not `inspect_contacts`)
 
     Verdict bases_exact = Verdict::undecided;       ///< `proved`: the two bases are complete and verified in the field
     std::vector<std::vector<Number>> self_stresses; ///< h vectors of N forces (unit normals)
@@ -123,7 +133,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing);
 /// Compares with `[expected]`; one message per entry that does not hold, empty = all hold. Keys: N_f, N, rank, h, k,
 /// rigid_motions, generic_rank, special, verdict, contacts = ["0-1", "0-left", ..], forces = [["0-1", "1/2"], ..] (any
 /// subset; they must be unique), strains = [["isotropic", N_f, N, h, k], ..], rattlers = [3], bridges, without_force,
-/// one_sign, support, second_order, stable.
+/// jammed_collectively, jammed_strictly, one_sign, support, second_order, stable.
 /// Throws `Error(bad_input)` with file and line for an unknown key.
 std::vector<std::string> check_expected(const Inspection& inspection, const PackingFile& file,
                                         const std::string& source);

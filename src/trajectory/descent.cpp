@@ -178,8 +178,8 @@ template <int Dim> Enclosure work_between(const Vertex<Dim>& from, const Vertex<
 }
 
 template <int Dim>
-Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
-                             bool infinitesimal) {
+Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load, bool infinitesimal,
+                             double wanted) {
     assert(has_potential(load, infinitesimal));
     const bool phi = load.kind == LoadKind::true_stress && !infinitesimal;
     const auto between = [&](const Place<Dim>& a, const Place<Dim>& b) {
@@ -188,7 +188,7 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
     static const std::vector<double> none;
     const Enclosure rough = between(Place<Dim>{from.packing.q, none, from.enclosure.distance()},
                                     Place<Dim>{to.packing.q, none, to.enclosure.distance()});
-    if (rough.decided()) {
+    if (rough.decided() && rough.radius <= wanted) {
         return rough;
     }
     const auto nearer = [](const Vertex<Dim>& v) {
@@ -208,6 +208,6 @@ Enclosure potential_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, con
 template Enclosure work_between<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&);
 template WorkOfArc work_of<2>(const Load<2>&, const Packing<2>&, const Packing<2>&);
 template bool has_potential<2>(const Load<2>&, bool);
-template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool);
+template Enclosure potential_decrease<2>(const Vertex<2>&, const Vertex<2>&, const Load<2>&, bool, double);
 
 } // namespace isostat

@@ -18,8 +18,23 @@ namespace {
 /// Relative accuracy of forces on the way: what records say of them, and far more than most decisions need.
 constexpr double enough_to_decide = 1e-12;
 
-/// As rounded coordinates tell, with the distance to what is proved of it. `decrease`: of the potential, when the
-/// finite loads decided.
+template <int Dim> double size_of_work(const Load<Dim>& load, const Vertex<Dim>& from) {
+    double size = 0;
+    for (const WallForce& wall : load.wall_forces(from.packing)) {
+        size += std::abs(wall.stress * wall.length * from.packing.q[static_cast<std::size_t>(wall.coordinate)]);
+    }
+    return size;
+}
+
+/// Of the work of an arc under dead loads: a bound that a record should have (`record_tolerance`, proofs/checker.md,
+/// accepts some more).
+template <int Dim> double wanted_bound(const Load<Dim>& load, const Vertex<Dim>& from) {
+    constexpr double enough = 4e-10;
+    return enough * size_of_work(load, from);
+}
+
+/// As rounded coordinates tell, with the distance to what is proved of it; where that is too far, what is proved.
+/// `decrease`: of the potential, when the finite loads decided.
 template <int Dim>
 void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<Dim>& to, const Load<Dim>& load,
                  const std::optional<Enclosure>& decrease) {
@@ -27,9 +42,9 @@ void record_work(ArcRecord<Dim>& record, const Vertex<Dim>& from, const Vertex<D
     if (load.kind == LoadKind::nominal) {
         const Enclosure work = decrease ? *decrease : work_between(from, to, load);
         // Where the sign took many digits: no finer than double-double, which whoever checks the record can confirm.
-        double size = 0;
-        for (const WallForce& wall : load.wall_forces(from.packing)) {
-            size += std::abs(wall.stress * wall.length * from.packing.q[static_cast<std::size_t>(wall.coordinate)]);
+        const double size = size_of_work(load, from);
+        if (std::abs(record.work - work.value) > wanted_bound(load, from)) {
+            record.work = work.value;
         }
         record.work_bound =
             (std::abs(record.work - work.value) + std::max(work.radius, 0x1p-98 * size)) * (1 + 0x1p-50);
@@ -273,7 +288,10 @@ std::optional<Failure> Prover<Dim>::descend(ArcProof<Dim>& proof, const Vertex<D
         proof.record.work = work_of(load, from.packing, to.packing).value;
         return std::nullopt;
     }
-    const Enclosure decrease = potential_decrease(from, to, load, opening.infinitesimal);
+    const bool recorded = load.kind == LoadKind::nominal && !opening.infinitesimal;
+    const Enclosure decrease =
+        potential_decrease(from, to, load, opening.infinitesimal,
+                           recorded ? wanted_bound(load, from) : std::numeric_limits<double>::infinity());
     record_work(proof.record, from, to, load, opening.infinitesimal ? std::nullopt : std::optional(decrease));
     proof.descends = decrease.positive();
     // A way of length O(eps) ends where it began: first-order terms decide there.

@@ -233,8 +233,8 @@ BOOST_AUTO_TEST_CASE(nor_in_periodic_cells) {
 }
 
 // 563: a coordinate is held while a coarser grid moves the pinned disk by a rounding; 1092: it is held after that;
-// 722: sigma2 goes down to 1e-16, which is 0 but for rounding; 7451: stale factors leave the tangent wrong by 3e-5 where
-// the power turns.
+// 722: sigma2 goes down to 1e-16, which is 0 but for rounding; 7451: stale factors leave the tangent wrong by 3e-5
+// where the power turns.
 BOOST_AUTO_TEST_CASE(nor_those_in_cells_that_were_wrong_once) {
     Results results;
     for (const long number : {563, 722, 1092, 7451}) {

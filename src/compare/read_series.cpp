@@ -157,12 +157,7 @@ class Disks {
         }
         const double f = manifest_.length_factor;
         if (manifest_.periodic) {
-            const auto& box = rows.header.box;
-            walls = {box[0] * f, box[2] * f, box[1] * f, box[3] * f};
-            frame.packing.walls = Walls<2>::none();
-            frame.packing.cell.periodic.fill(true);
-            frame.packing.cell.period_moves.fill(true);
-            frame.packing.cell.tilt_moves.fill(manifest_.tilted);
+            walls = bounds_of_cell(rows, frame.packing);
         }
         for (const auto& [number, row] : by_id) {
             const auto disk = frame.ids.size();
@@ -202,6 +197,17 @@ class Disks {
     }
 
   private:
+    /// The bounds of the dump are the cell.
+    std::array<double, 4> bounds_of_cell(const DumpFrame& rows, Packing<2>& packing) const {
+        packing.walls = Walls<2>::none();
+        packing.cell.periodic.fill(true);
+        packing.cell.period_moves.fill(true);
+        packing.cell.tilt_moves.fill(manifest_.tilted);
+        const double f = manifest_.length_factor;
+        const auto& box = rows.header.box;
+        return {box[0] * f, box[2] * f, box[1] * f, box[3] * f};
+    }
+
     /// Walls, or both axes periodic: as the manifest says.
     void check_boundaries(const DumpFrame& rows) const {
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {

@@ -18,6 +18,23 @@ Json entries(const std::vector<Number>& vector, const std::vector<std::string>& 
     return out;
 }
 
+/// What only a periodic cell has.
+void add_cell(const Inspection& inspection, Json& out) {
+    if (inspection.strains) {
+        for (std::size_t k = 0; k < strains.size(); ++k) {
+            const Counting& c = (*inspection.strains)[k];
+            out["strains"][to_string(strains[k])] = {{"N_f", c.dof_count},    {"N", c.contact_count},
+                                                     {"rank", c.rank},        {"rank_exact", to_string(c.rank_exact)},
+                                                     {"h", c.hyperstaticity}, {"k", c.mechanisms}};
+        }
+    }
+    if (inspection.jamming) {
+        out["jammed"] = {{"disks", inspection.jamming->disks},
+                         {"collective", to_string(inspection.jamming->collective)},
+                         {"strict", to_string(inspection.jamming->strict)}};
+    }
+}
+
 } // namespace
 
 std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
@@ -42,19 +59,7 @@ std::string to_json(const Inspection& inspection, const ExactPacking& packing) {
     out["verdict"] = inspection.verdict();
     out["generic_rank"] = inspection.generic_rank;
     out["special"] = to_string(inspection.special_position);
-    if (inspection.strains) {
-        for (std::size_t k = 0; k < strains.size(); ++k) {
-            const Counting& c = (*inspection.strains)[k];
-            out["strains"][to_string(strains[k])] = {{"N_f", c.dof_count},    {"N", c.contact_count},
-                                                     {"rank", c.rank},        {"rank_exact", to_string(c.rank_exact)},
-                                                     {"h", c.hyperstaticity}, {"k", c.mechanisms}};
-        }
-    }
-    if (inspection.jamming) {
-        out["jammed"] = {{"disks", inspection.jamming->disks},
-                         {"collective", to_string(inspection.jamming->collective)},
-                         {"strict", to_string(inspection.jamming->strict)}};
-    }
+    add_cell(inspection, out);
     out["contacts"] = contacts;
     out["hold"] = Json::array();
     for (const DiskHold hold : inspection.hold) {

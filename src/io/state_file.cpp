@@ -188,6 +188,29 @@ void require_balance(const Field& document, const char* name, const std::vector<
     }
 }
 
+/// Shear stresses, and the tilts that shear counts from.
+template <int Dim> void read_tilts(const Field& field, const Packing<Dim>& packing, Load<Dim>& load) {
+    if (field.has("shear")) {
+        const Field shear = field.at("shear");
+        shear.require_size(Cell<Dim>::tilts, "one shear stress per tilt");
+        for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
+            load.shear[t] = shear.at(t).number();
+            if (load.shear[t] != 0 && !packing.cell.tilt_moves[t]) {
+                shear.at(t).fail("0, as that tilt does not move");
+            }
+        }
+    }
+    if (field.has("reference_tilt")) {
+        const Field tilt = field.at("reference_tilt");
+        tilt.require_size(packing.cell.any() ? Cell<Dim>::tilts : 0, "one number per tilt of a periodic cell");
+        for (std::size_t t = 0; t < tilt.size(); ++t) {
+            load.reference_tilt[t] = tilt.at(t).number();
+        }
+    } else if (field.has("reference_length")) {
+        load.reference_tilt.fill(0); // a rectangle
+    }
+}
+
 template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& packing) {
     Load<Dim> load;
     load.stress.fill(1);
@@ -206,25 +229,7 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
                 field.at("kind").fail("\"nominal\" where a tilt moves: true stresses have no potential there");
             }
         }
-        if (field.has("shear")) {
-            const Field shear = field.at("shear");
-            shear.require_size(Cell<Dim>::tilts, "one shear stress per tilt");
-            for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {
-                load.shear[t] = shear.at(t).number();
-                if (load.shear[t] != 0 && !packing.cell.tilt_moves[t]) {
-                    shear.at(t).fail("0, as that tilt does not move");
-                }
-            }
-        }
-        if (field.has("reference_tilt")) {
-            const Field tilt = field.at("reference_tilt");
-            tilt.require_size(packing.cell.any() ? Cell<Dim>::tilts : 0, "one number per tilt of a periodic cell");
-            for (std::size_t t = 0; t < tilt.size(); ++t) {
-                load.reference_tilt[t] = tilt.at(t).number();
-            }
-        } else if (field.has("reference_length")) {
-            load.reference_tilt.fill(0); // a rectangle
-        }
+        read_tilts(field, packing, load);
         for (const char* name : {"stress", "reference_length"}) {
             if (!field.has(name)) {
                 continue;

@@ -139,6 +139,21 @@ struct Distribution {
     bool power_law;
 };
 
+/// The script of both panels, `left` and `right` what they plot.
+std::string two_panels(const std::string& label, bool power_law, const std::string& left, const std::string& right) {
+    const std::string x = quoted(label);
+    const std::string x_left = power_law ? quoted("log_{10} " + label) : x;
+    std::string body =
+        "set multiplot layout 1,2\nset xtics font \",11\"\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
+        "\"#dddddd\"\nset yrange [0:*]\n";
+    body += fmt::format("set xlabel {}\nset ylabel \"density\"\n{}\n", x_left, left);
+    body += fmt::format("set xlabel {}\nset ylabel \"share of the values ≥ x\"\nset logscale y\nset "
+                        "yrange [*:1.5]\nset format y "
+                        "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
+                        x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
+    return body;
+}
+
 /// Two panels: histogram, and complementary distribution with logarithmic scales.
 void add_distribution(std::vector<Chart>& charts, const Distribution& of, const Increments& increments,
                       const LoadWords& words, bool pdf) {
@@ -190,16 +205,7 @@ void add_distribution(std::vector<Chart>& charts, const Distribution& of, const 
     if (index == 0) {
         return;
     }
-    const std::string x = quoted(label);
-    const std::string x_left = power_law ? quoted("log_{10} " + label) : x;
-    std::string body =
-        "set multiplot layout 1,2\nset xtics font \",11\"\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
-        "\"#dddddd\"\nset yrange [0:*]\n";
-    body += fmt::format("set xlabel {}\nset ylabel \"density\"\n{}\n", x_left, left);
-    body += fmt::format("set xlabel {}\nset ylabel \"share of the values ≥ x\"\nset logscale y\nset "
-                        "yrange [*:1.5]\nset format y "
-                        "\"10^{{%L}}\"\n{}{}\nunset multiplot\n",
-                        x, power_law ? "set logscale x\nset format x \"10^{%L}\"\nset key bottom left\n" : "", right);
+    const std::string body = two_panels(label, power_law, left, right);
     chart.script = chart_script(name, 1100, 480, body, pdf);
     charts.push_back(std::move(chart));
 }

@@ -343,10 +343,10 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
     }
     // Row r of the newest matrix asks for rhs[r]; the factors solve for the base with the same right-hand side, and
     // each exchange corrects its own row.
-    klu_common common = base_->common; // the factors may be shared by threads
-    std::vector<double> wanted(exchanges_.size());
+    klu_common common = base_->common;             // the factors may be shared by threads
+    std::vector<double> factor(exchanges_.size()); // first what is asked for
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {
-        wanted[k] = rhs[static_cast<std::size_t>(exchanges_[k]->slot)];
+        factor[k] = rhs[static_cast<std::size_t>(exchanges_[k]->slot)];
     }
     if (schedule_ != nullptr) {
         schedule_->solve_transposed(rhs);
@@ -357,16 +357,17 @@ void ApproximateInverse::velocities(std::span<double> rhs) const {
             klu_tsolve(base_->symbolic, base_->numeric, static_cast<int>(x.size()), 1, x.data(), &common);
         });
     }
-    std::vector<double> factor(exchanges_.size());
     std::vector<double> factor_of_many;
     Several many;
+    factor_of_many.reserve(exchanges_.size());
+    many.reserve(exchanges_.size());
     for (std::size_t k = 0; k < exchanges_.size(); ++k) {
         const Exchange& exchange = *exchanges_[k];
         double rate = exchange.row.dot(rhs);
         for (std::size_t j = 0; j < k; ++j) {
             rate += factor[j] * exchange.row_on[j];
         }
-        factor[k] = (wanted[k] - rate) / exchange.speed;
+        factor[k] = (factor[k] - rate) / exchange.speed;
         if (!exchange.many.empty()) {
             many.push_back(exchange.many.data());
             factor_of_many.push_back(factor[k]);
@@ -385,6 +386,7 @@ void ApproximateInverse::forces(std::span<double> rhs) const {
         return;
     }
     Several many;
+    many.reserve(exchanges_.size());
     for (const auto& exchange : exchanges_) {
         if (!exchange->many.empty()) {
             many.push_back(exchange->many.data());

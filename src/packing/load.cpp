@@ -19,6 +19,7 @@ template <int Dim> void Load<Dim>::refer_to(const Packing<Dim>& packing) {
 template <int Dim> std::vector<WallForce> Load<Dim>::wall_forces(const Packing<Dim>& packing) const {
     static_assert(Dim == 2, "the area that a wall is pressed on is one length");
     std::vector<WallForce> forces;
+    forces.reserve(Dim + Cell<Dim>::tilts);
     for (int a = 0; a < Dim; ++a) {
         const int other = 1 - a;
         const bool follows = kind == LoadKind::true_stress;

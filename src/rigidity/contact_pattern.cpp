@@ -25,6 +25,7 @@ struct Level {
 /// Per coordinate of the disks: 0, or the number of the level that it is at. Empty when no two disks share one.
 template <int Dim> std::vector<int> shared_levels(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     std::vector<std::pair<Level, int>> held; // with the coordinate
+    held.reserve(packing.q.size());
     const int disks = packing.disk_count();
     for (const Contact& contact : contacts) {
         const auto i = static_cast<std::size_t>(contact.i);
@@ -169,9 +170,13 @@ ContactPattern::View ContactPattern::for_load(std::span<const int> rows) const {
     return own_ && !on_disks ? View{own_->start, own_->row, own_->matched} : View{*start_, *row_, *matched_};
 }
 
-std::vector<unsigned char> ContactPattern::carrying(std::span<const int> rows) const {
+std::vector<unsigned char> ContactPattern::carrying(std::span<const int> rows,
+                                                    std::vector<unsigned char> reached) const {
     const View pattern = for_load(rows);
-    return sparse::structural_nonzeros(pattern.start, pattern.row, pattern.matched, rows);
+    if (own_ && pattern.start.data() != own_->start.data()) {
+        reached.clear(); // what walls and cell reach was searched with the other pinned disk
+    }
+    return sparse::structural_nonzeros(pattern.start, pattern.row, pattern.matched, rows, std::move(reached));
 }
 
 std::vector<unsigned char> ContactPattern::carrying_without(ContactId opens, int row_of_load,

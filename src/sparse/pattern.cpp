@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <new>
+#include <utility>
 
 namespace isostat::sparse {
 
@@ -102,9 +103,11 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
 }
 
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
-                                               std::span<const int> matched, std::span<const int> loaded_rows) {
+                                               std::span<const int> matched, std::span<const int> loaded_rows,
+                                               std::vector<unsigned char> reached) {
     assert(matched.size() + 1 == start.size());
-    std::vector<unsigned char> nonzero(matched.size(), 0);
+    std::vector<unsigned char> nonzero = std::move(reached);
+    nonzero.resize(matched.size(), 0);
     std::vector<int> queue;
     const auto reach = [&](int r) {
         const int c = matched[static_cast<std::size_t>(r)];

@@ -64,8 +64,10 @@ std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::
                                                const Ordering& ordering, std::span<const int> loaded_rows);
 
 /// The same with the matching alone (`matched[r]` = column matched to row r): a fifth of the cost of an `Ordering`.
+/// `reached`: the answer for some of the rows, where it is known; only what the others reach besides is searched.
 std::vector<unsigned char> structural_nonzeros(std::span<const int> start, std::span<const int> row,
-                                               std::span<const int> matched, std::span<const int> loaded_rows);
+                                               std::span<const int> matched, std::span<const int> loaded_rows,
+                                               std::vector<unsigned char> reached = {});
 
 /// A perfect matching of rows to columns of a square pattern (BTF): column of each row. Empty when there is none
 /// (the matrix is then singular for all values), and when n = 0.

@@ -223,7 +223,7 @@ template <int Dim> Result<Comparison> LimitContest<Dim>::compare(std::size_t riv
     if (perturbed_ != nullptr && needs_first_order(order, std::max(std::abs(limit_.stress), std::abs(sigma_)))) {
         return at_first_order(l, first, order);
     }
-    return by_order(order, words(", {} ({})", name_of(l), reach(order)));
+    return by_order(order, [&] { return words(", {} ({})", name_of(l), reach(order)); });
 }
 
 /// A force that vanishes in the base is then affine in the load at first order.

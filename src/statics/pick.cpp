@@ -77,8 +77,9 @@ template <int Dim> class OpeningContest final : public Contest {
             needs_first_order(order, choice_.perturbed->size())) {
             return at_first_order(order, other, one);
         }
-        return by_order(
-            order, words("; {} (f = {:.17g}): {}", name(statics_, other.contact), other.force.value, reach(order)));
+        return by_order(order, [&] {
+            return words("; {} (f = {:.17g}): {}", name(statics_, other.contact), other.force.value, reach(order));
+        });
     }
 
   private:
@@ -88,9 +89,11 @@ template <int Dim> class OpeningContest final : public Contest {
         strut_ = true;
         const Enclosure& excess = mate.excess;
         Order order{excess.decided(), excess.positive() == least_ ? -1 : 1, excess.margin(), Rung::combinatorial};
-        return by_order(order, words("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal "
-                                     "loads do not order: {:.3g}, known to {:.3g}",
-                                     name(statics_, mate.contact), other.force.value, excess.value, excess.radius));
+        return by_order(order, [&] {
+            return words("; {} (f = {:.17g}): the two ends of a straight strut, which the infinitesimal loads do not "
+                         "order: {:.3g}, known to {:.3g}",
+                         name(statics_, mate.contact), other.force.value, excess.value, excess.radius);
+        });
     }
 
     /// Difference of two enclosures where that decides, the ladder where it does not.

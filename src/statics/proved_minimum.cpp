@@ -70,19 +70,6 @@ Result<Minimum> proved_minimum(Contest& contest, std::size_t first, const char* 
     return Failure{FailureKind::undecided, contradiction};
 }
 
-Comparison by_order(const Order& order, Words tie) {
-    Comparison result;
-    if (!order.decided || order.sign == 0) {
-        result.answer = Comparison::Answer::tied;
-        result.tie = std::move(tie);
-    } else {
-        result.answer = order.sign < 0 ? Comparison::Answer::smaller : Comparison::Answer::larger;
-        result.margin = order.margin;
-        result.rung = order.rung;
-    }
-    return result;
-}
-
 bool needs_first_order(const Order& order, double size) {
     return (!order.decided || order.sign == 0) && is_tie(order, size);
 }

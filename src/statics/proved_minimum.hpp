@@ -55,8 +55,20 @@ struct Minimum {
 /// contenders), with `contradiction`.
 Result<Minimum> proved_minimum(Contest& contest, std::size_t first, const char* contradiction);
 
-/// The answer of a proved comparison of the rival with the smallest so far; `tie` is said of it when there is none.
-Comparison by_order(const Order& order, Words tie);
+/// The answer of a proved comparison of the rival with the smallest so far; what `tie` returns is said of it when there
+/// is none.
+template <class MakeWords> Comparison by_order(const Order& order, const MakeWords& tie) {
+    Comparison result;
+    if (!order.decided || order.sign == 0) {
+        result.answer = Comparison::Answer::tied;
+        result.tie = tie();
+    } else {
+        result.answer = order.sign < 0 ? Comparison::Answer::smaller : Comparison::Answer::larger;
+        result.margin = order.margin;
+        result.rung = order.rung;
+    }
+    return result;
+}
 
 /// The base does not tell the two apart: `order` says that a quantity of this size is a tie.
 bool needs_first_order(const Order& order, double size);

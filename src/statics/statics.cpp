@@ -64,9 +64,9 @@ template <int Dim> void Statics<Dim>::find_backbone() {
     if (loaded_wall_row_ >= 0) {
         loaded.push_back(loaded_wall_row_); // also when its stress is 0 now
     }
-    backbone_ = pattern_.carrying(loaded);
     sloped_ = loaded_wall_row_ < 0 ? std::vector<unsigned char>(static_cast<std::size_t>(structure_->size()), 0)
                                    : pattern_.carrying({&loaded_wall_row_, 1});
+    backbone_ = pattern_.carrying(loaded, sloped_);
 }
 
 template <int Dim> void Statics<Dim>::perturb_radii() {

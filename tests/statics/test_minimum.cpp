@@ -22,10 +22,11 @@ class Numbers final : public Contest {
     }
     Result<Comparison> compare(std::size_t rival, std::size_t best) override {
         if (turning_) {
-            return by_order({true, rival == (best + 1) % x_.size() ? -1 : 1, 1, Rung::exact}, "");
+            return by_order({true, rival == (best + 1) % x_.size() ? -1 : 1, 1, Rung::exact}, [] { return Words(); });
         }
         const double d = x_[rival] - x_[best];
-        return by_order({d != 0, d < 0 ? -1 : 1, std::abs(d), Rung::exact}, "; " + std::to_string(rival));
+        return by_order({d != 0, d < 0 ? -1 : 1, std::abs(d), Rung::exact},
+                        [&] { return Words("; " + std::to_string(rival)); });
     }
     int stood = 0;
 

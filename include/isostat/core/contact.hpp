@@ -49,6 +49,10 @@ struct Image {
         return {{static_cast<std::int8_t>(-m[0]), static_cast<std::int8_t>(-m[1]), static_cast<std::int8_t>(-m[2])}};
     }
     friend constexpr auto operator<=>(const Image&, const Image&) = default;
+    /// Written out: the equality of arrays calls a function for three bytes, and lists of contacts are compared often.
+    friend constexpr bool operator==(const Image& a, const Image& b) {
+        return a.m[0] == b.m[0] && a.m[1] == b.m[1] && a.m[2] == b.m[2];
+    }
 };
 
 /// One contact, or one candidate.

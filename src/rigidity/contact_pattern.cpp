@@ -17,7 +17,7 @@ struct Level {
     bool upper;
     double value;
     friend bool operator<(const Level& a, const Level& b) {
-        return std::tie(a.axis, a.upper, a.value) < std::tie(b.axis, b.upper, b.value);
+        return std::tie(a.value, a.axis, a.upper) < std::tie(b.value, b.axis, b.upper); // values mostly tell
     }
     friend bool operator==(const Level& a, const Level& b) = default;
 };
@@ -25,9 +25,11 @@ struct Level {
 /// Per coordinate of the disks: 0, or the number of the level that it is at. Empty when no two disks share one.
 template <int Dim> std::vector<int> shared_levels(const Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     std::vector<std::pair<Level, int>> held; // with the coordinate
-    held.reserve(packing.q.size());
     const int disks = packing.disk_count();
     for (const Contact& contact : contacts) {
+        if (contact.kind == ContactKind::disk_disk) {
+            continue;
+        }
         const auto i = static_cast<std::size_t>(contact.i);
         if (contact.kind == ContactKind::lower_wall || contact.kind == ContactKind::upper_wall) {
             held.push_back(

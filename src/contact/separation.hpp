@@ -144,9 +144,12 @@ extern template std::array<double, 2> direction<2>(std::array<double, 2>);
 /// r of two disks for a vector on all coordinates, of numbers of any kind. \pre two disks
 template <int Dim, class Vector> inline auto separation(const Vector& x, const Contact& pair) {
     using Number = std::remove_cvref_t<decltype(x[0])>;
-    return Separation<Dim>(pair, static_cast<int>(x.size()) / Dim - 1)
-        .of_disks([&x](std::size_t k) -> decltype(auto) { return x[k]; },
-                  [](const Number& a, const Number& b) -> Number { return a - b; });
+    const auto at = [&x](std::size_t k) -> decltype(auto) { return x[k]; };
+    const auto minus = [](const Number& a, const Number& b) -> Number { return a - b; };
+    if (pair.image.is_here()) [[likely]] { // inner loops: where the walls are is not asked
+        return Separation<Dim>(pair, 0).of_centres(at, minus);
+    }
+    return Separation<Dim>(pair, static_cast<int>(x.size()) / Dim - 1).of_disks(at, minus);
 }
 
 /// The same from a wall. \pre a disk and a wall

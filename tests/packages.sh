@@ -7,7 +7,7 @@ isostat_packages=(
   libcgal-dev libeigen3-dev libboost-dev libboost-test-dev libgmp-dev libmpfr-dev libflint-dev nettle-dev zlib1g-dev
   libsuitesparse-dev libqd-dev coinor-libclp-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
-  gnuplot-nox python3
+  gnuplot-nox python3 python3-jsonschema
 )
 
 # For the machine-checked part of proofs/: optional, installed by continuous integration.

@@ -44,13 +44,6 @@ std::string quoted(int argc, char** argv) {
     return line;
 }
 
-void add_common(CLI::App& command, Common& common, bool progress) {
-    if (progress) {
-        command.add_flag("-q,--quiet", common.quiet, "no progress and no tables");
-    }
-    command.add_flag("--json", common.json, "print one JSON object on standard output, for programs");
-}
-
 void add_threads(CLI::App& command, Common& common) {
     command
         .add_option("--threads", common.threads,
@@ -81,7 +74,7 @@ struct Program {
     CompareArguments compare_arguments;
     std::function<int()> todo;
 
-    explicit Program(const std::string& line) {
+    explicit Program(std::string line) : line_(std::move(line)) {
         app.require_subcommand(1);
         app.set_version_flag("--version", program_name());
         // For the build (src/CMakeLists.txt), which installs both; `--help` does not list them.
@@ -93,31 +86,49 @@ struct Program {
                    "input; 70 internal failure (says\n"
                    "nothing of the input); 74 cannot write; 130 stopped by Ctrl-C or SIGTERM, with valid files.\n"
                    "Example: isostat run examples/biaxial-400.toml -o out");
-        add_prepare(line);
-        add_run(line);
-        add_ensemble(line);
-        add_inspect(line);
-        add_certify(line);
-        add_plan(line);
-        add_report(line);
-        add_convert(line);
-        add_import(line);
-        add_export(line);
-        add_snap(line);
-        add_compare(line);
-        add_verify(line);
-        add_plateau(line);
-        add_genericity(line);
+        add_prepare();
+        add_run();
+        add_ensemble();
+        add_inspect();
+        add_certify();
+        add_plan();
+        add_report();
+        add_convert();
+        add_import();
+        add_export();
+        add_snap();
+        add_compare();
+        add_verify();
+        add_plateau();
+        add_genericity();
     }
 
   private:
+    std::string line_;
+
+    /// What every command has, and what it does when it was chosen.
+    template <class Arguments>
+    void does(CLI::App& command, Arguments& a, int (*work)(const Arguments&), bool shows_progress) {
+        if (shows_progress) {
+            command.add_flag("-q,--quiet", a.common.quiet, "no progress and no tables");
+        }
+        command.add_flag("--json", a.common.json, "print one JSON object on standard output, for programs");
+        command.callback([&command, &a, work, this] {
+            a.common.command = line_;
+            if (command.get_option_no_throw("--threads") != nullptr) {
+                isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
+            }
+            todo = [&a, work] { return work(a); };
+        });
+    }
+
     CLI::App& add(const char* name, const char* description, const char* footer) {
         CLI::App& command = *app.add_subcommand(name, description);
         command.footer(footer);
         return command;
     }
 
-    void add_prepare(const std::string& line) {
+    void add_prepare() {
         PrepareArguments& a = prepare_arguments;
         CLI::App& command = add("prepare", "random disks -> equilibrium under isotropic load",
                                 "Writes a state file. When a stage fails, what it reached goes to STATE.failed.json, "
@@ -126,15 +137,10 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
         add_threads(command, a.common);
-        add_common(command, a.common, true);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return prepare(a); };
-        });
+        does(command, a, prepare, true);
     }
 
-    void add_run(const std::string& line) {
+    void add_run() {
         RunArguments& a = run_arguments;
         CLI::App& command = add(
             "run", "a whole trajectory: start, then the programme of the scene",
@@ -157,15 +163,10 @@ struct Program {
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
         command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
         add_threads(command, a.common);
-        add_common(command, a.common, true);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return run(a); };
-        });
+        does(command, a, run, true);
     }
 
-    void add_ensemble(const std::string& line) {
+    void add_ensemble() {
         EnsembleArguments& a = ensemble_arguments;
         CLI::App& command =
             add("ensemble", "independent samples of a scene (seeds 1, 2, ...), their tables in one",
@@ -192,14 +193,10 @@ struct Program {
         command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
         command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
-        add_common(command, a.common, true);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return ensemble(a); };
-        });
+        does(command, a, ensemble, true);
     }
 
-    void add_inspect(const std::string& line) {
+    void add_inspect() {
         InspectArguments& a = inspect_arguments;
         CLI::App& command =
             add("inspect", "N, N_f, rank, h, k, rattlers, smallest force and gap, supported interval of a state",
@@ -214,15 +211,10 @@ struct Program {
         command.add_option("--at", a.at, "under this sigma_2 instead of that of the state; prints every force")
             ->type_name("SIGMA2");
         add_threads(command, a.common);
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return inspect(a); };
-        });
+        does(command, a, inspect, false);
     }
 
-    void add_certify(const std::string& line) {
+    void add_certify() {
         CertifyArguments& a = certify_arguments;
         CLI::App& command =
             add("certify", "proves that a state is an isostatic, stable equilibrium, and writes what was proved",
@@ -234,28 +226,19 @@ struct Program {
         command.add_option("state", a.input, "state file, or vertex text")->required()->type_name("STATE.json");
         command.add_option("-o,--output", a.output, "certificate to write")->required()->type_name("CERT.json");
         add_threads(command, a.common);
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return certify(a); };
-        });
+        does(command, a, certify, false);
     }
 
-    void add_plan(const std::string& line) {
+    void add_plan() {
         PlanArguments& a = plan_arguments;
         CLI::App& command =
             add("plan", "which stages, solvers and outputs a scene uses and which it leaves out, and every setting",
                 "Nothing is computed.\nExample: isostat plan examples/biaxial-1936.toml");
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return plan(a); };
-        });
+        does(command, a, plan, false);
     }
 
-    void add_report(const std::string& line) {
+    void add_report() {
         ReportArguments& a = report_arguments;
         CLI::App& command = add(
             "report", "tables and figures of a run, or the force picture of a state",
@@ -282,27 +265,19 @@ struct Program {
                         "predicted: soft_limits.csv")
             ->check(CLI::PositiveNumber)
             ->type_name("K");
-        add_common(command, a.common, true);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return report(a); };
-        });
+        does(command, a, report, true);
     }
 
-    void add_convert(const std::string& line) {
+    void add_convert() {
         ConvertArguments& a = convert_arguments;
         CLI::App& command = add("convert", "vertex text (or a state file) -> state file",
                                 "Example: isostat convert tests/data/vertex100.txt -o start.json");
         command.add_option("input", a.input, "vertex text or state file")->required()->type_name("FILE");
         command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return convert(a); };
-        });
+        does(command, a, convert, false);
     }
 
-    void add_verify(const std::string& line) {
+    void add_verify() {
         VerifyArguments& a = verify_arguments;
         CLI::App& command =
             add("verify",
@@ -326,12 +301,7 @@ struct Program {
         command.add_option("--input", a.input, "also check that this is the file that the certificate speaks of")
             ->type_name("FILE");
         add_threads(command, a.common);
-        add_common(command, a.common, true);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return verify(a); };
-        });
+        does(command, a, verify, true);
     }
 
     static void add_foreign(CLI::App& command, ForeignArguments& a) {
@@ -374,7 +344,7 @@ struct Program {
             ->check(CLI::IsMember({"rectangular", "tilted"}));
     }
 
-    void add_import(const std::string& line) {
+    void add_import() {
         ImportArguments& a = import_arguments;
         CLI::App& command = add(
             "import", "a packing of another program -> the equilibrium next to it, as a state",
@@ -415,15 +385,10 @@ struct Program {
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
         add_threads(command, a.common);
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return import(a); };
-        });
+        does(command, a, import, false);
     }
 
-    void add_snap(const std::string& line) {
+    void add_snap() {
         SnapArguments& a = snap_arguments;
         CLI::App& command = add(
             "snap", "a frame of soft grains -> the vertex of rigid grains with the same contacts, with proof",
@@ -454,14 +419,10 @@ struct Program {
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return snap(a); };
-        });
+        does(command, a, snap, false);
     }
 
-    void add_compare(const std::string& line) {
+    void add_compare() {
         CompareArguments& a = compare_arguments;
         CLI::App& command = add(
             "compare", "a series of frames of another program against the exact trajectory",
@@ -492,15 +453,10 @@ struct Program {
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
         add_threads(command, a.common);
-        add_common(command, a.common, true);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return compare_series(a); };
-        });
+        does(command, a, compare_series, true);
     }
 
-    void add_export(const std::string& line) {
+    void add_export() {
         ExportArguments& a = export_arguments;
         CLI::App& command = add(
             "export", "a state, or the states of a run, for other programs",
@@ -517,14 +473,10 @@ struct Program {
         command
             .add_option("--format", a.format, "lammps-data, xyz, csv (default: from the end of the name of the file)")
             ->check(CLI::IsMember({"lammps-data", "xyz", "csv"}));
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return export_states(a); };
-        });
+        does(command, a, export_states, false);
     }
 
-    void add_genericity(const std::string& line) {
+    void add_genericity() {
         GenericityArguments& a = genericity_arguments;
         CLI::App& command = add(
             "genericity", "perturbs the radii of a packing and proves what its equilibria are",
@@ -552,15 +504,10 @@ struct Program {
         command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
         command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
         add_threads(command, a.common);
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            isostat::set_threads(a.common.threads.value_or(isostat::available_cores()));
-            todo = [&a] { return genericity(a); };
-        });
+        does(command, a, genericity, false);
     }
 
-    void add_plateau(const std::string& line) {
+    void add_plateau() {
         PlateauArguments& a = plateau_arguments;
         CLI::App& command = add(
             "plateau", "contacts, rank, h, k of a packing made elsewhere against the gap threshold",
@@ -590,11 +537,7 @@ struct Program {
             ->check(CLI::IsMember({"fixed", "isotropic", "diagonal", "full"}));
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
-        add_common(command, a.common, false);
-        command.callback([&a, line, this] {
-            a.common.command = line;
-            todo = [&a] { return plateau(a); };
-        });
+        does(command, a, plateau, false);
     }
 };
 

@@ -11,6 +11,9 @@ constexpr std::array<const char*, 2> axis_name{"x", "y"};
 
 std::vector<std::string> moving(const Cell<2>& cell) {
     std::vector<std::string> names;
+    if (cell.keeps_shape) {
+        return {"scale"};
+    }
     for (std::size_t a = 0; a < 2; ++a) {
         if (cell.period_moves[a]) {
             names.emplace_back(axis_name[a]);
@@ -52,7 +55,9 @@ std::string cell_words(const Packing<2>& packing) {
     }
     const std::vector<std::string> names = moving(packing.cell);
     return fmt::format("{}, tilt {}; {}, disk {} is pinned", text, packing.lattice(0, 1),
-                       names.empty() ? "no period moves" : fmt::format("{} move", fmt::join(names, ", ")),
+                       names.empty()              ? "no period moves"
+                       : packing.cell.keeps_shape ? "it keeps its shape"
+                                                  : fmt::format("{} move", fmt::join(names, ", ")),
                        packing.cell.pin);
 }
 

@@ -53,11 +53,16 @@ void keep_load(ImportArguments& a) {
     }
 }
 
+/// What the cell does is counted by its strains.
+Strain strain_of(const Cell<2>& cell) {
+    return cell.keeps_shape ? Strain::isotropic : cell.tilt_moves[0] ? Strain::full : Strain::diagonal;
+}
+
 /// The contacts of the widest range of thresholds with an isostatic backbone, or at the threshold given.
 Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing) {
     const double largest = a.threshold.value_or(nearly_touching * packing.min_radius());
     if (a.threshold) {
-        const crafted::PlateauStep step = crafted::plateau(packing, {largest}).steps.front();
+        const crafted::PlateauStep step = crafted::plateau(packing, {largest}, strain_of(packing.cell)).steps.front();
         if (step.backbone.isostatic != Verdict::proved) {
             return Failure{
                 step.backbone.isostatic == Verdict::refuted ? FailureKind::not_isostatic : FailureKind::undecided,
@@ -69,7 +74,7 @@ Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing)
         return Wanted{false, crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
     }
     const double deepest = std::min(crafted::plateau(packing, {largest}).deepest_overlap, largest);
-    const crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1);
+    const crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1, strain_of(packing.cell));
     if (plateau.ranges.empty()) {
         return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
                        fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
@@ -159,16 +164,14 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
 }
 
 void set_cell(ImportArguments& a, bool own, Packing<2>& packing) {
-    if (a.threshold || (a.contacts != "nearest" && !a.contacts.empty())) {
-        throw Error(ErrorKind::usage, fmt::format("{} is periodic: expected --contacts nearest, other lists are for "
-                                                  "packings in walls",
-                                                  a.file));
-    }
-    a.contacts = "nearest";
-    const auto tilts = packing.cell.tilt_moves;
+    a.contacts = a.contacts.empty() ? "nearest" : a.contacts;
+    const Cell<2> before = packing.cell;
     take_cell({a.file, a.cell}, packing);
     if (own && a.cell.empty()) { // a state says what moves
-        packing.cell.tilt_moves = tilts;
+        packing.cell.tilt_moves = before.tilt_moves;
+        if (before.keeps_shape) {
+            packing.cell.keep_shape();
+        }
     }
     validate(packing, a.file);
 }

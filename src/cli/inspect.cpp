@@ -29,6 +29,7 @@ void print_counting(const State<2>& state, const Counting& c) {
     fmt::print("load                     sigma = ({}, {}){}, {}\n", state.load.stress[0], state.load.stress[1],
                state.load.shear[0] != 0 ? fmt::format(", shear {}", state.load.shear[0]) : "",
                state.load.kind != LoadKind::nominal ? "true stresses"
+               : state.packing.cell.keeps_shape     ? "along y; on the size of the cell, it scales all forces alike"
                : periodic                           ? "nominal (constant forces on the periods)"
                                                     : "nominal (constant wall forces)");
     fmt::print("degrees of freedom N_f   {}\n", c.dof_count);

@@ -340,8 +340,8 @@ struct Program {
         command
             .add_option("--cell", cell,
                         "what of a periodic cell moves besides its disks: rectangular, two periods; tilted, the tilt "
-                        "too (default: tilted if the file's is)")
-            ->check(CLI::IsMember({"rectangular", "tilted"}));
+                        "too; isotropic, its size alone (default: tilted if the file's is)")
+            ->check(CLI::IsMember({"rectangular", "tilted", "isotropic"}));
     }
 
     void add_import() {

@@ -69,11 +69,17 @@ void take_cell(const CellStatement& statement, Packing<2>& packing) {
     if (!packing.cell.any()) {
         return;
     }
-    if (!packing.cell.all()) {
-        refuse(file, "is periodic along one axis only: expected both or none (--not-periodic looks at the disks as "
-                     "they lie)");
+    if (!packing.cell.all() && !cell.empty()) {
+        throw Error(ErrorKind::usage, fmt::format("--cell is '{}' and {} is periodic along one axis only, whose period "
+                                                  "moves: expected no --cell",
+                                                  cell, file));
     }
-    packing.cell.period_moves.fill(true);
+    if (cell == "isotropic") {
+        packing.cell.keep_shape();
+        return;
+    }
+    packing.cell.keeps_shape = false;
+    packing.cell.period_moves = packing.cell.periodic;
     packing.cell.tilt_moves.fill(cell == "tilted" || (cell.empty() && packing.lattice(0, 1) != 0));
 }
 

@@ -28,12 +28,12 @@ std::string far_wall(const Packing<2>& packing);
 /// `Error(bad_input)`.
 void check_nearness(const std::string& file, const Packing<2>& packing);
 
-/// `--cell`: what of a periodic cell moves, "rectangular" or "tilted"; empty: the tilt too if the file has one.
+/// `--cell`: what of a periodic cell moves, "rectangular", "tilted" or "isotropic"; empty: the tilt too if the file has
+/// one.
 struct CellStatement {
     std::string file, cell;
 };
-/// Both axes repeat, and the periods move. Throws `Error(bad_input)` when one axis only repeats, `Error(usage)` for a
-/// statement about walls.
+/// The periods move, as stated. Throws `Error(usage)` for a statement about walls, or about a channel.
 void take_cell(const CellStatement& statement, Packing<2>& packing);
 
 /// A list of contacts, and in words where it comes from.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace isostat::compare {
 
@@ -45,6 +46,7 @@ Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> inf
         state.contacts.push_back({ContactKind::held, 2 * i, 0});
         state.contacts.push_back({ContactKind::held, 2 * i + 1, 0});
     }
+    const bool keeps_shape = std::exchange(state.packing.cell.keeps_shape, false); // rattlers move, the cell does not
     Segment rest;
     rest.equilibria = 0; // the start alone
     RunCounters counters;
@@ -53,6 +55,7 @@ Result<State<2>> with_resting_rattlers(const Snap& snap, std::vector<double> inf
     if (outcome.failure) {
         return Failure{outcome.failure->kind, "rattlers do not come to rest: " + outcome.failure->message()};
     }
+    state.packing.cell.keeps_shape = keeps_shape;
     state.equilibrium = 0;
     const std::vector<Contact> found = carrying(state);
     if (found != list) {

@@ -126,6 +126,9 @@ std::string find_vertex_of(Packing<2>& packing, const std::vector<Contact>& cont
                            farthest, reach, nearest_vertex);
     }
     packing = std::move(moved);
+    if (packing.cell.keeps_shape) {
+        snap_to_grid(packing); // the vertex has the period along x that is stored
+    }
     return "";
 }
 

@@ -22,7 +22,8 @@ void check(const Packing<2>& packing, const GenericityOptions& options) {
     bool gives_way = std::count(packing.fixed.begin(), packing.fixed.end(), 1) == 0;
     for (std::size_t a = 0; a < 2; ++a) {
         const bool box = packing.walls.lower[a] == WallKind::fixed && packing.walls.upper[a] == WallKind::movable;
-        gives_way = gives_way && (packing.cell.periodic[a] ? packing.cell.period_moves[a] : box);
+        gives_way =
+            gives_way && (packing.cell.periodic[a] ? packing.cell.period_moves[a] || packing.cell.keeps_shape : box);
     }
     if (!gives_way) {
         throw Error(ErrorKind::bad_input,
@@ -141,9 +142,13 @@ GenericitySample sampled(const Packing<2>& packing, const std::vector<Contact>& 
 
 } // namespace
 
-Genericity genericity(const Packing<2>& packing, const std::vector<Contact>& original,
-                      const GenericityOptions& options) {
+Genericity genericity(const Packing<2>& given, const std::vector<Contact>& original, const GenericityOptions& options) {
     require_floating_point();
+    Packing<2> packing = given;
+    const auto& moves = packing.cell.period_moves;
+    if (packing.cell.all() && !moves[0] && !moves[1] && !packing.cell.tilt_moves[0]) {
+        packing.cell.keep_shape(); // other radii need another size
+    }
     check(packing, options);
     Genericity out;
     std::vector<Contact> sorted = original;

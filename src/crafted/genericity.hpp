@@ -1,6 +1,7 @@
 #pragma once
 /// \file
-/// What becomes of a crafted packing when its radii, or its radii and the tilt of its cell, are perturbed.
+/// What becomes of a crafted packing when its radii, or its radii and the tilt of its cell, are perturbed. A cell of
+/// which nothing moves keeps its shape: its size is free.
 
 #include <isostat/contact/contact.hpp>
 #include <isostat/core/result.hpp>

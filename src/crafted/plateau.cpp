@@ -113,7 +113,7 @@ class Hyperstaticity {
 class Sequence {
   public:
     Sequence(const Packing<2>& packing, double largest, Strain strain)
-        : packing_(packing), strain_(strain), order_(packing), largest_(largest) {
+        : packing_(at_rest(packing)), strain_(strain), order_(packing_), largest_(largest) {
         check();
         find_candidates();
         std::sort(items_.begin(), items_.end(), [this](const GapOrder::Item& a, const GapOrder::Item& b) {
@@ -230,6 +230,15 @@ class Sequence {
     [[nodiscard]] int ranks_computed() const { return backbone_stress_->computed() + all_stress_->computed(); }
 
   private:
+    /// Where every axis is periodic, what moves of the cell is its strain.
+    static Packing<2> at_rest(Packing<2> packing) {
+        if (packing.cell.all()) {
+            packing.cell.keeps_shape = false;
+            packing.cell.period_moves.fill(false);
+            packing.cell.tilt_moves.fill(false);
+        }
+        return packing;
+    }
     void check() const {
         const auto sensible = [](double x) { return std::abs(x) <= largest_length; };
         for (const double x : packing_.q) {
@@ -338,19 +347,21 @@ class Sequence {
 
     void count_all() {
         for (const WallKind wall : packing_.walls.upper) {
-            movable_walls_ += wall == WallKind::movable ? 1 : 0;
+            moving_ += wall == WallKind::movable ? 1 : 0;
+        }
+        for (const bool moves : packing_.cell.period_moves) {
+            moving_ += moves ? 1 : 0;
         }
         all_dofs_ = DofMap<2>(packing_).dof_count() + cell_coordinates();
     }
-    /// What the cell adds to the degrees of freedom of the disks: its strains. A cell that is read does not move
-    /// itself.
+    /// What the cell adds to the degrees of freedom of the disks: its strains.
     [[nodiscard]] int cell_coordinates() const { return packing_.cell.all() ? strain_count<2>(strain_) : 0; }
 
     [[nodiscard]] PlateauCounts backbone_counts(int m) const {
         const auto k = static_cast<std::size_t>(m);
         PlateauCounts out;
         const auto pinned = static_cast<int>(packing_.cell.periodic_axes());
-        out.dof_count = 2 * free_[k] + movable_walls_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
+        out.dof_count = 2 * free_[k] + moving_ + cell_coordinates() - (free_[k] > 0 ? pinned : 0);
         out.contact_count = carrying_[k];
         out.rigid_motions = std::min(out.dof_count, rigid_motions(packing_, packing_.disk_count() - rattlers_[k]));
         return out;
@@ -411,7 +422,7 @@ class Sequence {
         }
     }
 
-    const Packing<2>& packing_;
+    Packing<2> packing_;
     Strain strain_;
     GapOrder order_;
     double largest_;
@@ -420,7 +431,7 @@ class Sequence {
     std::vector<int> ends_;
     Peeling peeling_;
     std::vector<int> carrying_, rattlers_, free_; ///< with the first m candidates
-    int movable_walls_ = 0;
+    int moving_ = 0;                              ///< walls, and the period of a channel
     int all_dofs_ = 0;
     std::unique_ptr<Hyperstaticity> backbone_stress_, all_stress_;
 };

@@ -78,13 +78,44 @@ double shifted(double x, double origin, double& worst) {
     return d;
 }
 
+/// The walls of one axis, where they were asked for.
+void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std::string& source,
+                   const ForeignOptions& options, double& worst) {
+    Packing<2>& packing = out.packing;
+    if (options.walls == ForeignWalls::none) {
+        packing.q.push_back(0);
+        return;
+    }
+    const std::array<double, 4> box = options.box ? *options.box : *raw.box;
+    if (!options.box && raw.loose[a]) {
+        refuse(source, fmt::format("bounds along {} are shrink-wrapped: expected fixed ones for walls, or --box",
+                                   a == 0 ? 'x' : 'y'));
+    }
+    const double low = box[2 * a], high = box[2 * a + 1];
+    if (!(low < high)) {
+        refuse(source, fmt::format("box from {} to {}: expected a lower and a higher bound", low, high));
+    }
+    for (std::size_t i = 0; i < packing.radius.size(); ++i) {
+        double& x = packing.q[2 * i + a];
+        if (!(low < x && x < high)) {
+            refuse(source, fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}",
+                                       a == 0 ? 'x' : 'y', i, x, low, high));
+        }
+        x = shifted(x, low, worst);
+    }
+    packing.q.push_back(shifted(high, low, worst));
+    packing.walls.lower[a] = WallKind::fixed;
+    packing.walls.upper[a] = options.walls == ForeignWalls::box ? WallKind::movable : WallKind::fixed;
+}
+
 /// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it.
 void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     Packing<2>& packing = out.packing;
     if (!raw.box) {
         refuse(source, "periodic, and the file has no bounds of a box: expected some");
     }
-    if ((options.walls != ForeignWalls::none && !options.walls_unless_periodic) || options.box) {
+    const bool all = raw.boundary[0] == raw.boundary[1];
+    if (all && ((options.walls != ForeignWalls::none && !options.walls_unless_periodic) || options.box)) {
         refuse(source, "walls or a box were stated of a periodic packing: expected none (--not-periodic looks at the "
                        "disks as they lie)");
     }
@@ -92,12 +123,16 @@ void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, co
     double worst = 0;
     for (std::size_t a = 0; a < 2; ++a) {
         packing.cell.periodic[a] = raw.boundary[a] == Boundary::periodic;
+        if (!packing.cell.periodic[a]) {
+            add_wall_pair(out, a, raw, source, options, worst);
+            continue;
+        }
         const double low = (*raw.box)[2 * a];
         for (std::size_t i = 0; i < packing.radius.size(); ++i) {
             double& x = packing.q[2 * i + a];
-            x = packing.cell.periodic[a] ? shifted(x, low, worst) : x;
+            x = shifted(x, low, worst);
         }
-        packing.q.push_back(packing.cell.periodic[a] ? shifted((*raw.box)[2 * a + 1], low, worst) : 0);
+        packing.q.push_back(shifted((*raw.box)[2 * a + 1], low, worst));
     }
     packing.q.push_back(raw.tilt);
     for (std::size_t a = 0; a < 2; ++a) {
@@ -107,10 +142,11 @@ void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, co
         }
     }
     worst = std::max(worst, wrap_into_cell(packing).rounding);
-    out.notes.push_back(fmt::format("periodic along {}: periods {} and {}, tilt {}",
+    const std::string along = options.walls == ForeignWalls::none ? "open along" : "walls along";
+    out.notes.push_back(fmt::format("periodic along {}: lengths {} and {}, tilt {}",
                                     packing.cell.all()         ? "x and y"
-                                    : packing.cell.periodic[0] ? "x, open along y"
-                                                               : "y, open along x",
+                                    : packing.cell.periodic[0] ? "x, " + along + " y"
+                                                               : "y, " + along + " x",
                                     packing.lattice(0, 0), packing.lattice(1, 1), raw.tilt));
     if (worst > 0) {
         out.notes.push_back(fmt::format("coordinates were moved into the cell: rounded by up to {:.2g}", worst));
@@ -136,25 +172,7 @@ void add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, c
     const std::array<double, 4> box = options.box ? *options.box : *raw.box;
     double worst = 0;
     for (std::size_t a = 0; a < 2; ++a) {
-        if (!options.box && raw.loose[a]) {
-            refuse(source, fmt::format("bounds along {} are shrink-wrapped: expected fixed ones for walls, or --box",
-                                       a == 0 ? 'x' : 'y'));
-        }
-        const double low = box[2 * a], high = box[2 * a + 1];
-        if (!(low < high)) {
-            refuse(source, fmt::format("box from {} to {}: expected a lower and a higher bound", low, high));
-        }
-        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            double& x = packing.q[2 * i + a];
-            if (!(low < x && x < high)) {
-                refuse(source, fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}",
-                                           a == 0 ? 'x' : 'y', i, x, low, high));
-            }
-            x = shifted(x, low, worst);
-        }
-        packing.q.push_back(shifted(high, low, worst));
-        packing.walls.lower[a] = WallKind::fixed;
-        packing.walls.upper[a] = options.walls == ForeignWalls::box ? WallKind::movable : WallKind::fixed;
+        add_wall_pair(out, a, raw, source, options, worst);
     }
     out.notes.push_back(
         fmt::format("walls at x = {}, {} and y = {}, {}: {}", box[0], box[1], box[2], box[3],

@@ -202,6 +202,7 @@ void RunDirectory::keep_digest(const std::string& name) {
 void RunDirectory::store_start(const State<2>& state) {
     write_state<2>(directory_ / "start.json", state);
     keep_digest("start.json");
+    name_columns(state.packing.cell.any() && state.packing.cell.tilt_moves[0]);
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {
@@ -319,7 +320,7 @@ void RunDirectory::sync() {
 
 void RunDirectory::finish(RunStatus status, const std::string& reason) {
     const std::string words = reason.empty() ? to_string(status) : fmt::format("{}: {}", to_string(status), reason);
-    name_columns(false); // of a run without an equilibrium
+    name_columns(false); // of a run without a start
     write_checkpoint();
     if (!last_.packing.radius.empty()) {
         write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);

@@ -85,7 +85,13 @@ constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
 template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
         const std::string& name = moves.at(k).string();
-        bool known = false;
+        bool known = name == "scale";
+        if (known && (moves.size() != 1 || !cell.all())) {
+            moves.at(k).fail("\"scale\" alone, where every axis is periodic: it is what moves of an isotropic cell");
+        }
+        if (known) {
+            cell.keep_shape();
+        }
         for (std::size_t a = 0; a < Dim; ++a) {
             known = known || name == axis_name[a];
             cell.period_moves[a] = cell.period_moves[a] || name == axis_name[a];
@@ -95,7 +101,7 @@ template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
             cell.tilt_moves[t] = cell.tilt_moves[t] || name == tilt_name[t];
         }
         if (!known) {
-            moves.at(k).fail("\"x\", \"y\" (periods) or \"xy\" (tilt)");
+            moves.at(k).fail("\"x\", \"y\" (periods), \"xy\" (tilt) or \"scale\" (isotropic)");
         }
     }
 }
@@ -257,6 +263,10 @@ template <int Dim> Load<Dim> load_of(const Field& document, const Packing<Dim>& 
     load.disk_force = vectors<Dim>(document, "disk_force", packing.radius.size());
     load.infinitesimal = vectors<Dim>(document, "infinitesimal", packing.radius.size());
     require_balance<Dim>(document, "disk_force", load.disk_force, packing.cell);
+    if (packing.cell.keeps_shape &&
+        std::any_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f != 0; })) {
+        document.at("disk_force").fail("no force on a disk, as the cell keeps its shape");
+    }
     require_balance<Dim>(document, "infinitesimal", load.infinitesimal, packing.cell);
     return load;
 }

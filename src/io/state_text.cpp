@@ -63,8 +63,8 @@ template <int Dim> std::string cell_text(const Packing<Dim>& packing) {
     object["moves"] = Json::array();
     for (std::size_t a = 0; a < Dim; ++a) {
         object["axes"].push_back(cell.periodic[a] ? "periodic" : "walls");
-        if (cell.period_moves[a]) {
-            object["moves"].push_back(axis_name[a]);
+        if (cell.period_moves[a]) { // of a cell that keeps its shape: the last one
+            object["moves"].push_back(cell.keeps_shape ? "scale" : axis_name[a]);
         }
     }
     for (std::size_t t = 0; t < Cell<Dim>::tilts; ++t) {

@@ -130,6 +130,16 @@ template <int Dim> void validate_cell(const Packing<Dim>& packing, const std::st
             }
         }
     }
+    Cell<Dim> shaped = cell;
+    shaped.keep_shape();
+    if (cell.keeps_shape && (!cell.all() || shaped != cell)) {
+        bad("the cell keeps its shape: expected periodic axes alone, and nothing else that moves");
+    }
+    if (cell.keeps_shape && !(2 * packing.max_radius() < packing.lattice(0, 0) * (1 - 1e-9))) { // proofs/cells.md, C13
+        bad(fmt::format("the cell keeps its shape and a disk of diameter {} touches its own image along x, {} away: "
+                        "expected a period along x that is larger",
+                        2 * packing.max_radius(), packing.lattice(0, 0)));
+    }
     if (cell.pin < 0 || cell.pin >= packing.disk_count()) {
         bad(fmt::format("disk {} is pinned: expected one from 0 to {}", cell.pin, packing.disk_count() - 1));
     }

@@ -78,7 +78,7 @@ template <int Dim> void require_sensible(const Packing<Dim>& start, const Prepar
     bool gives_way = std::none_of(start.fixed.begin(), start.fixed.end(), is_fixed);
     for (std::size_t a = 0; a < Dim; ++a) {
         const bool box = start.walls.lower[a] == WallKind::fixed && start.walls.upper[a] == WallKind::movable;
-        gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] : box);
+        gives_way = gives_way && (cell.periodic[a] ? cell.period_moves[a] || cell.keeps_shape : box);
     }
     if (!gives_way) {
         throw Error(ErrorKind::bad_input, "start of the linear programmes: expected along each axis a fixed and a "

@@ -24,6 +24,32 @@ template <int Dim> double largest_gap(const Packing<Dim>& packing, const std::ve
     return largest;
 }
 
+/// A cell that keeps its shape: the rest of it follows the last period, the only one that moves. `step`: that of the
+/// degrees of freedom with the rest at rest. With the rest stretched by beta it is step + beta * answer, and beta is
+/// the stretch of the last period.
+template <int Dim>
+void keep_shape(Packing<Dim>& packing, const std::vector<Contact>& contacts, const Factorisation& factorisation,
+                std::vector<double>& step) {
+    const std::size_t first = packing.length_at(0);
+    const std::size_t leads = packing.length_at(Dim - 1);
+    std::vector<double> answer(contacts.size(), 0.0);
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const GapGradient<Dim> g = gap_gradient(packing, contacts[l]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const auto coordinate = static_cast<std::size_t>(g.coordinate[k]);
+            answer[l] += coordinate >= first && coordinate != leads ? g.value[k] * packing.q[coordinate] : 0;
+        }
+    }
+    factorisation.solve_velocities(answer);
+    const double beta = step.back() / (packing.q[leads] - answer.back()); // no other coordinate of the cell moves
+    for (std::size_t mu = 0; mu < step.size(); ++mu) {
+        step[mu] += beta * answer[mu];
+    }
+    for (std::size_t k = first; k < packing.q.size(); ++k) {
+        packing.q[k] *= k == leads ? 1 : 1 + beta;
+    }
+}
+
 /// One step; failure when the matrix is not proved regular.
 template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, const std::vector<Contact>& contacts) {
     const auto structure = IsostaticStructure<Dim>::prove(packing, contacts);
@@ -36,6 +62,9 @@ template <int Dim> std::optional<Failure> newton_step(Packing<Dim>& packing, con
         step[l] = gap(packing, contacts[l]); // approach by the gap
     }
     factorisation.solve_velocities(step);
+    if (packing.cell.keeps_shape) {
+        keep_shape(packing, contacts, factorisation, step);
+    }
     const DofMap<Dim>& dofs = structure.value().dofs();
     for (std::size_t mu = 0; mu < step.size(); ++mu) {
         packing.q[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(mu)))] += step[mu];

@@ -90,6 +90,9 @@ Packing<Dim> scatter(std::vector<double> radius, // NOLINT(performance-unnecessa
         packing.cell.periodic.fill(true);
         packing.cell.period_moves.fill(true);
         packing.cell.tilt_moves.fill(options.cell == PreparedCell::tilted);
+        if (options.cell == PreparedCell::isotropic) {
+            packing.cell.keep_shape();
+        }
         packing.q.resize(packing.coordinate_count(), 0.0);
     }
     return packing;

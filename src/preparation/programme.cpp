@@ -51,7 +51,7 @@ template <int Dim> void ContactProgramme<Dim>::collect(const Packing<Dim>& packi
     const double reach = 2 * std::sqrt(static_cast<double>(Dim)) * trust_ * (1 + 1e-9);
     // A wall moves farther than a disk: look as far as both together can go. Across a corner of a cell two periods
     // move, one of them with the tilt.
-    const bool tilted = packing.cell.any() && packing.cell.tilt_moves[0];
+    const bool tilted = packing.cell.any() && (packing.cell.tilt_moves[0] || packing.cell.keeps_shape);
     const double lengths = !packing.cell.any() ? 1 : tilted ? std::sqrt(5.0) : std::sqrt(2.0);
     const double wall_reach = (lengths * wall_trust + 1) * trust_ * (1 + 1e-9);
     for (const Contact& contact : near_contacts(packing, reach, wall_reach)) {

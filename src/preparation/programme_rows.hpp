@@ -26,9 +26,14 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
     std::vector<double> gap;
     std::vector<int> row, column;
     std::vector<double> value;
+    /// Of a cell that keeps its shape: by how much its coordinates change when the last period changes by 1.
+    std::vector<double> follows;
 
     void add(const Packing<Dim>& packing, const Contact& c) {
-        const GapGradient<Dim> g = gap_gradient(packing, c);
+        GapGradient<Dim> g = gap_gradient(packing, c);
+        if (packing.cell.keeps_shape) {
+            keep_shape(packing, g);
+        }
         for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
             if (const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k])); dof >= 0) {
                 row.push_back(static_cast<int>(contact.size()));
@@ -47,7 +52,34 @@ template <int Dim> struct ContactProgramme<Dim>::Rows {
         for (std::size_t c = 0; c < columns(); ++c) {
             all[static_cast<std::size_t>(dofs.coordinate_of(static_cast<int>(c)))] = x[c];
         }
+        for (std::size_t k = 0; k < follows.size(); ++k) {
+            const std::size_t first = all.size() - follows.size();
+            all[first + k] = follows[k] * x[columns() - 1];
+        }
         return all;
+    }
+
+    /// The gradient of a gap where the whole cell follows its last period.
+    void keep_shape(const Packing<Dim>& packing, GapGradient<Dim>& g) {
+        const std::size_t first = packing.length_at(0);
+        const std::size_t leads = packing.length_at(Dim - 1);
+        if (follows.empty()) {
+            for (std::size_t k = first; k < packing.q.size(); ++k) {
+                follows.push_back(packing.q[k] / packing.q[leads]);
+            }
+        }
+        int disks = 0;
+        double along = 0;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const auto coordinate = static_cast<std::size_t>(g.coordinate[k]);
+            disks += coordinate < first ? 1 : 0;
+            along += coordinate < first ? 0 : g.value[k] * follows[coordinate - first];
+        }
+        if (disks < g.count) { // entries of the cell come last
+            g.coordinate[static_cast<std::size_t>(disks)] = static_cast<int>(leads);
+            g.value[static_cast<std::size_t>(disks)] = along;
+            g.count = disks + 1;
+        }
     }
 
     /// Distance of the centres, or of the centre from the wall, at contact.

@@ -346,6 +346,23 @@ template <int Dim> void SoftDynamics<Dim>::compute_forces(double pressure) {
         }
         force_[Dim * n_ + a] = virial[a] - pressure * area;
     }
+    if (packing_.cell.keeps_shape) { // the part of it that leaves the ratio of the periods
+        const double* const length = q_.data() + Dim * n_;
+        double* const on_cell = force_.data() + Dim * n_;
+        const double share =
+            (on_cell[0] * length[0] + on_cell[1] * length[1]) / (length[0] * length[0] + length[1] * length[1]);
+        on_cell[0] = share * length[0];
+        on_cell[1] = share * length[1];
+    }
+}
+
+template <int Dim> double SoftDynamics<Dim>::out_of_balance(std::size_t axis, double pressure) const {
+    const double* const length = q_.data() + Dim * n_;
+    const double* const force = force_.data() + Dim * n_;
+    if (packing_.cell.keeps_shape) {
+        return (force[0] * length[0] + force[1] * length[1]) / (2 * pressure * length[0] * length[1]);
+    }
+    return force[axis] / (pressure * length[1 - axis]);
 }
 
 template <int Dim> void SoftDynamics<Dim>::count_contacts() {
@@ -419,11 +436,7 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::measure(double pressure) {
     const double unit = pressure > 0 ? pressure * mean_diameter_ : mean_diameter_;
     result.residual = largest / unit;
     for (std::size_t a = 0; a < Dim && pressure > 0; ++a) {
-        double area = pressure;
-        for (std::size_t b = 0; b < Dim; ++b) {
-            area *= b == a ? 1.0 : q_[Dim * n_ + b];
-        }
-        result.pressure_error = std::max(result.pressure_error, std::abs(force_[Dim * n_ + a]) / area);
+        result.pressure_error = std::max(result.pressure_error, std::abs(out_of_balance(a, pressure)));
     }
     result.overlap = overlap_ / mean_diameter_;
     result.contacts = contacts_;
@@ -469,14 +482,10 @@ template <int Dim> SoftMeasures SoftDynamics<Dim>::compress(double pressure, dou
         }
         double error = 0;
         for (std::size_t a = 0; a < Dim; ++a) {
-            double area = pressure;
-            for (std::size_t b = 0; b < Dim; ++b) {
-                area *= b == a ? 1.0 : q_[Dim * n_ + b];
-            }
             const double length = q_[Dim * n_ + a];
-            const double out_of_balance = force_[Dim * n_ + a] / area;
-            velocity_[Dim * n_ + a] = rate * length * std::clamp(out_of_balance, -1.0, 1.0);
-            error = std::max(error, std::abs(out_of_balance));
+            const double excess = out_of_balance(a, pressure);
+            velocity_[Dim * n_ + a] = rate * length * std::clamp(excess, -1.0, 1.0);
+            error = std::max(error, std::abs(excess));
         }
         reached = error < 0.1;
         if (reached) {

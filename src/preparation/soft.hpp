@@ -94,6 +94,8 @@ template <int Dim> class SoftDynamics {
     [[nodiscard]] Sums sums_of(const Patch& patch) const;
     void turn(Patch& patch, Sums sums, double dt);
     void count_contacts();
+    /// Force on a wall or period over that of the pressure, less 1; of a cell that keeps its shape: on its size.
+    [[nodiscard]] double out_of_balance(std::size_t axis, double pressure) const;
     void publish_lengths();
     SoftMeasures finish(SoftMeasures result);
     [[nodiscard]] SoftMeasures measure(double pressure);

@@ -278,6 +278,28 @@ void bind_crafted_inspection(py::module_& module) {
             "Contacts as bars: \"no mechanism\", \"rigid\", \"flexes\", \"undecided\".")
         .def_property_readonly("stable", field(&Seen::stable),
                                "Verdict on: a local minimum of the potential, strict up to rigid motions.")
+        .def_property_readonly(
+            "strains",
+            [](const Self& self) {
+                py::dict out;
+                for (std::size_t s = 0; self.seen.strains && s < strains.size(); ++s) {
+                    out[to_string(strains[s])] = (*self.seen.strains)[s];
+                }
+                return out;
+            },
+            "Of a cell: a Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\"; else empty.")
+        .def_property_readonly(
+            "jammed",
+            [](const Self& self) {
+                py::dict out;
+                if (self.seen.jamming) {
+                    out["collectively"] = self.seen.jamming->collective;
+                    out["strictly"] = self.seen.jamming->strict;
+                }
+                return out;
+            },
+            "Of a cell: a Verdict for \"collectively\" and \"strictly\", of the disks that are not rattlers; else "
+            "empty.")
         .def("enclosed_bases", &enclosed_bases, py::arg("count") = 1,
              "(verdict, self_stresses, mechanisms) in doubles, the first `count` of each: pairs (array, radius), every "
              "component within the radius. For packings that are too large for exact bases.")

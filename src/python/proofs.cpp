@@ -29,7 +29,7 @@ Certified certify_file(const std::filesystem::path& path) {
     Certificate certificate;
     certificate.input = path.filename().string();
     certificate.input_hash = sha256(read_text(path));
-    certificate.state = read_state<2>(path).state;
+    certificate.state = read_any_state<2>(path).state;
     return certified(std::move(certificate));
 }
 

@@ -159,6 +159,27 @@ void bind_contacts(StateClass& state) {
             "(N, 2) integers: disks i < j; or a disk and -1 left, -2 bottom, -3 right, -4 top wall; or a held "
             "coordinate and -9. A copy.")
         .def_property_readonly(
+            "images",
+            [](const PyState& self) {
+                const std::vector<Contact>& contacts = self.state.contacts;
+                py::array_t<int> out({static_cast<py::ssize_t>(contacts.size()), py::ssize_t{2}});
+                auto rows = out.mutable_unchecked<2>();
+                for (std::size_t l = 0; l < contacts.size(); ++l) {
+                    for (std::size_t a = 0; a < 2; ++a) {
+                        rows(static_cast<py::ssize_t>(l), static_cast<py::ssize_t>(a)) = contacts[l].image.m[a];
+                    }
+                }
+                return out;
+            },
+            "(N, 2) integers: the second disk of a contact is moved by so many periods; 0 in a box. A copy.")
+        .def_property_readonly(
+            "tilt",
+            [](const PyState& self) {
+                const Packing<2>& packing = self.state.packing;
+                return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
+            },
+            "Of a periodic cell: x of the second period; None in a box.")
+        .def_property_readonly(
             "contact_names", [](const PyState& self) { return contact_names(self.state.contacts); },
             "Names of the N contacts: \"3-7\", \"3-left\".")
         .def_property_readonly(
@@ -212,9 +233,9 @@ void bind_state_class(py::module_& module) {
         module, "State",
         "A packing with its contacts and its load. It does not change; arrays are read-only views of its memory.");
     state
-        .def_static("read", &read_state<2>, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+        .def_static("read", &read_any_state<2>, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
                     "Reads a state file or a plain vertex text. Raises BadInput with file, field, value.")
-        .def_static("parse", &parse_state<2>, py::arg("text"), py::arg("source") = "State",
+        .def_static("parse", &parse_any_state<2>, py::arg("text"), py::arg("source") = "State",
                     py::call_guard<py::gil_scoped_release>(),
                     "Reads a state from the text of a file; `source` begins messages.")
         .def(
@@ -242,12 +263,14 @@ void bind_state_class(py::module_& module) {
         .def("_matrix", [](const PyState& self) { return matrix_parts(self.state.packing, self.state.contacts); })
         .def(
             "with_stress",
-            [](const PyState& self, std::array<double, 2> stress) {
+            [](const PyState& self, std::array<double, 2> stress, std::optional<double> shear) {
                 State<2> changed = self.state;
                 changed.load.stress = stress;
-                return parse_state<2>(state_text<2>(changed), "State");
+                changed.load.shear[0] = shear.value_or(changed.load.shear[0]);
+                return parse_any_state<2>(state_text<2>(changed), "State");
             },
-            py::arg("stress"), "The same state under other stresses [sigma_1, sigma_2].");
+            py::arg("stress"), py::arg("shear") = py::none(),
+            "The same state under other stresses [sigma_1, sigma_2], and another shear stress on a tilt that moves.");
 }
 
 } // namespace

@@ -107,8 +107,8 @@ void read_cell(Section& section, Scene& scene) {
     if (!scene.start.empty()) {
         section.refuse("", "[cell] is of a preparation: a packing read from a file has its own");
     }
-    options.cell =
-        section.word("kind", 0, {"rectangular", "tilted"}) == 0 ? PreparedCell::rectangular : PreparedCell::tilted;
+    constexpr std::array kinds{PreparedCell::rectangular, PreparedCell::tilted, PreparedCell::isotropic};
+    options.cell = kinds[static_cast<std::size_t>(section.word("kind", 0, {"rectangular", "tilted", "isotropic"}))];
     const std::size_t count = options.radii.empty() ? static_cast<std::size_t>(options.disks) : options.radii.size();
     if (count > static_cast<std::size_t>(options.large_above)) {
         section.refuse(
@@ -230,10 +230,11 @@ void read_run(Section& section, Scene& scene) {
                                    "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
                                    "equilibria");
     }
-    if (run.ties != TiePolicy::stop && scene.preparation.cell != PreparedCell::none) {
-        section.refuse("ties", "ties = \"" + policy +
-                                   "\" in [run] and there is a [cell]: expected \"stop\", ties are settled in "
-                                   "boxes only (radii without ties: 'jitter' in [packing])");
+    if (at_first_order(run.ties) && scene.preparation.cell != PreparedCell::none) {
+        section.refuse("ties",
+                       "ties = \"" + policy +
+                           "\" in [run] and there is a [cell]: expected \"stop\" or \"class\", ties are settled "
+                           "in boxes only (radii without ties: 'jitter' in [packing])");
     }
     if (at_first_order(run.ties)) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
@@ -321,6 +322,13 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
             Section one(step.as_table(), "[programme]", source, scene.settings);
             scene.programme.push_back(read_step(one, scene.loads_tilt.value_or(false)));
         }
+    }
+    if (scene.preparation.cell == PreparedCell::isotropic && !scene.programme.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: kind = \"isotropic\" in [cell] and a [[programme]]: a load on the size of a cell "
+                                "only scales the forces, no contact ever opens. Expected no programme (`prepare` takes "
+                                "such a cell), or another kind",
+                                source));
     }
     Section run = section("run");
     read_run(run, scene);

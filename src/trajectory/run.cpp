@@ -386,7 +386,7 @@ template <int Dim> Result<Reached<Dim>> Run<Dim>::begin_at_limit(Attempt& attemp
 template <int Dim> Failure Run<Dim>::offering_class(const Failure& failure, ContactId first) const {
     const RunOptions& options = recorder_.options;
     const bool may = options.ties == TiePolicy::stop && options.certify != CertifyLevel::plain &&
-                     !vertex_->packing.cell.any() && !others_of_class(vertex_->statics, first).empty();
+                     !others_of_class(vertex_->statics, first).empty();
     return may ? failed(failure.kind, "{}; other forces vanish with it: ties = \"class\" in [run] may open one of them",
                         failure)
                : failure;
@@ -480,8 +480,12 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
     const auto refuse = [&](const std::string& what) {
         throw Error(ErrorKind::bad_input, source + ": a periodic cell; " + what);
     };
-    if (options.ties != TiePolicy::stop) {
-        refuse("ties = \"class\", \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\"");
+    if (cell.keeps_shape) {
+        refuse("it keeps its shape, and a load on its size only scales the forces: no contact ever opens. Expected a "
+               "rectangular or tilted cell (inspect, certify and verify take this one)");
+    }
+    if (at_first_order(options.ties)) { // first-order gaps and bodies know no images (proofs/perturbation.md)
+        refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\" or \"class\"");
     }
     const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
     if (state.load.kind == LoadKind::true_stress && shears) {

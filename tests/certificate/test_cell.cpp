@@ -2,6 +2,7 @@
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/io/state_file.hpp>
+#include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
 
@@ -343,6 +344,99 @@ BOOST_AUTO_TEST_CASE(states_with_a_mechanism_are_counted_not_followed) {
         cells::in_cell({{1, 0, 0}}, {2, 2, 0}, true, 1, 1, {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0)}));
     BOOST_TEST_REQUIRE(!result.ok());
     BOOST_TEST(result.failure().message().find("N_f = 3, N = 2, rank 2, h = 0, k = 1") != std::string::npos);
+}
+
+namespace {
+
+State<2> isotropic(std::uint64_t seed) {
+    isostat::PreparationOptions options;
+    options.disks = 30;
+    options.seed = seed;
+    options.aspect = 1.25;
+    options.cell = isostat::PreparedCell::isotropic;
+    isostat::PreparationReport<2> report;
+    const auto state = isostat::prepare<2>(options, report);
+    BOOST_TEST_REQUIRE(state.ok());
+    return state.value();
+}
+
+/// Power of the finite forces in a stretch of the whole cell, the disks at rest, and how far they are from balance on
+/// the disks: in doubles, with geometry of its own.
+std::array<double, 2> power_and_imbalance(const State<2>& state, const Certification& truth) {
+    const auto& p = state.packing;
+    std::vector<double> balance(2 * p.radius.size(), 0.0);
+    double power = 0, imbalance = 0;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Contact& c = state.contacts[l];
+        const double f = 0.5 * (truth.finite[l].lower + truth.finite[l].upper);
+        const std::array<double, 2> periods{c.image.m[0] * p.length(0) + c.image.m[1] * p.lattice(0, 1),
+                                            c.image.m[1] * p.length(1)};
+        const auto i = static_cast<std::size_t>(2 * c.i), j = static_cast<std::size_t>(2 * c.j);
+        std::array<double, 2> r{};
+        for (std::size_t a = 0; a < 2; ++a) {
+            r[a] = p.q[j + a] - p.q[i + a] + periods[a];
+        }
+        const double d = std::hypot(r[0], r[1]);
+        for (std::size_t a = 0; a < 2; ++a) {
+            balance[i + a] -= f * r[a] / d;
+            balance[j + a] += f * r[a] / d;
+            power += f * r[a] / d * periods[a];
+        }
+    }
+    for (const double b : balance) {
+        imbalance = std::max(imbalance, std::abs(b));
+    }
+    return {power, imbalance};
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_bears_a_pressure) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const State<2> state = isotropic(seed);
+        const std::size_t n = state.packing.radius.size();
+        BOOST_TEST(state.contacts.size() == 2 * n - 1);
+        BOOST_TEST(std::abs(state.packing.length(1) / state.packing.length(0) - 1.25) < 1e-12);
+        const Certification truth = certify(state);
+        BOOST_TEST((truth.verdict == Verdict::proved));
+        const auto [power, imbalance] = power_and_imbalance(state, truth);
+        BOOST_TEST(power > 0); // what a pressure presses on
+        BOOST_TEST(imbalance < 1e-9);
+        const auto cell = isostat::inspect_cell(state, truth);
+        BOOST_TEST(cell.all[1].hyperstaticity == 0);
+        BOOST_TEST(cell.all[1].mechanisms == 0);
+        BOOST_TEST((cell.collective.verdict == Verdict::proved));
+        BOOST_TEST((cell.strict.verdict == Verdict::refuted));
+        // C13 (a): the period along x alone gives the same forces, times one factor.
+        State<2> other = state;
+        other.packing.cell.keeps_shape = false;
+        other.packing.cell.period_moves = {true, false};
+        const Certification along_x = certify(other);
+        BOOST_TEST((along_x.verdict == Verdict::proved));
+        double least = HUGE_VAL, most = 0;
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            if (truth.structural_zero[l] == 0) {
+                const double ratio = along_x.finite[l].lower / truth.finite[l].lower;
+                least = std::min(least, ratio);
+                most = std::max(most, ratio);
+            }
+        }
+        BOOST_TEST(most / least - 1 < 1e-6);
+        BOOST_TEST(least > 0);
+        // Another basis of the lattice, whose tilt makes a stretch of x do little work.
+        State<2> tilted = state;
+        tilted.packing.q.back() += state.packing.length(0);
+        for (Contact& c : tilted.contacts) {
+            c = isostat::pair_of(c.i, c.j, cells::image(c.image.m[0] - c.image.m[1], c.image.m[1]));
+        }
+        check_same_forces(state, tilted, in_order(state.contacts.size()));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_not_pulled) {
+    State<2> pulled = isotropic(1);
+    pulled.load.stress = {-1, -1};
+    BOOST_TEST((certify(pulled).verdict == Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -242,6 +242,24 @@ BOOST_AUTO_TEST_CASE(a_rectangle_is_prepared_and_followed_under_true_stresses) {
     BOOST_TEST(of("true", "sigma2_high") != of("nominal", "sigma2_high"));
 }
 
+// Equal disks but for 1e-9: forces of a disk with three contacts vanish together, and the arc of the first is too
+// short.
+BOOST_AUTO_TEST_CASE(ties_of_a_class_are_settled_in_a_cell_and_verified) {
+    const scratch::Folder folder;
+    const std::string scene = (folder / "s.toml").string(), out = (folder / "run").string();
+    const std::string text = "[packing]\ndisks = 60\ndiameters = [1.0, 1.0]\njitter = 1e-9\nseed = 4\n[cell]\n"
+                             "kind = \"rectangular\"\n[[programme]]\ndo = \"up\"\nequilibria = 20\n"
+                             "[output]\npictures = false\n";
+    scratch::write(scene, text);
+    expect(run({"run", scene, "-o", out, "-q"}), 2, {"ties = \"class\""});
+    scratch::write(scene, text + "[run]\nties = \"class\"\n");
+    expect(run({"run", scene, "-o", out, "-q", "--force"}), 0);
+    BOOST_TEST(contains(scratch::read(folder / "run/events.jsonl"), "slope"));
+    const auto verified = run({"verify", out});
+    expect(verified, 0);
+    BOOST_TEST(contains(verified.out, "ends proved, way looked at"), verified.out);
+}
+
 BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_as_flows) {
     const scratch::Folder folder;
     isostat::State<2> state = cells::one_tilted_disk(1, 1, 0.5);
@@ -282,6 +300,73 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
     BOOST_TEST(!isostat::read_any_state<2>(made).state.packing.cell.tilt_moves[0]);
 }
 
+BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_followed) {
+    const scratch::Folder folder;
+    const auto in = [&](const char* name) { return (folder / name).string(); };
+    scratch::write(in("s.toml"), "[packing]\ndisks = 40\ndiameters = [1.0, 2.0]\n[cell]\nkind = \"isotropic\"\n");
+    expect(run({"prepare", in("s.toml"), "-o", in("made.json"), "-q"}), 0);
+    const auto inspected = run({"inspect", in("made.json")});
+    expect(inspected, 0);
+    for (const char* words : {"it keeps its shape", "N_f   79", "jammed collectively      proved"}) {
+        BOOST_TEST(contains(inspected.out, words), inspected.out);
+    }
+    expect(run({"certify", in("made.json"), "-o", in("c.json")}), 0);
+    expect(run({"verify", in("c.json"), "--input", in("made.json")}), 0);
+    const isostat::Packing<2> made = isostat::read_any_state<2>(in("made.json")).state.packing;
+    // Soft grains of it, and the list of the widest range of thresholds: the same shape, and the same size.
+    for (const double part : {1e-9, 1e-5}) {
+        scratch::write(in("soft.dump"), soft_dump(in("made.json"), part));
+        expect(run({"import", in("soft.dump"), "-o", in("back.json"), "--cell", "isotropic", "--contacts", "plateau"}),
+               0);
+        const isostat::State<2> back = isostat::read_any_state<2>(in("back.json")).state;
+        BOOST_TEST(back.packing.cell.keeps_shape);
+        BOOST_TEST(back.contacts.size() == 79);
+        BOOST_TEST(std::abs(back.packing.length(0) - made.length(0)) < 1e-11);
+        BOOST_TEST(std::abs(back.packing.length(1) - made.length(1)) < 1e-11);
+    }
+    scratch::write(in("run.toml"), "[packing]\nfile = \"made.json\"\n[[programme]]\ndo = \"up\"\nequilibria = 1\n");
+    expect(run({"run", in("run.toml"), "-o", in("out")}), 65, {"keeps its shape", "no contact ever opens"});
+}
+
+BOOST_AUTO_TEST_CASE(lists_and_channels_of_other_programs_become_states) {
+    const scratch::Folder folder;
+    const auto in = [&](const char* name) { return (folder / name).string(); };
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        const isostat::State<2> state =
+            isostat::read_any_state<2>(scratch::data(std::string("cells/") + name + ".json")).state;
+        scratch::write(in("soft.dump"), soft_dump(scratch::data(std::string("cells/") + name + ".json"), 1e-7));
+        expect(run({"import", in("soft.dump"), "-o", in("made.json"), "--contacts", "plateau"}), 0);
+        BOOST_TEST((isostat::read_any_state<2>(in("made.json")).state.packing.cell.tilt_moves ==
+                    state.packing.cell.tilt_moves));
+        expect(run({"import", in("soft.dump"), "-o", in("made.json"), "--threshold", "1e-9"}), 0);
+    }
+    // Periodic along x, walls at the bounds along y.
+    const isostat::State<2> channel = isostat::read_any_state<2>(scratch::data("cells/channel_16.json")).state;
+    const isostat::Packing<2>& p = channel.packing;
+    BOOST_TEST_REQUIRE(p.cell.periodic[0]);
+    std::string text = fmt::format("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS pp ff pp\n0 {}\n0 {}"
+                                   "\n-1 1\nITEM: ATOMS id x y radius\n",
+                                   p.disk_count(), (1 - 1e-7) * p.length(0), (1 - 1e-7) * p.length(1));
+    for (std::size_t i = 0; i < p.radius.size(); ++i) {
+        text += fmt::format("{} {} {} {}\n", i + 1, (1 - 1e-7) * p.q[2 * i], (1 - 1e-7) * p.q[2 * i + 1], p.radius[i]);
+    }
+    scratch::write(in("channel.dump"), text);
+    for (const char* contacts : {"nearest", "plateau"}) {
+        const auto outcome = run({"import", in("channel.dump"), "-o", in("made.json"), "--contacts", contacts});
+        expect(outcome, 0);
+        BOOST_TEST(contains(outcome.out, "walls along y"), outcome.out);
+        const isostat::Packing<2> found = isostat::read_any_state<2>(in("made.json")).state.packing;
+        BOOST_TEST((found.cell.periodic == p.cell.periodic));
+        BOOST_TEST((found.walls == p.walls));
+        BOOST_TEST(std::abs(found.length(0) - p.length(0)) < 1e-11);
+        BOOST_TEST(std::abs(found.length(1) - p.length(1)) < 1e-11);
+        expect(run({"certify", in("made.json"), "-o", in("c.json")}), 0);
+    }
+    expect(run({"import", in("channel.dump"), "-o", in("made.json"), "--cell", "rectangular"}), 64,
+           {"along one axis only"});
+    expect(run({"import", in("channel.dump"), "-o", in("made.json"), "--box", "-1:3,1:2"}), 65, {"between the walls"});
+}
+
 BOOST_AUTO_TEST_CASE(what_is_exported_of_a_cell_is_imported_again) {
     const scratch::Folder folder;
     const std::string made = (folder / "made.json").string();
@@ -307,15 +392,13 @@ BOOST_AUTO_TEST_CASE(statements_that_do_not_fit_a_cell_are_refused) {
     const std::string file = (folder / "disks.dump").string();
     scratch::write(file, dump());
     expect(run({"import", file, "-o", out, "--box", "0:9,0:9"}), 65, {"walls or a box were stated of a periodic"});
-    expect(run({"import", file, "-o", out, "--threshold", "0"}), 64, {"is periodic", "--contacts nearest"});
-    expect(run({"import", file, "-o", out, "--contacts", "plateau"}), 64, {"is periodic", "--contacts nearest"});
     expect(run({"import", file, "-o", out, "--load", "true", "--cell", "tilted"}), 65, {"nominal stresses"});
     expect(run({"import", file, "-o", out, "--load", "true"}), 0);
     expect(run({"import", file, "-o", out, "--walls", "fixed"}), 64, {"--walls"});
     expect(run({"import", file, "-o", out, "--not-periodic", "--box", "-1:14,-1:14", "--cell", "tilted"}), 64,
            {"--cell", "not periodic"});
     scratch::write(file, scratch::replaced(dump(), "pp pp pp", "pp ff pp"));
-    expect(run({"import", file, "-o", out}), 65, {"along one axis only"});
+    expect(run({"import", file, "-o", out}), 65, {"expected a centre between the walls"});
     scratch::write(file, scratch::replaced(dump(), "\n0 9.", "\n0 8."));
     expect(run({"import", file, "-o", out}), 65, {"overlap"});
 }

@@ -155,4 +155,50 @@ inline std::optional<State<2>> cell_at_threshold(CellKind kind, Random& random) 
     return state;
 }
 
+/// Cells whose doubles touch exactly, so that crafted inspection speaks of them: one disk in a rectangle, in a channel,
+/// in a tilted cell; two disks that also touch through their images.
+inline std::optional<State<2>> exact_cell(Random& random) {
+    State<2> state;
+    auto& p = state.packing;
+    p.walls = isostat::Walls<2>::none();
+    const auto own = [&](int i, int x, int y) { return isostat::pair_of(i, i, {{std::int8_t(x), std::int8_t(y), 0}}); };
+    const auto both = [&](int x, int y) { return isostat::pair_of(0, 1, {{std::int8_t(x), std::int8_t(y), 0}}); };
+    switch (random.integer(4)) {
+    case 0: // one disk, all of its images in a row along x and along y
+        p.radius = {2};
+        p.q = {0.5, -1, 4, 4, 0};
+        p.cell = {{true, true}, {true, true}, {false}, 0};
+        state.contacts = {own(0, 0, 1), own(0, 1, 0)};
+        break;
+    case 1: // one disk and its images between walls
+        p.radius = {2};
+        p.q = {0.5, 2, 4, 4, 0};
+        p.cell = {{true, false}, {true, false}, {false}, 0};
+        p.walls.lower[1] = WallKind::fixed;
+        p.walls.upper[1] = WallKind::movable;
+        state.contacts = {own(0, 1, 0), {ContactKind::lower_wall, 0, 1}, {ContactKind::upper_wall, 0, 1}};
+        break;
+    case 2: // A7: (3, 4) from one disk to four images of the other, and to its own image
+        p.radius = {3, 2};
+        p.q = {0, 0, 3, 4, 6, 8, 0};
+        p.cell = {{true, true}, {true, true}, {true}, random.integer(2)};
+        state.contacts = {both(-1, -1), both(-1, 0), both(0, -1), both(0, 0), own(0, 1, 0)};
+        break;
+    default: // A8, state B: the large disk and its images at the bottom, the small one in a gap of them
+        p.radius = {3, 2};
+        p.q = {0, 3, 3, 7, 6, 9, 0};
+        p.cell = {{true, false}, {true, false}, {false}, random.integer(2)};
+        p.walls.lower[1] = WallKind::fixed;
+        p.walls.upper[1] = WallKind::movable;
+        state.contacts = {
+            both(-1, 0), both(0, 0), own(0, 1, 0), {ContactKind::lower_wall, 0, 1}, {ContactKind::upper_wall, 1, 1}};
+    }
+    std::sort(state.contacts.begin(), state.contacts.end());
+    state.load.reference_length = {1.0 + random.integer(3), 1.0 + random.integer(3)};
+    state.load.stress = {static_cast<double>(random.integer(6)), static_cast<double>(random.integer(6))};
+    state.load.shear = {p.cell.tilt_moves[0] ? random.integer(7) - 3.0 : 0.0};
+    draw_infinitesimal(state, random);
+    return state;
+}
+
 } // namespace contradictions::detail

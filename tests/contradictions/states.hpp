@@ -365,6 +365,7 @@ inline std::vector<StateClass> state_classes() {
         {"rectangular cells", [](Random& r) { return cell_at_threshold(CellKind::rectangular, r); }},
         {"tilted cells", [](Random& r) { return cell_at_threshold(CellKind::tilted, r); }},
         {"channels", [](Random& r) { return cell_at_threshold(CellKind::channel, r); }},
+        {"exact numbers in cells", exact_cell},
     };
 }
 

@@ -153,6 +153,21 @@ BOOST_AUTO_TEST_CASE(two_disks_of_a_rectangle_tie_for_all_radii_and_no_longer_wi
     BOOST_TEST(all_isostatic(perturbed(exact, 5, 1e-2), exact));
 }
 
+// Shape kept: the triangular lattice bears every strain of its shape with several self-stresses, and generic radii
+// leave the one that a pressure needs; so they do on another lattice.
+BOOST_AUTO_TEST_CASE(lattices_in_cells_that_keep_their_shape_have_one_self_stress_left) {
+    ExactPacking exact = example("cell_triangular_lattice_6.toml");
+    exact.load.reset();
+    exact.cell.period_moves = {false, false};
+    for (const bool tilt : {false, true}) {
+        const Genericity result = perturbed(exact, 5, 1e-3, tilt);
+        BOOST_TEST(result.proved == 5);
+        for (const auto& sample : result.samples) {
+            BOOST_TEST(sample.contacts.size() == 2 * exact.radius.size() - 1);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_same_seed_gives_the_same_samples) {
     const Genericity a = perturbed("triangular_patch_2x3.toml", 5, 1e-3),
                      b = perturbed("triangular_patch_2x3.toml", 5, 1e-3);
@@ -175,7 +190,9 @@ BOOST_AUTO_TEST_CASE(a_packing_or_an_option_that_does_not_fit_is_refused) {
     tilt.tilt = true;
     BOOST_CHECK_THROW((void)genericity(box, {}, tilt), isostat::Error);
     BOOST_CHECK_THROW((void)genericity(approximate(example("channel_one_disk.toml")), {}, tilt), isostat::Error);
-    BOOST_CHECK_THROW((void)genericity(approximate(example("cell_hexagonal_row.toml")), {}, {}), isostat::Error);
+    auto half = approximate(example("cell_hexagonal_row.toml"));
+    half.cell.period_moves = {true, false};
+    BOOST_CHECK_THROW((void)genericity(half, {}, {}), isostat::Error);
     GenericityOptions none;
     none.samples = 0;
     BOOST_CHECK_THROW((void)genericity(box, {}, none), isostat::Error);

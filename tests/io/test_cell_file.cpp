@@ -77,6 +77,27 @@ BOOST_AUTO_TEST_CASE(bad_cells_are_named) {
             {"infinitesimal along x", "exactly 0"});
 }
 
+BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_comes_back) {
+    State<2> state = cells::two_disks(false, 1, 1);
+    state.packing.length(0) = 3;
+    state.contacts.clear();
+    state.packing.cell.keep_shape();
+    const std::string text = state_text(state);
+    BOOST_TEST(text.find("\"moves\":[\"scale\"]") != std::string::npos);
+    const State<2> again = parse_any_state<2>(text, "cell.json").state;
+    BOOST_TEST((again.packing.cell == state.packing.cell));
+    BOOST_TEST(DofMap<2>(again.packing).dof_count() == 3);
+    BOOST_TEST(state_text(again) == text);
+    refuses(replaced(text, "[\"scale\"]", "[\"scale\",\"x\"]"), {"cell.moves[0]", "alone"});
+    refuses(replaced(text, "[\"periodic\",\"periodic\"]", "[\"periodic\",\"walls\"]"), {"every axis is periodic"});
+    State<2> wide = state; // it touches its own image along x
+    wide.packing.length(0) = 2.4;
+    refuses(state_text(wide), {"keeps its shape", "own image along x"});
+    State<2> pushed = state;
+    pushed.load.disk_force = {1, 0, -1, 0};
+    refuses(state_text(pushed), {"disk_force", "keeps its shape"});
+}
+
 BOOST_AUTO_TEST_CASE(images_are_no_contacts_of_a_box) {
     const std::string text = replaced(state_text(::crafted::two_disks(1, 2, 1, 1)), "[0,1]", "[0,1,[1,0]]");
     refuses(text, {"images are of a periodic"});

@@ -1,4 +1,5 @@
 #include "io/bad_input.hpp"
+#include "support/cells.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/io/run_directory.hpp>
@@ -96,6 +97,21 @@ BOOST_AUTO_TEST_CASE(a_run_leaves_records_states_and_a_summary) {
     BOOST_TEST(last.state.load.stress[1] == rows[6].stress);
     BOOST_TEST(scratch::read(folder / "run/run.json").find("\"status\": \"completed\"") != std::string::npos);
     BOOST_TEST(scratch::read(folder / "run/summary.json").find("\"equilibria\": 6") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(columns_are_named_before_the_first_equilibrium) {
+    for (const bool tilted : {false, true}) {
+        const scratch::Folder folder;
+        const RunCounters counters;
+        RunDirectory directory(folder / "run", header(), RunDirectory::Mode::fresh, counters);
+        directory.store_start(tilted ? cells::one_tilted_disk(2, 1, 0.25)
+                                     : read_state<2>(scratch::data("vertex100.txt")).state);
+        const std::string text = scratch::read(folder / "run/equilibria.csv");
+        BOOST_TEST(text.starts_with("# "));
+        BOOST_TEST(text.ends_with("\n"));
+        BOOST_TEST((text.find(",eps3,") != std::string::npos) == tilted);
+        BOOST_TEST(read_equilibria(folder / "run/equilibria.csv").empty());
+    }
 }
 
 BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {

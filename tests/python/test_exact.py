@@ -44,6 +44,18 @@ class Crafted(unittest.TestCase):
         ]
         return isostat.exact_packing(disks, length=(m * step, m * step), **options)
 
+    def test_cells_have_counts_for_every_strain(self):
+        folder = project / "examples/packings"
+        seen = isostat.ExactPacking.read(str(folder / "cell_hexagonal_saddle.toml")).inspect()
+        counts = {name: (c.h, c.k) for name, c in seen.strains.items()}
+        self.assertEqual(counts["fixed cell"], (3, 1))
+        self.assertEqual(counts["isotropic"], (2, 1))
+        self.assertIs(seen.jammed["collectively"], Verdict.REFUTED)
+        largest = isostat.ExactPacking.read(str(folder / "cell_hexagonal_largest.toml")).inspect()
+        self.assertIs(largest.jammed["strictly"], Verdict.PROVED)
+        self.assertEqual(self.lattice(2).inspect().strains, {})
+        self.assertEqual(self.lattice(2).inspect().jammed, {})
+
     def test_rank_and_self_stresses_of_a_square_lattice(self):
         packing = self.lattice(3)
         seen = packing.inspect()

@@ -5,7 +5,7 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-from common import Folder
+from common import Folder, project
 
 import isostat
 
@@ -46,6 +46,33 @@ class Records(Folder):
         self.assertLess(beyond[:, 1].min(), 0)
         with self.assertRaises(KeyError):
             run.at(1e9)
+
+    def test_forces_at_any_shear_of_a_run_in_a_cell(self):
+        start = project / "examples/cells/tilted-100.json"
+        run = isostat.load(
+            self.run_scene(
+                text=f"""
+[packing]
+file = "{start}"
+[load]
+loaded = "tilt"
+[[programme]]
+do = "up"
+equilibria = 2
+[output]
+states_every = 1
+"""
+            )
+        )
+        row = run.equilibria[1]
+        shear = 0.5 * (row["sigma2"] + row["sigma2_high"])
+        state, forces = run.at(shear)
+        self.assertEqual(state.loaded_axis, 2)
+        self.assertEqual(state.images.shape, state.contacts.shape)
+        self.assertTrue(np.any(state.images != 0))
+        self.assertEqual(state.tilt, json.loads(state.text())["cell"]["tilt"][0])
+        seen = isostat.inspect(state)
+        self.assertTrue(np.all(forces[:, 0] <= seen.forces) and np.all(seen.forces <= forces[:, 1]))
 
     def test_events_are_those_of_the_file(self):
         run = isostat.load(self.run_scene())

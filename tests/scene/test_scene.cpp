@@ -151,6 +151,9 @@ BOOST_AUTO_TEST_CASE(a_table_of_the_cell_takes_the_walls_away) {
     const Scene tilted = parse(head + "[cell]\nkind = \"tilted\"\n");
     BOOST_TEST((tilted.preparation.cell == PreparedCell::tilted));
     BOOST_TEST(value_of(tilted, "cell", "kind") == "\"tilted\"");
+    BOOST_TEST((parse(head + "[cell]\nkind = \"isotropic\"\n").preparation.cell == PreparedCell::isotropic));
+    refuses(head + "[cell]\nkind = \"isotropic\"\n[[programme]]\ndo = \"up\"\nequilibria = 1\n",
+            {"isotropic", "[[programme]]", "no contact ever opens"});
     refuses(head + "[cell]\nkind = \"cubic\"\n", {"s.toml:4:", "kind", "cubic", "rectangular"});
     refuses(head + "[cell]\nwalls = 2\n", {"s.toml:4:", "walls"});
     refuses("[packing]\nfile = \"v.txt\"\n[cell]\n", {"s.toml:3:", "[cell] is of a preparation"});

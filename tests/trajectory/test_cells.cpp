@@ -423,8 +423,12 @@ BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
     };
     BOOST_CHECK_NO_THROW(require_followed(start, RunOptions(), "state"));
     RunOptions options;
-    options.ties = TiePolicy::choose;
-    refuses(start, options, "expected ties = \"stop\"");
+    for (const TiePolicy ties : {TiePolicy::choose, TiePolicy::perturb}) {
+        options.ties = ties;
+        refuses(start, options, "expected ties = \"stop\"");
+    }
+    options.ties = TiePolicy::by_class;
+    BOOST_CHECK_NO_THROW(require_followed(start, options, "state"));
     State<2> state = start_of("tilt_16");
     state.load.kind = LoadKind::true_stress;
     refuses(state, {}, "no potential where the tilt moves");

@@ -29,6 +29,10 @@ template <int Dim> struct Cell {
     std::array<bool, Dim> period_moves{}; ///< L_a of a periodic axis is a degree of freedom
     std::array<bool, tilts> tilt_moves{}; ///< in the order xy, xz, yz
     int pin = 0;                          ///< the grain that stays where it is along the periodic axes
+    /// An isotropic cell: its one degree of freedom is its size. It is written as the last period, the only one that
+    /// moves then: where all forces are positive they are the same up to a factor, and so are N_f, h and k; the shape
+    /// of the cell is that of the true vertex (proofs/cells.md, C13).
+    bool keeps_shape = false;
 
     /// False in a box, and where there is nothing at all: then there are no tilts in `Packing::q`.
     [[nodiscard]] bool any() const { return std::find(periodic.begin(), periodic.end(), true) != periodic.end(); }
@@ -36,6 +40,13 @@ template <int Dim> struct Cell {
     [[nodiscard]] bool all() const { return std::find(periodic.begin(), periodic.end(), false) == periodic.end(); }
     [[nodiscard]] std::size_t periodic_axes() const {
         return static_cast<std::size_t>(std::count(periodic.begin(), periodic.end(), true));
+    }
+    /// Nothing moves but the size. \pre every axis is periodic
+    void keep_shape() {
+        keeps_shape = true;
+        period_moves.fill(false);
+        period_moves[Dim - 1] = true;
+        tilt_moves.fill(false);
     }
     /// Place of the tilt A_ab, a < b, among the tilts.
     static constexpr std::size_t tilt(std::size_t a, std::size_t b) { return a + b * (b - 1) / 2; }

@@ -60,9 +60,10 @@ struct PreparationProgress {
 };
 
 /// What holds the disks together: two fixed and two movable walls; a rectangular cell whose two periods move; such a
-/// cell whose tilt moves too, without a shear stress on it. The soft disks are compressed in a rectangle in any case,
-/// and the tilt is set free with the linear programmes.
-enum class PreparedCell { none, rectangular, tilted };
+/// cell whose tilt moves too, without a shear stress on it; a rectangle that keeps its shape (`aspect`), under a
+/// pressure on its size. The soft disks are compressed in a rectangle in any case, and the tilt is set free with the
+/// linear programmes.
+enum class PreparedCell { none, rectangular, tilted, isotropic };
 
 /// What to prepare. The defaults of the last group suit sizes 1 ... 10^5; they change the way and the cost, never the
 /// validity.

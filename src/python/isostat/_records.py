@@ -201,7 +201,8 @@ class Records:
         return [state.forces for state in self._stored]
 
     def at(self, sigma2: float) -> tuple[State, np.ndarray]:
-        """The first stored equilibrium whose supported interval holds `sigma2`, under that stress, and the intervals
+        """The first stored equilibrium whose supported interval holds `sigma2`, under that stress (where the tilt is
+        loaded: that shear stress), and the intervals
         (N, 2) of its forces there (`forces_at`). Structures of later segments may hold the same stress: `forces_at`
         asks any state. Raises KeyError when no stored equilibrium holds it (``states_every = 1`` stores all).
         """
@@ -210,9 +211,9 @@ class Records:
         for number in rows["number"][holds]:
             if int(number) in self.states:
                 state = self.states[int(number)]
-                if state.loaded_axis == 2:
-                    raise ValueError("the tilt is loaded: ask forces_at for the stored states")
                 stress = [float(value) for value in state.stress]
+                if state.loaded_axis == 2:
+                    return state.with_stress(stress, sigma2), forces_at(state, sigma2)
                 stress[state.loaded_axis] = sigma2
                 return state.with_stress(stress), forces_at(state, sigma2)
         raise KeyError(sigma2)

@@ -86,6 +86,16 @@ Read from_foreign(const SnapArguments& a) {
     return out;
 }
 
+/// Forces of linear contacts where the file says none.
+void add_law(Read& read, double stiffness) {
+    read.forces.resize(read.soft.contacts.size(), NAN);
+    for (std::size_t l = 0; l < read.forces.size(); ++l) {
+        if (std::isnan(read.forces[l])) {
+            read.forces[l] = stiffness * std::max(0.0, -gap(read.soft.packing, read.soft.contacts[l]));
+        }
+    }
+}
+
 Json json_of(const SnapArguments& a, const Read& read, const compare::Snap& snap) {
     Json out;
     out["program"] = program_name();
@@ -172,7 +182,10 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
 int snap(const SnapArguments& a) {
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
-    const Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
+    Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
+    if (a.stiffness > 0) {
+        add_law(read, a.stiffness);
+    }
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
     std::optional<State<2>> state = state_of(a, read, snap, report);

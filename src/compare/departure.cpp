@@ -160,7 +160,9 @@ class Diagnosis {
 
     void last() {
         const FrameResult& r = after_->result;
-        const std::string words = r.reason + (members_.empty() || r.reason.empty() ? "" : "; ") + members_;
+        std::string words = r.reason + (members_.empty() || r.reason.empty() ? "" : "; ") + members_;
+        words = words.empty() ? "a proved equilibrium that the exact run does not have at this load; no bundle was made"
+                              : words;
         (void)(r.status == FrameStatus::refuted     ? is("wrong", words)
                : r.status == FrameStatus::undecided ? is("undecided", words)
                                                     : is("dynamics", words));

@@ -38,6 +38,20 @@ BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     expect(run({"verify", (folder / "certificate.json").string()}), 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
+    const scratch::Folder folder;
+    for (const auto& [stiffness, right] : {std::pair{"1e5", true}, std::pair{"1.1e5", false}}) {
+        const Outcome made = run({"snap", scratch::data("series/disks.dump"), "--frame", "0", "--box", first_box,
+                                  "--stiffness", stiffness, "-o", (folder / "state.json").string(), "--json"});
+        expect(made, 0);
+        const auto at = made.out.find("\"rest\":");
+        BOOST_TEST_REQUIRE(at != std::string::npos, made.out);
+        const double rest = std::stod(made.out.substr(at + 7));
+        BOOST_TEST((rest < 1e-2) == right, made.out);
+    }
+    expect(run({"snap", scratch::data("series/disks.dump"), "--stiffness", "-1", "-o", "x.json"}), 64, {"--stiffness", "is -1: expected a positive number"});
+}
+
 BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
     const scratch::Folder folder;
     const std::string state = (folder / "state.json").string();

@@ -177,12 +177,12 @@ struct Comparison {
     int status = 0;
 };
 
-/// Frames are read and judged one by one (`snap`, else `exchange`); the exact run starts from the first one, follows
-/// the loads of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance of each
-/// snapped frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded), the
-/// reason of the departure, soft limits. Cost: about two certificates per frame; kept of a frame are its list and its
-/// numbers, with `local` a state too. Throws what `SeriesReader::next` throws, and `Error(bad_input)` when `start` has
-/// other radii than the frames.
+/// Frames are read and judged (`snap`, else `exchange`), one by each thread; the exact run starts from the first,
+/// follows the loads of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance
+/// of each snapped frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded),
+/// the reason of the departure, soft limits. Cost: about two certificates per frame; kept of a frame are its list and
+/// its numbers. Throws what `SeriesReader::next` throws, and `Error(bad_input)` when `start` has other radii than the
+/// frames.
 Comparison compare(SeriesReader& reader, const CompareOptions& options = {});
 
 } // namespace isostat::compare

@@ -107,6 +107,10 @@ struct FrameResult {
     /// Largest error of a force over the mean force, in three parts: |f_file - K overlap|; |f_file - f(H(q_soft))|, the
     /// exact solve at the stored coordinates; |f(H(q_soft)) - f(H(q*))|, upper bounds (both proved to their bound).
     double law = 0, ratio = 1, rest = 0, stiffness = 0;
+    /// With h > 0 there is no exact force on the list: `rest` is |f_file - g|, g the balanced forces nearest to those
+    /// of the file. Where the vertex is one downhill: |g - f*|, f* its forces, an upper bound against that vertex; and,
+    /// with h > 0, what of it is along the self-stresses of the list, in doubles.
+    double downhill = 0, self_stress = 0;
     double eps1 = 0, eps2 = 0;           ///< strains of the frame
     double true_eps1 = 0, true_eps2 = 0; ///< of its true vertex
     int node = -1;                       ///< of the bundle with this list

@@ -147,6 +147,7 @@ struct CompareArguments {
     Common common;
     std::string series, output, reference;
     int bundle = 16;
+    std::string frames; ///< "A:B"; empty: all
     bool local = false;
 };
 /// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: one departs; 2:

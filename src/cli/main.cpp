@@ -504,6 +504,8 @@ struct Program {
         command.add_flag(
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
+        command.add_option("--frames", a.frames, "the frames from A to B only, by their numbers from 0 (default: all)")
+            ->type_name("A:B");
         add_threads(command, a.common);
         add_common(command, a.common, true);
         command.callback([&a, line, this] {

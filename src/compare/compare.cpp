@@ -70,15 +70,18 @@ void place(JudgedFrame& judged, Bundle& bundle) {
     }
 }
 
-/// The next frames, at most so many.
-std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const std::optional<State<2>>& reference) {
+/// The next frames that are asked for, at most so many.
+std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const CompareOptions& options) {
     std::vector<Frame> out;
     while (out.size() < most) {
         auto frame = reader.next();
-        if (!frame) {
+        if (!frame || frame->number > options.frames[1]) {
             break;
         }
-        if (reference && reference->packing.radius != frame->packing.radius) {
+        if (frame->number < options.frames[0]) {
+            continue;
+        }
+        if (options.start && options.start->packing.radius != frame->packing.radius) {
             throw Error(ErrorKind::bad_input,
                         frame->row + ": other radii than the start of the exact run (--reference): expected the same "
                                      "disks, in the order of their ids");
@@ -94,8 +97,7 @@ std::vector<JudgedFrame> judge_all(SeriesReader& reader, const CompareOptions& o
                                    std::optional<State<2>>& start) {
     std::vector<JudgedFrame> judged;
     while (options.stop == nullptr || !options.stop->load()) {
-        const std::vector<Frame> frames =
-            read_some(reader, start ? static_cast<std::size_t>(threads()) : 1, options.start);
+        const std::vector<Frame> frames = read_some(reader, start ? static_cast<std::size_t>(threads()) : 1, options);
         if (frames.empty()) {
             break;
         }
@@ -156,7 +158,7 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
         loads.push_back(frame.result.sigma2);
     }
     if (start) {
-        path = follow_beyond(*start, loads, run, series.stiffness);
+        path = follow_beyond(*start, loads, run, series.linear_stiffness());
     } else {
         path.at_load.assign(loads.size(), -1);
         path.end = "no frame has a proved vertex to start from";

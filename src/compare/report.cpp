@@ -312,7 +312,7 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
     Json out;
     out["title"] = series.title;
     out["made_by"] = series.program;
-    out["stiffness"] = series.law == ForceLaw::linear ? Json(series.stiffness) : Json();
+    out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
     std::array<int, frame_statuses> counts{};
     for (const FrameResult& f : comparison.frames) {
         ++counts[static_cast<std::size_t>(f.status)];

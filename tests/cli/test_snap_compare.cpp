@@ -49,7 +49,18 @@ BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
         const double rest = std::stod(made.out.substr(at + 7));
         BOOST_TEST((rest < 1e-2) == right, made.out);
     }
-    expect(run({"snap", scratch::data("series/disks.dump"), "--stiffness", "-1", "-o", "x.json"}), 64, {"--stiffness", "is -1: expected a positive number"});
+    expect(run({"snap", scratch::data("series/disks.dump"), "--stiffness", "-1", "-o", "x.json"}), 64,
+           {"--stiffness", "is -1: expected a positive number"});
+}
+
+BOOST_AUTO_TEST_CASE(some_frames_of_a_series_are_compared_alone) {
+    const std::string series = scratch::data("series/series.toml");
+    const Outcome some = run({"compare", series, "--frames", "5:6", "--bundle", "4", "--local"});
+    BOOST_TEST(some.status == 2, some.out + some.err);
+    BOOST_TEST(contains(some.out, "2 frames: 1 same, 1 undecided"), some.out);
+    BOOST_TEST(contains(some.out, "FIRST DEPARTURE: frames 5 -> 6"), some.out);
+    expect(run({"compare", series, "--frames", "9:11"}), 64, {"--frames is '9:11'", "no such frame"});
+    expect(run({"compare", series, "--frames", "3"}), 64, {"--frames", "A:B"});
 }
 
 BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {

@@ -12,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,8 +20,9 @@
 
 namespace isostat::compare {
 
-/// - linear: force = stiffness x overlap; - none: not stated, forces are taken as they are.
-enum class ForceLaw : unsigned char { linear, none };
+/// - linear: force = stiffness x overlap; - hertz: stiffness x overlap^(3/2) x sqrt(R_i R_j / (R_i + R_j)), at a wall
+/// sqrt(R_i); - none: not stated, forces are taken as they are.
+enum class ForceLaw : unsigned char { linear, hertz, none };
 
 /// A contact as the files say it. `row`: "FILE:LINE" where it was read.
 struct FileContact {
@@ -51,6 +53,8 @@ struct Series {
         false;               ///< of each disk, from columns; else walls that a disk overlaps, with the force of the law
     double rest = 1e-3;      ///< largest unbalanced force of a frame at rest, in mean forces
     double agreement = 1e-3; ///< largest |force - stiffness overlap| of a frame that is understood, in mean forces
+    /// 0: another law; soft limits are predicted for linear contacts only.
+    [[nodiscard]] double linear_stiffness() const { return law == ForceLaw::linear ? stiffness : 0; }
 };
 
 /// The frames of a series, one after another: one is in memory at a time. Disks are matched by id, in the order of the
@@ -168,6 +172,8 @@ struct CompareOptions {
     OpeningRule rule = OpeningRule::most_negative;
     int bundle = 16;    ///< members of the bundle; 0: none
     bool local = false; ///< besides, the exact run from every frame to the next
+    /// The first and the last frame to look at, by their numbers.
+    std::array<int, 2> frames{0, std::numeric_limits<int>::max()};
     const std::atomic<bool>* stop = nullptr;
 };
 

@@ -135,6 +135,7 @@ struct SnapArguments {
     ForeignArguments foreign;
     std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
     std::string stress, load, cell;        ///< cell: as of `ImportArguments`
+    double stiffness = 0; ///< > 0: force = stiffness x overlap where the file says none
     std::uint64_t seed = 1;
     bool exchange = false;
 };
@@ -146,6 +147,7 @@ struct CompareArguments {
     Common common;
     std::string series, output, reference;
     int bundle = 16;
+    std::string frames; ///< "A:B"; empty: all
     bool local = false;
 };
 /// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: one departs; 2:

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/read_packing.hpp"
 #include "compare/report.hpp"
 
 #include <isostat/compare/compare.hpp>
@@ -9,10 +10,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 
 namespace isostat::cli {
 
@@ -108,6 +111,12 @@ int compare_series(const CompareArguments& a) {
     compare::CompareOptions options;
     options.bundle = a.bundle;
     options.local = a.local;
+    if (!a.frames.empty()) {
+        const auto [first, last] = parse_range(a.frames, "--frames");
+        constexpr double most = std::numeric_limits<int>::max();
+        options.frames = {static_cast<int>(std::ceil(std::clamp(first, 0.0, most))),
+                          static_cast<int>(std::clamp(last, -1.0, most))};
+    }
     if (!a.reference.empty()) {
         options.start = start_of(a.reference);
     }
@@ -116,6 +125,9 @@ int compare_series(const CompareArguments& a) {
     const compare::Comparison comparison = compare::compare(reader, options);
     if (stop_flag()) {
         return interrupted;
+    }
+    if (comparison.frames.empty()) {
+        throw Error(ErrorKind::usage, fmt::format("--frames is '{}': {} has no such frame", a.frames, a.series));
     }
     std::string note;
     if (!a.output.empty()) {
@@ -127,7 +139,7 @@ int compare_series(const CompareArguments& a) {
         if (!a.common.quiet) {
             print_frames(comparison);
         }
-        print_ends(comparison, a.common.quiet ? 0 : series.stiffness);
+        print_ends(comparison, a.common.quiet ? 0 : series.linear_stiffness());
     }
     if (!note.empty()) {
         fmt::print(stderr, "isostat: {}\n", note);

@@ -27,6 +27,14 @@
 
 namespace {
 
+/// CLI11's own names the largest double in three hundred digits.
+const CLI::Validator positive(
+    [](const std::string& text) {
+        double value = 0;
+        return CLI::detail::lexical_cast(text, value) && value > 0 ? "" : "is " + text + ": expected a positive number";
+    },
+    "> 0");
+
 using namespace isostat::cli;
 
 /// The command line as a shell would take it back.
@@ -263,7 +271,7 @@ struct Program {
             .add_option("--stiffness", a.stiffness,
                         "of a run: also where grains of this stiffness (force / overlap) would leave each structure, "
                         "predicted: soft_limits.csv")
-            ->check(CLI::PositiveNumber)
+            ->check(positive)
             ->type_name("K");
         does(command, a, report, true);
     }
@@ -413,6 +421,11 @@ struct Program {
             ->type_name("S1,S2");
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
+        command
+            .add_option("--stiffness", a.stiffness,
+                        "force / overlap: forces that the file does not say are compared with the exact ones too")
+            ->type_name("K")
+            ->check(positive);
         command.add_flag("--exchange", a.exchange,
                          "where the list has no vertex: the one downhill, which need not be the only one near");
         command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)");
@@ -452,6 +465,8 @@ struct Program {
         command.add_flag(
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
+        command.add_option("--frames", a.frames, "the frames from A to B only, by their numbers from 0 (default: all)")
+            ->type_name("A:B");
         add_threads(command, a.common);
         does(command, a, compare_series, true);
     }

@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/soft_list.hpp"
-#include "compare/backbone.hpp"
 #include "compare/force_split.hpp"
+#include "compare/soft_state.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 
@@ -16,15 +16,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 namespace isostat::cli {
 
 namespace {
 
-struct Read {
-    compare::SoftState soft;
-    std::vector<double> forces; ///< of its contacts in the file; NaN, or an empty list: not said
+struct Read : compare::SoftForces {
     std::string words;
     std::vector<std::string> notes;
 };
@@ -36,27 +33,9 @@ Read from_state(const SnapArguments& a) {
                                                "--contacts, --stress, --load");
     }
     const StateFile<2> file = read_any_state<2>(a.file);
-    State<2> state = file.state;
-    const bool fixed =
-        std::any_of(state.packing.fixed.begin(), state.packing.fixed.end(), [](auto f) { return f != 0; });
-    const bool box = state.packing.walls == Walls<2>::box() || state.packing.cell.all();
-    if (!box || fixed || !state.load.disk_force.empty()) {
-        throw Error(ErrorKind::bad_input, a.file +
-                                              ": expected a box with two fixed and two movable walls or a periodic "
-                                              "cell, no fixed disk and no force on a disk");
-    }
     Read out;
-    out.words = fmt::format("{} contacts of the state, those that can carry a force", state.contacts.size());
-    std::map<Contact, double> forces;
-    for (std::size_t l = 0; l < file.forces.size(); ++l) {
-        forces.emplace(state.contacts[l], file.forces[l]);
-    }
-    std::sort(state.contacts.begin(), state.contacts.end());
-    state.contacts = compare::able_to_carry(state.packing, std::move(state.contacts));
-    for (std::size_t l = 0; l < state.contacts.size() && !forces.empty(); ++l) {
-        out.forces.push_back(forces.at(state.contacts[l]));
-    }
-    out.soft = {std::move(state.packing), std::move(state.contacts), std::move(state.load)};
+    static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
+    out.words = fmt::format("{} contacts of the state, those that can carry a force", file.state.contacts.size());
     return out;
 }
 
@@ -172,7 +151,10 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
 int snap(const SnapArguments& a) {
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
-    const Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
+    Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
+    if (a.stiffness > 0) {
+        compare::add_law(read, a.stiffness);
+    }
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
     std::optional<State<2>> state = state_of(a, read, snap, report);

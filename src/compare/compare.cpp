@@ -3,8 +3,10 @@
 #include "compare/frame.hpp"
 #include "compare/local.hpp"
 #include "compare/path.hpp"
+#include "core/parallel.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 
@@ -68,6 +70,53 @@ void place(JudgedFrame& judged, Bundle& bundle) {
     }
 }
 
+/// The next frames that are asked for, at most so many.
+std::vector<Frame> read_some(SeriesReader& reader, std::size_t most, const CompareOptions& options) {
+    std::vector<Frame> out;
+    while (out.size() < most) {
+        auto frame = reader.next();
+        if (!frame || frame->number > options.frames[1]) {
+            break;
+        }
+        if (frame->number < options.frames[0]) {
+            continue;
+        }
+        if (options.start && options.start->packing.radius != frame->packing.radius) {
+            throw Error(ErrorKind::bad_input,
+                        frame->row + ": other radii than the start of the exact run (--reference): expected the same "
+                                     "disks, in the order of their ids");
+        }
+        out.push_back(std::move(*frame));
+    }
+    return out;
+}
+
+/// As many frames side by side as there are threads: their coordinates and states are in memory, of the others lists
+/// and numbers. `start`: unless there is one, the state of the first frame that has one; until then they come singly.
+std::vector<JudgedFrame> judge_all(SeriesReader& reader, const CompareOptions& options, const RunOptions& run,
+                                   std::optional<State<2>>& start) {
+    std::vector<JudgedFrame> judged;
+    while (options.stop == nullptr || !options.stop->load()) {
+        const std::vector<Frame> frames = read_some(reader, start ? static_cast<std::size_t>(threads()) : 1, options);
+        if (frames.empty()) {
+            break;
+        }
+        const std::size_t first = judged.size();
+        const bool complete = !start || options.local;
+        judged.resize(first + frames.size());
+        parallel_pieces(frames.size(),
+                        [&](std::size_t k) { judged[first + k] = judge(reader.series(), frames[k], complete); });
+        if (options.local) {
+            compare_with_frame_before(judged, first, run);
+        }
+        start = start ? start : judged.back().state;
+        for (std::size_t k = first == 0 ? 0 : first - 1; k + 1 < judged.size(); ++k) {
+            judged[k].state.reset();
+        }
+    }
+    return judged;
+}
+
 int status_of(const std::vector<FrameResult>& frames) {
     const auto has = [&](auto what) { return std::any_of(frames.begin(), frames.end(), what); };
     const auto at_rest_and_elsewhere = [](const FrameResult& f) {
@@ -101,29 +150,15 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     RunOptions run;
     run.rule = options.rule;
     run.stop = options.stop;
-    std::vector<JudgedFrame> judged;
     std::optional<State<2>> start = options.start;
-    while (const auto frame = reader.next()) {
-        if (options.start && options.start->packing.radius != frame->packing.radius) {
-            throw Error(ErrorKind::bad_input,
-                        frame->row + ": other radii than the start of the exact run (--reference): expected the same "
-                                     "disks, in the order of their ids");
-        }
-        judged.push_back(judge(series, *frame, !start || options.local));
-        if (!start && judged.back().state) {
-            start = judged.back().state;
-        }
-    }
-    if (options.local) {
-        compare_with_frame_before(judged, run);
-    }
+    std::vector<JudgedFrame> judged = judge_all(reader, options, run, start);
     Path path;
     std::vector<double> loads;
     for (const JudgedFrame& frame : judged) {
         loads.push_back(frame.result.sigma2);
     }
     if (start) {
-        path = follow_beyond(*start, loads, run, series.stiffness);
+        path = follow_beyond(*start, loads, run, series.linear_stiffness());
     } else {
         path.at_load.assign(loads.size(), -1);
         path.end = "no frame has a proved vertex to start from";

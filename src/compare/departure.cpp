@@ -57,8 +57,8 @@ class Diagnosis {
     bool file() { return after_->result.status == FrameStatus::file && is("file", after_->result.reason); }
 
     bool moving() {
-        for (int k = out_.from + 1; k < out_.to; ++k) {
-            const FrameResult& r = frames_[static_cast<std::size_t>(k)].result;
+        for (const JudgedFrame* frame = before_ == nullptr ? frames_.data() : before_ + 1; frame != after_; ++frame) {
+            const FrameResult& r = frame->result;
             if (r.status == FrameStatus::moving) {
                 return is("moving",
                           fmt::format("the load went on while frame {} was in motion: {}", r.frame, r.reason));
@@ -92,11 +92,11 @@ class Diagnosis {
                                   counting.contact_count, counting.dof_count, counting.hyperstaticity));
         }
         const PathEquilibrium* e = common();
-        if (e == nullptr || !(series_.stiffness > 0)) {
+        if (e == nullptr || !(series_.linear_stiffness() > 0)) {
             return false;
         }
         const auto soft =
-            soft_limit(backbone_of(e->state, e->contacts), {e->low, e->high, direction()}, series_.stiffness);
+            soft_limit(backbone_of(e->state, e->contacts), {e->low, e->high, direction()}, series_.linear_stiffness());
         const double exact = direction() > 0 ? e->high : e->low;
         if (!soft) {
             return false;
@@ -106,7 +106,7 @@ class Diagnosis {
         const std::string words = fmt::format(
             "equilibrium {} ends at {:.7g}, with stiffness {:.3g} at {:.7g} (predicted); {} needs a stiffness "
             "of {:.2g} for 1e-3",
-            e->number, exact, series_.stiffness, soft->stress, to_string<2>(e->opens), e->stiffness_needed);
+            e->number, exact, series_.linear_stiffness(), soft->stress, to_string<2>(e->opens), e->stiffness_needed);
         return soft_left != exact_left && is("stiffness", words);
     }
 
@@ -142,7 +142,7 @@ class Diagnosis {
         int here = 0, ended = 0;
         std::set<int> nodes;
         for (const BundleMember& member : bundle_.members) {
-            const int node = member.at_load[static_cast<std::size_t>(after_->result.frame)];
+            const int node = member.at_load[static_cast<std::size_t>(after_ - frames_.data())];
             if (node >= 0) {
                 ++ended;
                 nodes.insert(node);
@@ -160,7 +160,9 @@ class Diagnosis {
 
     void last() {
         const FrameResult& r = after_->result;
-        const std::string words = r.reason + (members_.empty() || r.reason.empty() ? "" : "; ") + members_;
+        std::string words = r.reason + (members_.empty() || r.reason.empty() ? "" : "; ") + members_;
+        words = words.empty() ? "a proved equilibrium that the exact run does not have at this load; no bundle was made"
+                              : words;
         (void)(r.status == FrameStatus::refuted     ? is("wrong", words)
                : r.status == FrameStatus::undecided ? is("undecided", words)
                                                     : is("dynamics", words));

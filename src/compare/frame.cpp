@@ -1,6 +1,7 @@
 #include "compare/frame.hpp"
 
 #include "compare/force_split.hpp"
+#include "compare/surplus_split.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +28,8 @@ FrameResult begin(const Frame& frame, const Reading& reading) {
     out.law = reading.law;
     out.ratio = reading.ratio;
     out.snapped = "none";
-    out.distance = out.walls = out.rest = out.stiffness = out.true_eps1 = out.true_eps2 = nan;
+    out.distance = out.walls = out.rest = out.stiffness = out.downhill = out.self_stress = nan;
+    out.true_eps1 = out.true_eps2 = nan;
     const auto strain = [&](int a) {
         const double length = frame.load.reference_length[static_cast<std::size_t>(a)];
         return (length - frame.packing.length(a)) / length;
@@ -49,18 +51,35 @@ void add_vertex(const Snap& snap, const Frame& frame, FrameResult& out) {
     out.true_eps2 = strain(1);
 }
 
+/// The errors of forces on a list with h > 0, and against the vertex downhill.
+void split(const SoftState& soft, const Reading& reading, const Snap& snapped, const Exchanged* downhill,
+           FrameResult& out) {
+    const bool surplus = out.counting.hyperstaticity > 0;
+    if (!surplus && downhill == nullptr) {
+        return;
+    }
+    const SurplusSplit split = split_surplus(soft, reading.forces, reading.mean, snapped, downhill);
+    out.downhill = split.downhill;
+    if (surplus) {
+        out.rest = split.rest;
+        out.self_stress = split.self_stress;
+    }
+}
+
 /// A list that is no equilibrium: the vertex downhill instead.
-void try_exchange(const SoftState& soft, const Snap& snapped, JudgedFrame& out) {
+void try_exchange(const SoftState& soft, const Reading& reading, const Snap& snapped, JudgedFrame& out) {
     FrameResult& r = out.result;
     r.status = snapped.outcome == SnapOutcome::refuted ? FrameStatus::refuted : FrameStatus::undecided;
     r.reason = snapped.reason;
     auto found = exchange(soft, 1);
+    const bool proved = found.ok() && found.value().truth.verdict == Verdict::proved;
+    split(soft, reading, snapped, proved ? &found.value() : nullptr, r);
     if (!found.ok()) {
         r.reason += "; no vertex downhill: " + found.failure().message();
         return;
     }
     Exchanged& e = found.value();
-    if (e.truth.verdict != Verdict::proved) {
+    if (!proved) {
         r.reason += "; the vertex downhill is not proved";
         return;
     }
@@ -110,7 +129,7 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
         r.stiffness = split.stiffness;
     }
     if (snapped.outcome != SnapOutcome::vertex) {
-        try_exchange(soft, snapped, out);
+        try_exchange(soft, reading, snapped, out);
         return out;
     }
     r.status = FrameStatus::same;

@@ -21,10 +21,10 @@ std::string outcome(const JudgedFrame& before, const JudgedFrame& after, const R
 
 } // namespace
 
-void compare_with_frame_before(std::vector<JudgedFrame>& frames, const RunOptions& options) {
-    parallel_pieces(frames.size(), [&](std::size_t k) {
-        if (k > 0) {
-            frames[k].result.local = outcome(frames[k - 1], frames[k], options);
+void compare_with_frame_before(std::vector<JudgedFrame>& frames, std::size_t first, const RunOptions& options) {
+    parallel_pieces(frames.size() - first, [&](std::size_t k) {
+        if (const std::size_t at = first + k; at > 0) {
+            frames[at].result.local = outcome(frames[at - 1], frames[at], options);
         }
     });
 }

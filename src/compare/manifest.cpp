@@ -76,9 +76,8 @@ void read_columns(Section& section, const std::string& source, Manifest& out) {
 }
 
 void read_law(Section& section, Manifest& out) {
-    const bool linear = section.word("kind", 1, {"linear", "none"}) == 0;
-    out.series.law = linear ? ForceLaw::linear : ForceLaw::none;
-    if (linear) {
+    out.series.law = static_cast<ForceLaw>(section.word("kind", 2, {"linear", "hertz", "none"}));
+    if (out.series.law != ForceLaw::none) {
         out.series.stiffness = positive(section, "stiffness", std::nullopt);
     }
     out.series.agreement = positive(section, "allowance", out.series.agreement);

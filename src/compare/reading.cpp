@@ -88,7 +88,7 @@ class Reader {
         for (const Contact& c : overlaps_) {
             if (is_wall(c) ? !series_.wall_forces : !series_.listed) {
                 if (row_.emplace(c, frame_.row).second) {
-                    force_.emplace(c, -gap(frame_.packing, c) * series_.stiffness);
+                    force_.emplace(c, expected(c));
                 }
             }
         }
@@ -121,7 +121,7 @@ class Reader {
         Contact worst;
         double largest = 0;
         for (const auto& [c, force] : force_) {
-            const double off = std::abs(force - expected(c)) - series_.stiffness * rounding_;
+            const double off = std::abs(force - expected(c)) - unknown(c);
             if (off > largest) {
                 largest = off;
                 worst = c;
@@ -136,16 +136,18 @@ class Reader {
         // it adds is no larger than what is left to accelerate the grains, times a few.
         const bool dashpot = std::min(left_, left_by_law_) > series_.rest * out_.mean && largest <= a_few * left_;
         if (largest > series_.agreement * out_.mean && !dashpot) {
-            contradict(fmt::format("{}: the force between {} is {:.6g} and stiffness x overlap {:.6g} (ratio {:.6g})",
-                                   at(worst), name(worst), force_.at(worst), expected(worst), out_.ratio));
+            contradict(fmt::format("{}: the force between {} is {:.6g} and {} {:.6g} (ratio {:.6g})", at(worst),
+                                   name(worst), force_.at(worst),
+                                   series_.law == ForceLaw::linear ? "stiffness x overlap" : "that of the law",
+                                   expected(worst), out_.ratio));
         }
     }
 
     /// Overlaps that would carry a force and have no row.
     void check_missing() {
         for (const Contact& c : overlaps_) {
-            const bool law = series_.law == ForceLaw::linear;
-            const double force = law ? expected(c) - series_.stiffness * rounding_ : 0;
+            const bool law = series_.law != ForceLaw::none;
+            const double force = law ? expected(c) - unknown(c) : 0;
             if (row_.count(c) == 0 && force > series_.agreement * out_.mean) {
                 ++out_.missing;
                 contradict(fmt::format("{}: {} overlap by {:.6g}, a force of {:.6g}, and have no contact in the files",
@@ -154,8 +156,23 @@ class Reader {
         }
     }
 
+    /// By the law.
     [[nodiscard]] double expected(const Contact& c) const {
-        return series_.stiffness * std::max(0.0, -gap(frame_.packing, c));
+        const double overlap = std::max(0.0, -gap(frame_.packing, c));
+        return series_.stiffness * overlap * (series_.law == ForceLaw::hertz ? std::sqrt(overlap * radius(c)) : 1);
+    }
+    /// What the rounding of an overlap does to that.
+    [[nodiscard]] double unknown(const Contact& c) const {
+        const double overlap = std::max(0.0, -gap(frame_.packing, c)) + rounding_;
+        const double steeper = series_.law == ForceLaw::hertz ? 1.5 * std::sqrt(overlap * radius(c)) : 1;
+        return series_.stiffness * rounding_ * steeper;
+    }
+    /// R_i R_j / (R_i + R_j), of a disk at a wall R_i.
+    [[nodiscard]] double radius(const Contact& c) const {
+        const std::vector<double>& all = frame_.packing.radius;
+        const double one = all[static_cast<std::size_t>(c.i)];
+        const double other = is_wall(c) ? 0 : all[static_cast<std::size_t>(c.j)];
+        return is_wall(c) ? one : one * other / (one + other);
     }
 
     /// The largest forces that are left on a disk, and on the right and the top wall.
@@ -200,7 +217,7 @@ class Reader {
     }
 
     void balance() {
-        const bool law = series_.law == ForceLaw::linear;
+        const bool law = series_.law != ForceLaw::none;
         if (law || (series_.listed && series_.wall_forces)) {
             const Left left = left_by(force_);
             check_load(left);

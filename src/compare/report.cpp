@@ -64,6 +64,8 @@ const std::vector<Column<FrameResult>>& of_frames() {
                                                 {"ratio", [](const F& f) { return or_null(f.ratio); }},
                                                 {"rest", [](const F& f) { return or_null(f.rest); }},
                                                 {"stiffness", [](const F& f) { return or_null(f.stiffness); }},
+                                                {"downhill", [](const F& f) { return or_null(f.downhill); }},
+                                                {"self_stress", [](const F& f) { return or_null(f.self_stress); }},
                                                 {"eps1", [](const F& f) { return or_null(f.eps1); }},
                                                 {"eps2", [](const F& f) { return or_null(f.eps2); }},
                                                 {"true_eps1", [](const F& f) { return or_null(f.true_eps1); }},
@@ -193,10 +195,11 @@ std::string figure_data(const Comparison& comparison) {
     for (const PathEquilibrium& e : comparison.path) {
         text += fmt::format("{}\n", e.sigma2);
     }
-    text += "\n\n# errors of the forces: sigma2 law rest stiffness\n";
+    text += "\n\n# errors of the forces: sigma2 law rest stiffness downhill\n";
     for (const FrameResult& f : comparison.frames) {
         const auto text_of = [](double x) { return shown(x) ? fmt::format("{}", x) : "nan"; };
-        text += fmt::format("{} {} {} {}\n", f.sigma2, text_of(f.law), text_of(f.rest), text_of(f.stiffness));
+        text += fmt::format("{} {} {} {} {}\n", f.sigma2, text_of(f.law), text_of(f.rest), text_of(f.stiffness),
+                            text_of(f.downhill));
     }
     text += "\n\n# bundle: eps2 sigma2_low sigma2_high members\n";
     for (const BundleNode& node : comparison.bundle.nodes) {
@@ -215,9 +218,10 @@ std::string errors_panel(const Comparison& comparison) {
         double FrameResult::*error;
         const char* style;
     };
-    const std::array<Curve, 3> all{{{"law", &FrameResult::law, "pt 4 lc \"#548235\""},
+    const std::array<Curve, 4> all{{{"law", &FrameResult::law, "pt 4 lc \"#548235\""},
                                     {"rest", &FrameResult::rest, "pt 6 lc \"#1f4e79\""},
-                                    {"stiffness", &FrameResult::stiffness, "pt 7 lc \"#c55a11\""}}};
+                                    {"stiffness", &FrameResult::stiffness, "pt 7 lc \"#c55a11\""},
+                                    {"against the vertex downhill", &FrameResult::downhill, "pt 2 lc \"#7f7f7f\""}}};
     std::string curves;
     for (std::size_t k = 0; k < all.size(); ++k) {
         if (std::any_of(comparison.frames.begin(), comparison.frames.end(),
@@ -308,7 +312,7 @@ std::string comparison_json(const Series& series, const Comparison& comparison) 
     Json out;
     out["title"] = series.title;
     out["made_by"] = series.program;
-    out["stiffness"] = series.law == ForceLaw::linear ? Json(series.stiffness) : Json();
+    out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
     std::array<int, frame_statuses> counts{};
     for (const FrameResult& f : comparison.frames) {
         ++counts[static_cast<std::size_t>(f.status)];

@@ -66,7 +66,8 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
     const double visible = 1e-6 * state.packing.min_radius();
     const Admissibility admissible = certify_admissible(state.packing, visible);
     if (admissible.verdict == Verdict::refuted) {
-        bad(fmt::format("grains overlap: the gap of {} is {:.6g}: expected every gap >= 0",
+        bad(fmt::format("grains overlap: the gap of {} is {:.6g}: expected every gap >= 0 (isostat snap makes the "
+                        "equilibrium next to soft grains)",
                         to_string<Dim>(admissible.worst), admissible.worst_gap));
     }
     for (const Contact& contact : state.contacts) {

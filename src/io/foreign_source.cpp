@@ -243,8 +243,9 @@ void Rows::finish(Raw& raw) {
         for (const auto& [type, rows] : types_) {
             words.push_back(fmt::format("{} ({} rows)", type, rows));
         }
-        raw.notes.push_back(fmt::format("types {}: every row is taken for a disk; --select type={} takes one type",
-                                        fmt::join(words, ", "), types_.begin()->first));
+        raw.types = fmt::format("types {}: every row is taken for a disk; --select type={} takes one type",
+                                fmt::join(words, ", "), types_.begin()->first);
+        raw.notes.push_back(raw.types);
     }
     std::sort(ids_.begin(), ids_.end());
     const auto twice =

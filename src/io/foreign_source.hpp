@@ -83,6 +83,7 @@ struct Raw {
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
     std::vector<std::string> notes;
+    std::string types; ///< empty, or which there are, and that all are taken for disks; a note too
 };
 
 /// Which columns hold what.

@@ -110,6 +110,7 @@ void bind_state(py::module_& module);
 void bind_proofs(py::module_& module);
 void bind_exact(py::module_& module);
 void bind_preparation(py::module_& module);
+void bind_compare(py::module_& module);
 
 } // namespace isostat::python
 

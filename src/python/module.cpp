@@ -140,5 +140,6 @@ PYBIND11_MODULE(_core, module) {
     bind_proofs(module);
     bind_exact(module);
     bind_preparation(module);
+    bind_compare(module);
     bind_run(module);
 }

@@ -1,5 +1,6 @@
 #include "core/roundoff.hpp"
 #include "statics/contender.hpp"
+#include "statics/steepest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,37 +11,6 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
-using roundoff::u;
-
-/// 2-norm of the mechanism that opens contact l at unit rate (the held and kept others at rest), enclosed.
-template <int Dim> Enclosure mechanism_norm(const Statics<Dim>& statics, ContactId l) {
-    const sparse::Matrix<double>& h = statics.structure().matrix();
-    std::vector<double> v(static_cast<std::size_t>(h.rows), 0.0);
-    v[l.index()] = 1;
-    statics.factorisation().solve_velocities(v);
-    double residual = 0;
-    double size = 0;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(h.cols); ++j) {
-        double dot = j == l.index() ? -1.0 : 0.0;
-        double terms = std::abs(dot);
-        for (int e = h.start[j]; e < h.start[j + 1]; ++e) {
-            const auto s = static_cast<std::size_t>(e);
-            const double term = h.value[s] * v[static_cast<std::size_t>(h.row[s])];
-            dot += term;
-            terms += std::abs(term);
-        }
-        const double bound = std::abs(dot) + 12 * u * terms; // at most 4 terms, 5u per entry
-        residual += bound * bound;
-    }
-    for (const double c : v) {
-        size += c * c;
-    }
-    const double value = std::sqrt(size);
-    const double away = statics.normal_uncertainty();
-    const double sigma = statics.inverse().sigma_min - away;
-    const double error = (std::sqrt(residual) + away * value) * (1 + 1e-10);
-    return {value, sigma > 0 ? error / sigma * (1 + 1e-10) + 1e-10 * value : infinity};
-}
 
 /// The contenders in the order of the rule.
 template <int Dim> class OpeningContest final : public Contest {
@@ -49,7 +19,9 @@ template <int Dim> class OpeningContest final : public Contest {
         : statics_(statics), contenders_(contenders), choice_(choice),
           least_(choice.rule == OpeningRule::least_negative) {
         for (Contender& c : contenders_) {
-            c.key = rule_key(choice_.rule, c.force, [&] { return mechanism_norm(statics_, c.contact); });
+            if (choice_.rule != OpeningRule::steepest) { // it has them
+                c.key = least_ ? opposite(c.force) : c.force;
+            }
         }
     }
     [[nodiscard]] std::size_t size() const override { return contenders_.size(); }
@@ -189,19 +161,13 @@ std::optional<Failure> choose(Statics<Dim>& statics, const std::vector<Contender
 
 } // namespace
 
-Enclosure quotient(const Enclosure& a, const Enclosure& b) {
-    const double value = a.value / b.value;
-    const double smallest = b.value - b.radius;
-    if (!(smallest > 0)) {
-        return {value, infinity};
-    }
-    return {value, (a.radius + std::abs(value) * b.radius) / smallest * (1 + 8 * u) + 2 * u * std::abs(value)};
-}
-
 template <int Dim>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice) {
     if (const auto place = rule_place(choice.rule, contenders.size(), choice.random_bits)) {
         return pick_by_name(statics, contenders, *place);
+    }
+    if (choice.rule == OpeningRule::steepest) {
+        keep_steepest(statics, contenders);
     }
     OpeningContest<Dim> contest(statics, contenders, choice);
     const auto guess =

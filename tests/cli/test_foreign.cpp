@@ -71,6 +71,8 @@ BOOST_AUTO_TEST_CASE(rows_are_selected_by_a_column) {
     const auto all = run({"plateau", file});
     BOOST_TEST(contains(all.out, "types 1 (2 rows), 2 (1 rows): every row is taken for a disk"), all.out);
     BOOST_TEST(contains(all.out, "disks                       3,"), all.out);
+    expect(run({"plateau", file, "--walls", "box", "--box", "0:4,0:2"}), 65,
+           {"centre between the walls", "--select type=1 takes one type"});
     const auto some = run({"plateau", file, "--select", "type=1"});
     BOOST_TEST(contains(some.out, "disks                       2,"), some.out);
     BOOST_TEST(!contains(some.out, "every row is taken"), some.out);

@@ -38,6 +38,31 @@ BOOST_AUTO_TEST_CASE(a_soft_frame_snaps_to_a_state_that_certify_takes) {
     expect(run({"verify", (folder / "certificate.json").string()}), 0);
 }
 
+BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
+    const scratch::Folder folder;
+    for (const auto& [stiffness, right] : {std::pair{"1e5", true}, std::pair{"1.1e5", false}}) {
+        const Outcome made = run({"snap", scratch::data("series/disks.dump"), "--frame", "0", "--box", first_box,
+                                  "--stiffness", stiffness, "-o", (folder / "state.json").string(), "--json"});
+        expect(made, 0);
+        const auto at = made.out.find("\"rest\":");
+        BOOST_TEST_REQUIRE(at != std::string::npos, made.out);
+        const double rest = std::stod(made.out.substr(at + 7));
+        BOOST_TEST((rest < 1e-2) == right, made.out);
+    }
+    expect(run({"snap", scratch::data("series/disks.dump"), "--stiffness", "-1", "-o", "x.json"}), 64,
+           {"--stiffness", "is -1: expected a positive number"});
+}
+
+BOOST_AUTO_TEST_CASE(some_frames_of_a_series_are_compared_alone) {
+    const std::string series = scratch::data("series/series.toml");
+    const Outcome some = run({"compare", series, "--frames", "5:6", "--bundle", "4", "--local"});
+    BOOST_TEST(some.status == 2, some.out + some.err);
+    BOOST_TEST(contains(some.out, "2 frames: 1 same, 1 undecided"), some.out);
+    BOOST_TEST(contains(some.out, "FIRST DEPARTURE: frames 5 -> 6"), some.out);
+    expect(run({"compare", series, "--frames", "9:11"}), 64, {"--frames is '9:11'", "no such frame"});
+    expect(run({"compare", series, "--frames", "3"}), 64, {"--frames", "A:B"});
+}
+
 BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
     const scratch::Folder folder;
     const std::string state = (folder / "state.json").string();

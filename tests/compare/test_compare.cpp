@@ -387,4 +387,30 @@ BOOST_AUTO_TEST_CASE(the_figure_has_no_curve_without_a_point) {
     BOOST_TEST(!contains(script, "title \"rest\""));
 }
 
+BOOST_AUTO_TEST_CASE(hertzian_contacts_have_their_own_law) {
+    // Frames of gran/hertz/history, with contacts of disks and walls.
+    const scratch::Folder folder;
+    for (const char* name : {"disks.dump", "contacts.dump", "frames.csv"}) {
+        std::filesystem::copy(scratch::data("hertz/" + std::string(name)), folder / name);
+    }
+    const std::string manifest = scratch::read(scratch::data("hertz/series.toml"));
+    const auto compared = [&](const std::string& text) {
+        scratch::write(folder / "series.toml", text);
+        compare::SeriesReader reader(folder / "series.toml");
+        return compare::compare(reader, {});
+    };
+    const Comparison right = compared(manifest);
+    BOOST_TEST(right.status == 0);
+    for (const compare::FrameResult& f : right.frames) {
+        BOOST_TEST(f.law < 1e-8);
+        BOOST_TEST(f.rest < 1e-6);
+    }
+    BOOST_TEST(std::isnan(right.path.front().soft_limit)); // predicted for linear contacts only
+    for (const auto& [what, with] : {std::pair{"\"hertz\"", "\"linear\""}, std::pair{"1000000.0", "1010000.0"}}) {
+        for (const compare::FrameResult& f : compared(scratch::replaced(manifest, what, with)).frames) {
+            BOOST_TEST((f.status == compare::FrameStatus::file), f.reason);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

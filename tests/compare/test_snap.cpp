@@ -1,14 +1,20 @@
 // The vertex of a list of contacts: proved near the soft place, or refused with the reason.
+#include "compare/backbone.hpp"
 #include "compare/force_split.hpp"
 #include "compare/series_copy.hpp"
+#include "compare/surplus_split.hpp"
+#include "rigidity/isostatic.hpp"
 
 #include <isostat/compare/snap.hpp>
 #include <isostat/io/state_file.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
+#include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <boost/test/unit_test.hpp>
 
 #include <cmath>
+#include <numeric>
 
 using namespace isostat;
 using compare::Snap;
@@ -133,6 +139,59 @@ BOOST_AUTO_TEST_CASE(forces_are_split_into_what_is_left_and_what_the_overlaps_ch
             BOOST_TEST(wrong.stiffness == split.stiffness);
         }
         BOOST_TEST(stiffnesses[0] / stiffnesses[1] == 10.0, boost::test_tools::tolerance(0.1)); // as 1 / K
+    }
+}
+
+/// The self-stress of a list with h = 1, largest component 1, by dense elimination.
+std::vector<double> self_stress_of(const Snap& snap, const SoftState& soft) {
+    const Packing<2> packing = compare::of_disks(soft.packing, snap.disks);
+    const auto h = contact_matrix(packing, DofMap<2>(packing), snap.backbone.contacts);
+    const Eigen::MatrixXd dense = Eigen::Map<const Eigen::SparseMatrix<double>>(
+        h.rows, h.cols, h.entries(), h.start.data(), h.row.data(), h.value.data());
+    const Eigen::MatrixXd kernel = Eigen::FullPivLU<Eigen::MatrixXd>(dense).kernel();
+    BOOST_TEST_REQUIRE(kernel.cols() == 1);
+    const Eigen::VectorXd s = kernel.col(0) / kernel.col(0).cwiseAbs().maxCoeff();
+    return {s.begin(), s.end()};
+}
+
+BOOST_AUTO_TEST_CASE(forces_of_a_hyperstatic_list_are_split_beside_its_self_stress) {
+    std::vector<Sample> samples{Sample(), of_cell("rect_16"), of_cell("tilt_16")};
+    for (const Sample& sample : samples) {
+        std::vector<double> forces;
+        SoftState soft = sample.soft(1e6, &forces);
+        const double mean = compare::mean_force(forces);
+        const Snap exact = compare::snap(soft);
+        const double stiffness = compare::split_forces(soft, forces, mean, exact).stiffness;
+        Contact near = exact.truth.claims.gaps->where; // a pair that touches not: one contact too many
+        near.i = exact.disks[static_cast<std::size_t>(near.i)];
+        near.j = near.kind == ContactKind::disk_disk ? exact.disks[static_cast<std::size_t>(near.j)] : near.j;
+        soft.contacts.push_back(near);
+        forces.push_back(0);
+        const Snap list = compare::snap(soft);
+        BOOST_TEST_REQUIRE((list.outcome == SnapOutcome::hyperstatic), list.reason);
+        compare::Exchanged vertex;
+        vertex.state = sample.state;
+        vertex.truth = certify(vertex.state);
+        const std::vector<double> s = self_stress_of(list, soft);
+        for (const double amount : {0.0, 0.1, -3.0}) {
+            std::vector<double> given = forces;
+            for (std::size_t l = 0; l < given.size(); ++l) {
+                given[l] += amount * mean * s[l];
+            }
+            const auto split = compare::split_surplus(soft, given, mean, list, &vertex);
+            BOOST_TEST(split.rest < 1e-9); // they balance whatever the amount
+            BOOST_TEST(std::abs(split.self_stress - std::abs(amount)) <= stiffness);
+            BOOST_TEST(std::abs(split.downhill - std::abs(amount)) <= stiffness * 1.001 + 1e-9);
+            given[5] += 0.25 * mean;
+            const auto wrong = compare::split_surplus(soft, given, mean, list, &vertex);
+            // The nearest balanced forces keep of the error what is along the self-stress.
+            const double square = std::inner_product(s.begin(), s.end(), s.begin(), 0.0);
+            double left = 0;
+            for (std::size_t l = 0; l < s.size(); ++l) {
+                left = std::max(left, 0.25 * std::abs((l == 5 ? 1 : 0) - s[5] * s[l] / square));
+            }
+            BOOST_TEST(wrong.rest == left, boost::test_tools::tolerance(1e-6));
+        }
     }
 }
 

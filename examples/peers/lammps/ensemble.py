@@ -1,21 +1,28 @@
 #!/usr/bin/env python3
 """How good is the faster code? Samples of LAMMPS against the exact trajectory: error against run time.
 
-    ensemble.py [--disks 100] [--samples 5] [--end 1.2] [--stiffness 1e4 1e5 1e6] [--step 0.05 0.01] [--drag 1] [--table]
+    ensemble.py [--disks 100] [--samples 5] [--end 1.2] [--stiffness 1e4 1e5 1e6] [--step 0.05 0.01] [--drag 1] [--table] [--figure]
 
-One series after another, sample by sample; a row of OUTPUT/ensemble.csv for each as it ends, and the table at the end. Series that
-are there are not made again: a run that was stopped goes on. `--table`: only the table, of what is there."""
+One series after another, sample by sample; what `isostat compare` says of each, a row of OUTPUT/ensemble.csv as it ends, and the table
+at the end. Series that are there are not made again: a run that was stopped goes on. `--table`: only the table, of what is there.
+`--figure`: OUTPUT/ensemble.svg, the frames of the first sample, a panel for each series."""
 import argparse
 import collections
 import csv
+import itertools
 import math
 import pathlib
 import statistics
 import sys
 
+from figure import draw
 from series import compare, isostat, lammps, series, timed
 
 elsewhere = ("early", "late", "other")
+
+
+def name_of(row):
+    return f"k{row['stiffness']}-drag{row['drag']}-step{row['step']}-end{row['end']}"
 
 
 def exact_seconds(start, folder, end):
@@ -40,19 +47,19 @@ def row_of(key, folder, seconds, exact, words):
 
 
 def table(rows):
-    """One line per stiffness and step, over the samples."""
-    print("| kn / P | step | samples, frames | same list | elsewhere | soft | in motion | undecided | next one right | first departure "
-          "| force error | LAMMPS | exact run |\n" + "|---" * 13 + "|")
+    """One line per stiffness, drag and step, over the samples."""
+    print("| kn / P | drag | step | samples, frames | same list | elsewhere | soft | in motion | undecided | next one right | first departure "
+          "| force error | LAMMPS | exact run |\n" + "|---" * 14 + "|")
     groups = collections.defaultdict(list)
     for row in rows:
-        groups[row["stiffness"], row["step"]].append(row)
-    for (stiffness, step), members in sorted(groups.items(), key=lambda item: (float(item[0][0]), -float(item[0][1]))):
+        groups[row["stiffness"], row["drag"], row["step"]].append(row)
+    for (stiffness, drag, step), members in sorted(groups.items(), key=lambda item: [float(x) * sign for x, sign in zip(item[0], (1, -1, -1))]):
         total = lambda name: sum(float(row[name]) for row in members)
         share = lambda name: f"{total(name) / total('frames'):.0%}"
         errors = [float(row["force_error"]) for row in members if str(row["force_error"]) != "nan"]
         reasons = collections.Counter(row["departure"] for row in members).most_common()
         print("| " + " | ".join([
-            stiffness, step, f"{len(members)}, {total('frames'):.0f}", share("same"), share("elsewhere"), share("soft"), share("moving"),
+            stiffness, drag, step, f"{len(members)}, {total('frames'):.0f}", share("same"), share("elsewhere"), share("soft"), share("moving"),
             share("undecided"), f"{total('local'):.0f} of {total('asked'):.0f}", ", ".join(f"{reason} {n}" for reason, n in reasons),
             f"{statistics.median(errors):.1e}" if errors else "-", f"{total('lammps_seconds') / len(members):.3g} s",
             f"{total('exact_seconds') / len(members):.2g} s"]) + " |")
@@ -65,8 +72,9 @@ def main():
     options.add_argument("--end", type=float, default=1.2)
     options.add_argument("--stiffness", nargs="+", default=["1e4", "1e5", "1e6"])
     options.add_argument("--step", nargs="+", default=["0.05", "0.01"])
-    options.add_argument("--drag", default="1")
+    options.add_argument("--drag", nargs="+", default=["1"])
     options.add_argument("--table", action="store_true")
+    options.add_argument("--figure", action="store_true")
     asked = options.parse_args()
     if not lammps and not asked.table:
         print("LAMMPS is not there: sudo apt-get install lammps", file=sys.stderr)
@@ -83,19 +91,26 @@ def main():
         if not start.exists():
             timed([isostat, "prepare", sample / "scene.toml", "-o", start, "--quiet"])
         exact = exact_seconds(start, sample, asked.end)
-        for stiffness in asked.stiffness:
-            for step in asked.step:
-                key = {"seed": str(seed), "stiffness": stiffness, "step": step, "drag": asked.drag, "end": str(asked.end)}
-                if any(all(row[name] == value for name, value in key.items()) for row in rows):
-                    continue
-                folder = sample / f"k{stiffness}-drag{asked.drag}-step{step}-end{asked.end}"
-                seconds = series(start, folder, stiffness, asked.drag, step, round((asked.end - 1) / float(step)))
-                rows.append(row_of(key, folder, seconds, exact, compare(start, folder)))
-                with open(results, "w", newline="") as file:
-                    writer = csv.DictWriter(file, rows[-1].keys())
-                    writer.writeheader()
-                    writer.writerows(rows)
+        for stiffness, drag, step in itertools.product(asked.stiffness, asked.drag, asked.step):
+            key = {"seed": str(seed), "stiffness": stiffness, "step": step, "drag": drag, "end": str(asked.end)}
+            if any(all(row[name] == value for name, value in key.items()) for row in rows):
+                continue
+            folder = sample / name_of(key)
+            seconds = series(start, folder, stiffness, drag, step, round((asked.end - 1) / float(step)))
+            words = compare(start, folder)
+            print(f"seed {seed}, stiffness {stiffness}, drag {drag}, step {step} ({seconds:.0f} s of LAMMPS)" + words.replace("\n", "\n  "),
+                  flush=True)
+            rows.append(row_of(key, folder, seconds, exact, words))
+            with open(results, "w", newline="") as file:
+                writer = csv.DictWriter(file, rows[-1].keys())
+                writer.writeheader()
+                writer.writerows(rows)
+    rows = [row for row in rows if int(row["seed"]) <= asked.samples and row["end"] == str(asked.end) and
+            all(row[name] in getattr(asked, name) for name in ("stiffness", "drag", "step"))]
     table(rows)
+    if asked.figure:
+        draw(output, [(f"k_n/P = {row['stiffness']}, drag {row['drag']}", output / "seed1" / name_of(row) / "comparison")
+                      for row in rows if row["seed"] == "1"], len(asked.stiffness))
 
 
 if __name__ == "__main__":

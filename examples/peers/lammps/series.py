@@ -1,10 +1,7 @@
-#!/usr/bin/env python3
-"""One series of LAMMPS from an equilibrium of isostat, and what `isostat compare` says of it.
+"""One series of LAMMPS from an equilibrium of isostat, sigma2 = 1, 1 + step, ... 1 + step steps, and what `isostat compare` says of it.
 
-    series.py STATE.json DIR STIFFNESS DRAG STEP STEPS      sigma2 = 1, 1 + STEP, ... 1 + STEP STEPS
-
-Writes DIR/start.data (input of LAMMPS), DIR/series.toml (the manifest), the dumps, DIR/seconds (processor time of LAMMPS; a series
-that has it is not made again), DIR/comparison; prints what `compare` prints. The environment says which programs: LMP, ISOSTAT."""
+In its folder: start.data (input of LAMMPS), series.toml (the manifest), the dumps, seconds (processor time of LAMMPS; a series
+that has it is not made again), comparison. The environment says which programs: LMP, ISOSTAT."""
 import json
 import os
 import pathlib
@@ -83,10 +80,3 @@ def compare(start, folder):
     if result.returncode > 2:
         sys.exit(result.returncode)
     return result.stdout
-
-
-if __name__ == "__main__":
-    start, folder, stiffness, drag, step, steps = sys.argv[1:]
-    seconds = series(start, folder, stiffness, drag, step, steps)
-    print(f"stiffness {stiffness}, drag {drag}, step {step} ({seconds:.0f} s of LAMMPS):")
-    print("  " + compare(start, folder).replace("\n", "\n  "))

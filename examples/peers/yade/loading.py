@@ -1,6 +1,6 @@
 """A series of YADE from an equilibrium of isostat, written as `isostat compare` reads it.
 
-    yade -n -x loading.py STATE.json DIR STIFFNESS STEP STEPS      sigma2 = 1, 1 + STEP, ... 1 + STEP STEPS
+    yade -n -x loading.py STATE.json DIR STIFFNESS DAMPING STEP STEPS      sigma2 = 1, 1 + STEP, ... 1 + STEP STEPS
 
 Disks are spheres that stay in the plane, without friction; every contact has the same stiffness. The right and the top wall have a mass and
 bear constant forces. At each load the run goes on until the forces left are 1e-6 of a mean force, or for 400 000 steps."""
@@ -15,7 +15,7 @@ from yade import (Bo1_Sphere_Aabb, Bo1_Wall_Aabb, ForceResetter, FrictMat, Ig2_S
 
 state = json.loads(pathlib.Path(sys.argv[1]).read_text())
 folder = pathlib.Path(sys.argv[2])
-stiffness, step, steps = float(sys.argv[3]), float(sys.argv[4]), int(sys.argv[5])
+stiffness, damping, step, steps = float(sys.argv[3]), float(sys.argv[4]), float(sys.argv[5]), int(sys.argv[6])
 folder.mkdir(parents=True, exist_ok=True)
 disks, (width, height) = state["disks"], state["length"]
 n = len(disks)
@@ -36,7 +36,7 @@ def push():
     """The movable walls: forces of the grains against the load, with drag."""
     for axis, name in enumerate(("right", "top")):
         velocity = O.bodies[walls[name]].state.vel
-        velocity[axis] = 0.995 * (velocity[axis] + O.dt * (O.forces.f(walls[name])[axis] - load[name]) / (20 * mass))
+        velocity[axis] = (1 - damping / 60) * (velocity[axis] + O.dt * (O.forces.f(walls[name])[axis] - load[name]) / (20 * mass))
         O.bodies[walls[name]].state.vel = velocity
 
 
@@ -46,7 +46,7 @@ O.engines = [
     InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
                     [Ip2_FrictMat_FrictMat_FrictPhys(kn=MatchMaker(algo="val", val=stiffness), ks=MatchMaker(algo="val", val=stiffness))],
                     [Law2_ScGeom_FrictPhys_CundallStrack()]),
-    NewtonIntegrator(damping=0.3),
+    NewtonIntegrator(damping=damping),
     PyRunner(command="push()", iterPeriod=1),
 ]
 O.dt = 0.2 * math.sqrt(min(body.state.mass for body in O.bodies if body.id < n) / stiffness)

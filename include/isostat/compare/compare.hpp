@@ -12,6 +12,7 @@
 #include <array>
 #include <atomic>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,8 +20,9 @@
 
 namespace isostat::compare {
 
-/// - linear: force = stiffness x overlap; - none: not stated, forces are taken as they are.
-enum class ForceLaw : unsigned char { linear, none };
+/// - linear: force = stiffness x overlap; - hertz: stiffness x overlap^(3/2) x sqrt(R_i R_j / (R_i + R_j)), at a wall
+/// sqrt(R_i); - none: not stated, forces are taken as they are.
+enum class ForceLaw : unsigned char { linear, hertz, none };
 
 /// A contact as the files say it. `row`: "FILE:LINE" where it was read.
 struct FileContact {
@@ -51,6 +53,8 @@ struct Series {
         false;               ///< of each disk, from columns; else walls that a disk overlaps, with the force of the law
     double rest = 1e-3;      ///< largest unbalanced force of a frame at rest, in mean forces
     double agreement = 1e-3; ///< largest |force - stiffness overlap| of a frame that is understood, in mean forces
+    /// 0: another law; soft limits are predicted for linear contacts only.
+    [[nodiscard]] double linear_stiffness() const { return law == ForceLaw::linear ? stiffness : 0; }
 };
 
 /// The frames of a series, one after another: one is in memory at a time. Disks are matched by id, in the order of the
@@ -107,6 +111,10 @@ struct FrameResult {
     /// Largest error of a force over the mean force, in three parts: |f_file - K overlap|; |f_file - f(H(q_soft))|, the
     /// exact solve at the stored coordinates; |f(H(q_soft)) - f(H(q*))|, upper bounds (both proved to their bound).
     double law = 0, ratio = 1, rest = 0, stiffness = 0;
+    /// With h > 0 there is no exact force on the list: `rest` is |f_file - g|, g the balanced forces nearest to those
+    /// of the file. Where the vertex is one downhill: |g - f*|, f* its forces, an upper bound against that vertex; and,
+    /// with h > 0, what of it is along the self-stresses of the list, in doubles.
+    double downhill = 0, self_stress = 0;
     double eps1 = 0, eps2 = 0;           ///< strains of the frame
     double true_eps1 = 0, true_eps2 = 0; ///< of its true vertex
     int node = -1;                       ///< of the bundle with this list
@@ -164,6 +172,8 @@ struct CompareOptions {
     OpeningRule rule = OpeningRule::most_negative;
     int bundle = 16;    ///< members of the bundle; 0: none
     bool local = false; ///< besides, the exact run from every frame to the next
+    /// The first and the last frame to look at, by their numbers.
+    std::array<int, 2> frames{0, std::numeric_limits<int>::max()};
     const std::atomic<bool>* stop = nullptr;
 };
 
@@ -177,12 +187,12 @@ struct Comparison {
     int status = 0;
 };
 
-/// Frames are read and judged one by one (`snap`, else `exchange`); the exact run starts from the first one, follows
-/// the loads of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance of each
-/// snapped frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded), the
-/// reason of the departure, soft limits. Cost: about two certificates per frame; kept of a frame are its list and its
-/// numbers, with `local` a state too. Throws what `SeriesReader::next` throws, and `Error(bad_input)` when `start` has
-/// other radii than the frames.
+/// Frames are read and judged (`snap`, else `exchange`), one by each thread; the exact run starts from the first,
+/// follows the loads of the frames, up and down, and goes on for a few equilibria. What is proved: verdict and distance
+/// of each snapped frame, forces, intervals, the run. What is diagnosis: `file` (numbers that another program rounded),
+/// the reason of the departure, soft limits. Cost: about two certificates per frame; kept of a frame are its list and
+/// its numbers. Throws what `SeriesReader::next` throws, and `Error(bad_input)` when `start` has other radii than the
+/// frames.
 Comparison compare(SeriesReader& reader, const CompareOptions& options = {});
 
 } // namespace isostat::compare

@@ -24,6 +24,7 @@ from ._core import (
     Packing,
     Plateau,
     RunVerification,
+    Snap,
     State,
     Verification,
     available_cores,
@@ -37,8 +38,10 @@ from ._core import (
     prepare,
     read_packing,
     set_threads,
+    snap,
     sqrt,
 )
+from ._compare import Comparison, compare
 from ._exact import exact_packing
 from ._records import Records, States, load
 from ._run import Run

@@ -145,6 +145,33 @@ def _draw_walls(state: State | Packing, ax: Axes) -> None:
     ax.set_ylim(low[1] - margin, high[1] + margin)
 
 
+def comparison(compared, ax: Optional[Axes] = None) -> Axes:
+    """The staircase of the exact run, and frames of another program at their loads, a mark for each status.
+
+    Parameters
+    ----------
+    compared : Comparison
+        From `isostat.compare`.
+    ax : matplotlib axes, optional
+
+    Returns
+    -------
+    matplotlib axes
+    """
+    ax = _axes(ax)
+    path, frames = compared.path, compared.frames
+    ax.plot(np.repeat(path["eps2"], 2)[:-1], np.repeat(path["sigma2"], 2)[1:], label="exact run", linewidth=1.2)
+    strain = np.where(np.isnan(frames["true_eps2"]), frames["eps2"], frames["true_eps2"])
+    marks = {"same": "o", "early": "^", "late": "v", "other": "s", "soft": "x", "moving": "+"}
+    for status in dict.fromkeys(frames["status"]):
+        at = frames["status"] == status
+        ax.plot(strain[at], frames["sigma2"][at], marks.get(status, "*"), label=status, linestyle="none")
+    ax.set_xlabel("strain eps2")
+    ax.set_ylabel("sigma2")
+    ax.legend()
+    return ax
+
+
 def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
     """Stress ratio against axial strain: one structure carries a growing load, then a rearrangement.
 

@@ -15,9 +15,17 @@ namespace {
 /// Roundings of the quotient that is written as the stress at a limit.
 constexpr double limit_rounding = 0x1p-50;
 
+/// What is accepted of the largest stress, where the one that a programme changes is near 0, as a shear stress is.
+constexpr double load_tolerance = 1e-6;
+
 /// The largest bound of an end of the supported interval that is accepted.
 double loosest_end(const Place& place, const Bounded& stress) {
-    return force_tolerance * std::max(std::abs(place.stress()), std::abs(stress.value));
+    double largest = 0;
+    for (const double other : place.state->load.stress) {
+        largest = std::max(largest, std::abs(other));
+    }
+    return std::max(force_tolerance * std::max(std::abs(place.stress()), std::abs(stress.value)),
+                    load_tolerance * largest);
 }
 
 /// What the infinitesimal loads compare where forces vanish together: how soon each does.

@@ -222,13 +222,21 @@ py::tuple enclosed_bases(const CraftedInspection& self, int count) {
     return py::make_tuple(bases.verdict, enclosed(bases.self_stresses), enclosed(bases.motions));
 }
 
-void bind_crafted_inspection(py::module_& module) {
+using InspectionClass = py::class_<CraftedInspection>;
+
+/// A member of what was seen.
+template <class Member> auto field(Member member) {
+    return [member](const CraftedInspection& self) { return self.seen.*member; };
+}
+
+/// The same of exact numbers.
+template <class Member> auto exact(Member member) {
+    return [member](const CraftedInspection& self) { return to_python(self.seen.*member); };
+}
+
+void bind_counts(InspectionClass& inspection) {
     using Self = CraftedInspection;
-    const auto field = [](auto member) { return [member](const Self& self) { return self.seen.*member; }; };
-    const auto exact = [](auto member) { return [member](const Self& self) { return to_python(self.seen.*member); }; };
-    py::class_<Self>(module, "ExactInspection",
-                     "What is proved of a crafted packing, in exact arithmetic. str() gives lines for a terminal.")
-        .def_property_readonly("dofs", field(&Seen::dof_count), "N_f.")
+    inspection.def_property_readonly("dofs", field(&Seen::dof_count), "N_f.")
         .def_property_readonly(
             "contacts", [](const Self& self) { return contact_array(self.seen.contacts); }, "(N, 2) contacts.")
         .def_property_readonly("rank", field(&Seen::rank),
@@ -245,6 +253,21 @@ void bind_crafted_inspection(py::module_& module) {
         .def_property_readonly(
             "verdict", [](const Self& self) { return self.seen.verdict(); },
             "\"isostatic\", \"hyperstatic\", \"hypostatic\", \"hyperstatic and hypostatic\" or \"undecided\".")
+        .def_property_readonly(
+            "strains",
+            [](const Self& self) {
+                py::dict out;
+                for (std::size_t s = 0; self.seen.strains && s < strains.size(); ++s) {
+                    out[to_string(strains[s])] = (*self.seen.strains)[s];
+                }
+                return out;
+            },
+            "Of a cell: a Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\"; else empty.");
+}
+
+void bind_bases(InspectionClass& inspection) {
+    using Self = CraftedInspection;
+    inspection
         .def_property_readonly("bases_exact", field(&Seen::bases_exact),
                                "Verdict on: both bases are complete and verified.")
         .def_property_readonly("self_stresses", exact(&Seen::self_stresses), "Basis: h lists of N exact forces.")
@@ -264,7 +287,12 @@ void bind_crafted_inspection(py::module_& module) {
                 }
                 return words;
             },
-            "Per disk: \"held\", \"bridge\", \"rattler\", \"fixed\", \"loaded\".")
+            "Per disk: \"held\", \"bridge\", \"rattler\", \"fixed\", \"loaded\".");
+}
+
+void bind_equilibrium(InspectionClass& inspection) {
+    using Self = CraftedInspection;
+    inspection
         .def_property_readonly(
             "support", [](const Self& self) { return crafted::to_string(self.seen.support); },
             "What the load meets: \"positive\", \"with zeros\", \"none\", \"unbalanced\", \"undecided\", \"no load\".")
@@ -279,16 +307,6 @@ void bind_crafted_inspection(py::module_& module) {
         .def_property_readonly("stable", field(&Seen::stable),
                                "Verdict on: a local minimum of the potential, strict up to rigid motions.")
         .def_property_readonly(
-            "strains",
-            [](const Self& self) {
-                py::dict out;
-                for (std::size_t s = 0; self.seen.strains && s < strains.size(); ++s) {
-                    out[to_string(strains[s])] = (*self.seen.strains)[s];
-                }
-                return out;
-            },
-            "Of a cell: a Counting for \"fixed cell\", \"isotropic\", \"diagonal\", \"full strain\"; else empty.")
-        .def_property_readonly(
             "jammed",
             [](const Self& self) {
                 py::dict out;
@@ -299,11 +317,21 @@ void bind_crafted_inspection(py::module_& module) {
                 return out;
             },
             "Of a cell: a Verdict for \"collectively\" and \"strictly\", of the disks that are not rattlers; else "
-            "empty.")
+            "empty.");
+}
+
+void bind_crafted_inspection(py::module_& module) {
+    InspectionClass inspection(
+        module, "ExactInspection",
+        "What is proved of a crafted packing, in exact arithmetic. str() gives lines for a terminal.");
+    bind_counts(inspection);
+    bind_bases(inspection);
+    bind_equilibrium(inspection);
+    inspection
         .def("enclosed_bases", &enclosed_bases, py::arg("count") = 1,
              "(verdict, self_stresses, mechanisms) in doubles, the first `count` of each: pairs (array, radius), every "
              "component within the radius. For packings that are too large for exact bases.")
-        .def("__str__", [](const Self& self) { return crafted::to_text(self.seen, self.packing); });
+        .def("__str__", [](const CraftedInspection& self) { return crafted::to_text(self.seen, self.packing); });
 }
 
 } // namespace

@@ -166,7 +166,8 @@ void bind_contacts(StateClass& state) {
                 auto rows = out.mutable_unchecked<2>();
                 for (std::size_t l = 0; l < contacts.size(); ++l) {
                     for (std::size_t a = 0; a < 2; ++a) {
-                        rows(static_cast<py::ssize_t>(l), static_cast<py::ssize_t>(a)) = contacts[l].image.m[a];
+                        const int periods{contacts[l].image.m[a]};
+                        rows(static_cast<py::ssize_t>(l), static_cast<py::ssize_t>(a)) = periods;
                     }
                 }
                 return out;

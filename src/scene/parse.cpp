@@ -275,6 +275,30 @@ void check_sections(const toml::table& document, const std::string& source) {
     }
 }
 
+void read_programme(const toml::table& document, Scene& scene) {
+    const std::string& source = scene.file;
+    if (const toml::node* node = document.get("programme")) {
+        const toml::array* steps = node->as_array();
+        if (steps == nullptr || !steps->is_homogeneous<toml::table>()) {
+            throw Error(
+                ErrorKind::bad_input,
+                fmt::format("{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment",
+                            source, node->source().begin.line));
+        }
+        for (const toml::node& step : *steps) {
+            Section one(step.as_table(), "[programme]", source, scene.settings);
+            scene.programme.push_back(read_step(one, scene.loads_tilt.value_or(false)));
+        }
+    }
+    if (scene.preparation.cell == PreparedCell::isotropic && !scene.programme.empty()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: kind = \"isotropic\" in [cell] and a [[programme]]: a load on the size of a cell "
+                                "only scales the forces, no contact ever opens. Expected no programme (`prepare` takes "
+                                "such a cell), or another kind",
+                                source));
+    }
+}
+
 } // namespace
 
 Scene parse_scene(const std::string& text, const std::string& source, const std::filesystem::path& folder) {
@@ -310,26 +334,7 @@ Scene parse_scene(const std::string& text, const std::string& source, const std:
     Section load = section("load");
     read_load(load, scene);
     load.finish();
-    if (const toml::node* node = document.get("programme")) {
-        const toml::array* steps = node->as_array();
-        if (steps == nullptr || !steps->is_homogeneous<toml::table>()) {
-            throw Error(
-                ErrorKind::bad_input,
-                fmt::format("{}:{}: 'programme' is not a list of tables: expected [[programme]] for each segment",
-                            source, node->source().begin.line));
-        }
-        for (const toml::node& step : *steps) {
-            Section one(step.as_table(), "[programme]", source, scene.settings);
-            scene.programme.push_back(read_step(one, scene.loads_tilt.value_or(false)));
-        }
-    }
-    if (scene.preparation.cell == PreparedCell::isotropic && !scene.programme.empty()) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: kind = \"isotropic\" in [cell] and a [[programme]]: a load on the size of a cell "
-                                "only scales the forces, no contact ever opens. Expected no programme (`prepare` takes "
-                                "such a cell), or another kind",
-                                source));
-    }
+    read_programme(document, scene);
     Section run = section("run");
     read_run(run, scene);
     run.finish();

@@ -387,6 +387,15 @@ BOOST_AUTO_TEST_CASE(the_figure_has_no_curve_without_a_point) {
     BOOST_TEST(!contains(script, "title \"rest\""));
 }
 
+BOOST_AUTO_TEST_CASE(a_wall_that_drifts_while_the_disks_balance_is_in_motion) {
+    compare::SeriesReader reader(scratch::data("slow_wall/series.toml"));
+    const Comparison result = compare::compare(reader, {});
+    BOOST_TEST_REQUIRE(result.frames.size() == 1U);
+    BOOST_TEST((result.frames[0].status == compare::FrameStatus::moving), result.frames[0].reason);
+    BOOST_TEST(result.frames[0].unbalanced > 1e-2);
+    BOOST_TEST(result.status == 0);
+}
+
 BOOST_AUTO_TEST_CASE(hertzian_contacts_have_their_own_law) {
     // Frames of gran/hertz/history, with contacts of disks and walls.
     const scratch::Folder folder;

@@ -85,6 +85,11 @@ BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_i
     }
     BOOST_TEST(result.frames[3].found == result.frames[3].expected + 1);
     BOOST_TEST(result.frames[8].counting.hyperstaticity == 1);
+    BOOST_TEST(result.frames[8].rest < 1e-7);
+    BOOST_TEST(std::isnan(result.frames[8].stiffness)); // its list has no vertex
+    BOOST_TEST(result.frames[8].downhill == 0.0852, boost::test_tools::tolerance(1e-2));
+    BOOST_TEST(result.frames[8].self_stress < result.frames[8].downhill);
+    BOOST_TEST(std::isnan(result.frames[5].downhill));
     BOOST_TEST(result.status == 1);
     BOOST_TEST_REQUIRE(result.departure.has_value());
     BOOST_TEST(result.departure->reason == "stiffness");

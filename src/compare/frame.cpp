@@ -108,13 +108,18 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
         r.reason = reading.contradiction;
         return out;
     }
+    const SoftState soft{frame.packing, reading.contacts, frame.load};
+    if (!reading.other_load.empty() && snap(soft).outcome != SnapOutcome::moving) {
+        r.status = FrameStatus::file;
+        r.reason = reading.other_load;
+        return out;
+    }
     if (!(reading.unbalanced <= series.rest)) {
         r.status = FrameStatus::moving;
         r.reason = fmt::format("a force of {:.3g} mean forces is left: expected at most {:.3g} at rest",
                                reading.unbalanced, series.rest);
         return out;
     }
-    const SoftState soft{frame.packing, reading.contacts, frame.load};
     const Snap snapped = snap(soft);
     r.counting = snapped.counting;
     r.rattlers = static_cast<int>(snapped.rattlers.size());

@@ -202,16 +202,17 @@ class Reader {
         return out;
     }
 
-    /// A wall that moves takes disks along. Where they all balance and it does not, the load is that of another frame.
+    /// A wall that moves takes disks along. Where they all balance and it does not, the load is that of another frame,
+    /// or the wall drifts slowly along a mechanism.
     void check_load(const Left& left) {
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
             if (left.walls[axis] > series_.rest * out_.mean && left.disks < wall_alone * left.walls[axis]) {
-                contradict(fmt::format("{}: the forces on the {} and its load differ by {:.6g}, those on every disk "
-                                       "balance to {:.2g} (the load of another frame?)",
-                                       frame_.row,
-                                       frame_.packing.cell.any() ? (axis == 0 ? "period along x" : "period along y")
-                                                                 : (axis == 0 ? "right wall" : "top wall"),
-                                       left.walls[axis], left.disks));
+                const char* wall = frame_.packing.cell.any() ? (axis == 0 ? "period along x" : "period along y")
+                                                             : (axis == 0 ? "right wall" : "top wall");
+                out_.other_load = fmt::format("{}: the forces on the {} and its load differ by {:.6g}, those on every "
+                                              "disk balance to {:.2g} (the load of another frame?)",
+                                              frame_.row, wall, left.walls[axis], left.disks);
+                return;
             }
         }
     }
@@ -223,6 +224,7 @@ class Reader {
             check_load(left);
             left_ = left.largest();
             out_.unbalanced = out_.mean > 0 ? left_ / out_.mean : HUGE_VAL;
+            noise_ = out_.other_load.empty() ? left_ : left.disks;
         }
         std::map<Contact, double> forces;
         for (const Contact& c : overlaps_) {
@@ -234,7 +236,7 @@ class Reader {
     void make_list() {
         std::vector<Contact> strong;
         for (const auto& [c, force] : force_) {
-            if (force > left_ || force == 0) {
+            if (force > noise_ || force == 0) {
                 strong.push_back(c);
             }
         }
@@ -249,6 +251,7 @@ class Reader {
     Reading out_;
     double rounding_ = 0;               ///< of an overlap, as a length
     double left_ = 0, left_by_law_ = 0; ///< largest force left, by the files and by the overlaps
+    double noise_ = 0;                  ///< smaller forces count for none
     std::vector<Contact> overlaps_;
     std::map<Contact, double> force_;
     std::map<Contact, std::string> row_;

@@ -10,7 +10,10 @@
 namespace isostat::compare {
 
 struct Reading {
-    std::string contradiction;  ///< empty, or the pair, the row and by how much lists, forces and overlaps disagree
+    std::string contradiction; ///< empty, or the pair, the row and by how much lists, forces and overlaps disagree
+    /// Empty, or words: all disks balance, a wall or period does not. At rest that is the load of another frame; where
+    /// the list has mechanisms, motion.
+    std::string other_load;
     int listed = 0;             ///< contacts of the files with a force
     int overlapping = 0;        ///< pairs that overlap, walls included
     int twice = 0, missing = 0; ///< rows of a contact that has one; overlaps without a row

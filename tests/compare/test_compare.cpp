@@ -85,6 +85,11 @@ BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_i
     }
     BOOST_TEST(result.frames[3].found == result.frames[3].expected + 1);
     BOOST_TEST(result.frames[8].counting.hyperstaticity == 1);
+    BOOST_TEST(result.frames[8].rest < 1e-7);
+    BOOST_TEST(std::isnan(result.frames[8].stiffness)); // its list has no vertex
+    BOOST_TEST(result.frames[8].downhill == 0.0852, boost::test_tools::tolerance(1e-2));
+    BOOST_TEST(result.frames[8].self_stress < result.frames[8].downhill);
+    BOOST_TEST(std::isnan(result.frames[5].downhill));
     BOOST_TEST(result.status == 1);
     BOOST_TEST_REQUIRE(result.departure.has_value());
     BOOST_TEST(result.departure->reason == "stiffness");
@@ -385,6 +390,15 @@ BOOST_AUTO_TEST_CASE(the_figure_has_no_curve_without_a_point) {
     const std::string script = scratch::read(folder / "out" / "comparison.gp");
     BOOST_TEST(contains(script, "title \"law\""));
     BOOST_TEST(!contains(script, "title \"rest\""));
+}
+
+BOOST_AUTO_TEST_CASE(a_wall_that_drifts_while_the_disks_balance_is_in_motion) {
+    compare::SeriesReader reader(scratch::data("slow_wall/series.toml"));
+    const Comparison result = compare::compare(reader, {});
+    BOOST_TEST_REQUIRE(result.frames.size() == 1U);
+    BOOST_TEST((result.frames[0].status == compare::FrameStatus::moving), result.frames[0].reason);
+    BOOST_TEST(result.frames[0].unbalanced > 1e-2);
+    BOOST_TEST(result.status == 0);
 }
 
 BOOST_AUTO_TEST_CASE(hertzian_contacts_have_their_own_law) {

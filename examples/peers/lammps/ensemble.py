@@ -36,32 +36,34 @@ def exact_seconds(start, folder, end):
 def row_of(key, folder, seconds, exact, words):
     frames = list(csv.DictReader(open(folder / "comparison" / "comparison.csv")))
     statuses = collections.Counter(frame["status"] for frame in frames)
-    errors = [float(frame["stiffness"]) for frame in frames if frame["stiffness"] not in ("", "nan")]
+    median = lambda name, of: statistics.median([float(f[name]) for f in of if f[name] not in ("", "nan")] or [math.nan])
+    soft = [frame for frame in frames if frame["status"] == "soft"]
     departure = words.split("FIRST DEPARTURE: ")[1].split(": ")[1] if "FIRST DEPARTURE" in words else "none"
     return key | {"frames": len(frames), "same": statuses["same"], "elsewhere": sum(statuses[s] for s in elsewhere),
                   "soft": statuses["soft"], "moving": statuses["moving"],
                   "undecided": sum(statuses[s] for s in ("undecided", "refuted", "file")),
                   "local": sum(frame["local"] == "same" for frame in frames), "asked": sum(frame["local"] != "" for frame in frames),
-                  "departure": departure, "force_error": statistics.median(errors) if errors else math.nan,
+                  "departure": departure, "force_error": median("stiffness", frames), "soft_error": median("downhill", soft),
                   "lammps_seconds": seconds, "exact_seconds": exact}
 
 
 def table(rows):
     """One line per stiffness, drag and step, over the samples."""
     print("| kn / P | drag | step | samples, frames | same list | elsewhere | soft | in motion | undecided | next one right | first departure "
-          "| force error | LAMMPS | exact run |\n" + "|---" * 14 + "|")
+          "| force error | of soft ones | LAMMPS | exact run |\n" + "|---" * 15 + "|")
     groups = collections.defaultdict(list)
     for row in rows:
         groups[row["stiffness"], row["drag"], row["step"]].append(row)
     for (stiffness, drag, step), members in sorted(groups.items(), key=lambda item: [float(x) * sign for x, sign in zip(item[0], (1, -1, -1))]):
         total = lambda name: sum(float(row[name]) for row in members)
         share = lambda name: f"{total(name) / total('frames'):.0%}"
-        errors = [float(row["force_error"]) for row in members if str(row["force_error"]) != "nan"]
+        known = lambda name: [float(row[name]) for row in members if str(row.get(name) or "nan") != "nan"]
+        error = lambda name: f"{statistics.median(known(name)):.1e}" if known(name) else "-"
         reasons = collections.Counter(row["departure"] for row in members).most_common()
         print("| " + " | ".join([
             stiffness, drag, step, f"{len(members)}, {total('frames'):.0f}", share("same"), share("elsewhere"), share("soft"), share("moving"),
             share("undecided"), f"{total('local'):.0f} of {total('asked'):.0f}", ", ".join(f"{reason} {n}" for reason, n in reasons),
-            f"{statistics.median(errors):.1e}" if errors else "-", f"{total('lammps_seconds') / len(members):.3g} s",
+            error("force_error"), error("soft_error"), f"{total('lammps_seconds') / len(members):.3g} s",
             f"{total('exact_seconds') / len(members):.2g} s"]) + " |")
 
 

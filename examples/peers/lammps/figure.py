@@ -8,26 +8,32 @@ looks = {"same": ("#1f4e79", 7, "on the exact list"), "elsewhere": ("#c55a11", 8
 kinds = {"early": "elsewhere", "late": "elsewhere", "other": "elsewhere", "refuted": "undecided", "file": "undecided"}
 
 
+def strain(frame):
+    """Of the true vertex, if it has one."""
+    return float(frame["eps2"] if frame["true_eps2"] == "nan" else frame["true_eps2"])
+
+
 def panel(name, folder):
     """The lines of gnuplot for one series, with its data in them."""
-    data, last = "", None
-    for row in csv.DictReader(open(folder / "path.csv")): # level parts are rearrangements
-        if last is not None:
-            data += f"{last} {row['sigma2']}\n"
-        last = float(row["eps2"])
-        data += f"{last} {row['sigma2']}\n"
     frames = list(csv.DictReader(open(folder / "comparison.csv")))
-    plots = ['$exact with lines lw 2 lc "#a6bcd6" title "exact run"']
-    blocks = f"$exact << EOD\n{data}EOD\n"
+    loads = [float(f["sigma2"]) for f in frames]
+    margin = 0.05 * (max(loads) - min(loads)) + 1e-3
+    stairs, strains = "", [strain(f) for f in frames]
+    for row in csv.DictReader(open(folder / "path.csv")): # level parts are rearrangements
+        if float(row["sigma2"]) <= max(loads) + margin:
+            stairs += f"{strains[-1]} {row['sigma2']}\n" if stairs else ""
+            strains.append(float(row["eps2"]))
+            stairs += f"{strains[-1]} {row['sigma2']}\n"
+    stairs += f"{strains[-1]} {max(loads) + margin}\n"
+    plots, blocks = ['$exact with lines lw 2 lc "#a6bcd6" title "exact run"'], f"$exact << EOD\n{stairs}EOD\n"
     for kind, (colour, point, words) in looks.items():
         here = [f for f in frames if kinds.get(f["status"], f["status"]) == kind]
         if here:
-            rows = "".join(f"{f['eps2'] if f['true_eps2'] == 'nan' else f['true_eps2']} {f['sigma2']}\n" for f in here)
-            blocks += f"${kind} << EOD\n{rows}EOD\n"
+            blocks += f"${kind} << EOD\n" + "".join(f"{strain(f)} {f['sigma2']}\n" for f in here) + "EOD\n"
             plots.append(f'${kind} with points pt {point} lc "{colour}" title "{words}"')
-    loads = [float(f["sigma2"]) for f in frames]
-    margin = 0.05 * (max(loads) - min(loads)) + 1e-3
-    return (blocks + f'set title "{name}"\nset yrange [{min(loads) - margin}:{max(loads) + margin}]\nplot {", ".join(plots)}\n')
+    wide = max(max(strains) - min(strains), 1e-6)
+    return blocks + (f'set title "{name}"\nset xrange [{min(strains) - 0.05 * wide}:{max(strains) + 0.05 * wide}]\nset xtics {wide / 3:.0e}\n'
+                     f'set yrange [{min(loads) - margin}:{max(loads) + margin}]\nplot {", ".join(plots)}\n')
 
 
 def draw(output, series, rows):

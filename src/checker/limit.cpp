@@ -15,9 +15,12 @@ namespace {
 /// Roundings of the quotient that is written as the stress at a limit.
 constexpr double limit_rounding = 0x1p-50;
 
-/// The largest bound of an end of the supported interval that is accepted.
+/// The largest bound of an end of the supported interval that is accepted. A shear stress passes through 0: it is
+/// measured against the stress that bears the forces.
 double loosest_end(const Place& place, const Bounded& stress) {
-    return force_tolerance * std::max(std::abs(place.stress()), std::abs(stress.value));
+    const Load<2>& load = place.state->load;
+    const double scale = load.loads_tilt() ? std::abs(load.other_stress()) : 0;
+    return force_tolerance * std::max({std::abs(place.stress()), std::abs(stress.value), scale});
 }
 
 /// What the infinitesimal loads compare where forces vanish together: how soon each does.

@@ -363,7 +363,7 @@ struct Program {
             "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local. A "
             "crafted packing (TOML) is\n"
             "rounded to doubles and keeps its contacts and its load. With --jitter a state is taken as well.\n"
-            "Periodic along both axes: the vertex downhill whatever its contacts, in a cell whose periods move.\n"
+            "In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.\n"
             "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
             "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
             "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "

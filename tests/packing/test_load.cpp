@@ -104,4 +104,26 @@ BOOST_AUTO_TEST_CASE(infinitesimal_loads_are_reproducible_generic_and_off_the_wa
     }
 }
 
+// Along periodic axes nothing is left for the pinned grain; along walls nothing is changed.
+BOOST_AUTO_TEST_CASE(infinitesimal_loads_of_a_cell_sum_to_zero_exactly) {
+    const std::vector<double> all = generic_infinitesimal<2>({1, 2, 0.3, 1.7, 5}, 3);
+    for (const std::array<bool, 2> periodic : {std::array{true, true}, {true, false}, {false, true}}) {
+        Cell<2> cell;
+        cell.periodic = periodic;
+        cell.pin = 2;
+        std::vector<double> g = all;
+        balance(g, cell);
+        for (std::size_t a = 0; a < 2; ++a) {
+            double sum = 0;
+            for (std::size_t k = a; k < g.size(); k += 2) {
+                sum += g[k]; // exact on the common grid
+                if (k / 2 != 2) {
+                    BOOST_TEST(std::abs(g[k] - all[k]) <= (periodic[a] ? 1e-7 : 0));
+                }
+            }
+            BOOST_TEST((sum == 0) == periodic[a]);
+        }
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -23,6 +23,12 @@ constexpr double smallest_pivot = 1e-6;
 /// Force of a contact as it is compared: finite part, then the infinitesimal one.
 using Force = std::pair<double, double>;
 
+/// What the bound does not tell from 0 counts as 0: pairs of a symmetric patch touch without being contacts, and forces
+/// vanish together. The sign of what rounding leaves there would exchange contacts for ever.
+double told_from_zero(const Enclosure& x) {
+    return x.positive() || x.negative() ? x.value : 0.0;
+}
+
 /// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
 template <int Dim> class Basis {
   public:
@@ -35,14 +41,14 @@ template <int Dim> class Basis {
         for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
             if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
                 others_.push_back(candidate);
-                gaps_.push_back(gap_at_vertex(packing, vertex_, candidate).value);
+                gaps_.push_back(told_from_zero(gap_at_vertex(packing, vertex_, candidate)));
             }
         }
         const double sigma = load_.loaded_stress();
         for (std::size_t l = 0; l < contacts().size(); ++l) {
             const ContactId id(l);
-            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : statics_.force(id, sigma).value,
-                                 statics_.infinitesimal(id).value);
+            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : told_from_zero(statics_.force(id, sigma)),
+                                 told_from_zero(statics_.infinitesimal(id)));
         }
     }
 

@@ -52,6 +52,11 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
 
 namespace {
 
+/// As far as `tie_bits` tell.
+bool vanishes(const Enclosure& rate) {
+    return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits);
+}
+
 /// First-order terms of a vertex: in double, then with more bits where that does not tell.
 template <int Dim> class Terms {
   public:
@@ -66,9 +71,8 @@ template <int Dim> class Terms {
     }
     /// Second derivative of a gap whose rate vanishes as far as `tie_bits` tell; otherwise nothing is known.
     Enclosure bend(const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
-        return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits)
-                   ? precise_.bend(opened, direction, pair)
-                   : Enclosure{0, std::numeric_limits<double>::infinity()};
+        return vanishes(rate) ? precise_.bend(opened, direction, pair)
+                              : Enclosure{0, std::numeric_limits<double>::infinity()};
     }
     Enclosure gap(const Contact& pair) {
         const Enclosure c = first_.gap(pair);
@@ -127,6 +131,7 @@ Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::
 template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction) {
     Departure<Dim> departure;
     std::vector<Closing> closing;
+    std::vector<TieDecision> at_rest;
     const bool chooses = from.perturbed->statics.chooses();
     const bool held = from.structure.contacts()[opened.index()].kind == ContactKind::held;
     Terms<Dim> terms(from);
@@ -148,6 +153,10 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
             }
         } else if (chooses && from.perturbed->first.moves_as_linkage(opened, contact)) {
             departure.resting.push_back(contact);
+        } else if (asks && !bend.negative() && vanishes(rate)) {
+            departure.taken_to_rest.push_back(contact);
+            at_rest.push_back(
+                {"rest", contact, bend, from.structure.contacts()[opened.index()], rate, 0, 0, TieChoice::zero});
         } else {
             return failed(FailureKind::undecided,
                           "{} touch without being a contact, and the rate of their gap when {} opens is "
@@ -157,6 +166,7 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
         }
     }
     if (closing.empty()) {
+        departure.settled = std::move(at_rest);
         return departure;
     }
     const auto first = first_of(closing, from.perturbed->statics.chooses(), departure.settled);

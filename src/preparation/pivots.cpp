@@ -2,6 +2,7 @@
 
 #include "contact/candidates.hpp"
 #include "contact/words.hpp"
+#include "preparation/best_conditioned.hpp"
 #include "statics/statics.hpp"
 #include "verified/configuration.hpp"
 
@@ -152,12 +153,30 @@ template <int Dim> class Basis {
     std::vector<Force> forces_; ///< of the contacts
 };
 
+/// Proved, or left to another proof as `candidate`.
+template <int Dim>
+Result<Polished<Dim>> end_at(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
+                             long& iterations, std::optional<State<Dim>>& candidate) {
+    auto polished = polish(packing, contacts, load, iterations);
+    const bool open = !polished.ok() && (polished.failure().kind == FailureKind::undecided ||
+                                         polished.failure().kind == FailureKind::tie);
+    if (open) {
+        candidate.emplace();
+        candidate->load = load;
+        candidate->load.refer_to(packing);
+        candidate->packing = std::move(packing);
+        candidate->contacts = std::move(contacts);
+    }
+    return polished;
+}
+
 } // namespace
 
 template <int Dim>
 Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
                                       const PivotLimits& limits, long& iterations,
                                       std::optional<State<Dim>>& candidate) {
+    bool exchanged = false;
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
             return failed(FailureKind::interrupted, "stopped after {} pivots", pivot);
@@ -174,18 +193,15 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         const Basis<Dim> basis(packing, load, structure.value());
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
-        if (!basis.known() || (!overlapping && !pulling)) {
-            auto polished = polish(packing, contacts, load, iterations);
-            const bool open = !polished.ok() && (polished.failure().kind == FailureKind::undecided ||
-                                                 polished.failure().kind == FailureKind::tie);
-            if (open) {
-                candidate.emplace();
-                candidate->load = load;
-                candidate->load.refer_to(packing);
-                candidate->packing = std::move(packing);
-                candidate->contacts = std::move(contacts);
+        if (!basis.known() && !exchanged) { // nearly dependent contacts: others of those that touch are better
+            exchanged = true;
+            if (auto others = best_conditioned(packing)) {
+                contacts = std::move(*others);
+                continue;
             }
-            return polished;
+        }
+        if (!basis.known() || (!overlapping && !pulling)) {
+            return end_at(std::move(packing), std::move(contacts), load, iterations, candidate);
         }
         if (overlapping) {
             const auto leaving = basis.leaving(*overlapping);

@@ -78,6 +78,17 @@ template <int Dim> class Terms {
         const Enclosure c = first_.gap(pair);
         return c.decided() ? c : precise_.gap(rho_, pair);
     }
+    /// Of a pair that closes, its first-order gap known already. Contacts that are nearly singular leave a way in
+    /// double that is told from no other.
+    Enclosure way(const Enclosure& gap, const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
+        constexpr double enough = 1e-9;
+        const Enclosure way = length_of_way(gap, rate);
+        if (way.radius <= enough * std::abs(way.value)) {
+            return way;
+        }
+        const Enclosure closer = precise_.rate(opened, direction, pair);
+        return closer.negative() ? length_of_way(precise_.gap(rho_, pair), closer) : way;
+    }
 
   private:
     const FirstOrder<Dim>& first_;
@@ -146,7 +157,7 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
         if (rate.positive() || bend.positive()) {
             departure.leaving.push_back(contact);
         } else if (rate.negative()) {
-            closing.push_back({contact, length_of_way(c, rate)});
+            closing.push_back({contact, terms.way(c, rate, opened, direction, contact)});
         } else if (bend.negative() && !held) {
             if (!departure.overlaps || contact < departure.overlaps->pair) {
                 departure.overlaps = BentPair{contact, rate, bend};

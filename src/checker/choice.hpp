@@ -32,6 +32,10 @@ bool comes_first(const Place& place, std::size_t chosen, std::size_t other, cons
 /// `place` has the list before it.
 Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened);
 
+/// A pair that is taken to keep touching when `opened` opens (C4; K25): neither rate nor second derivative of its gap
+/// is told from 0.
+Objections check_rest(const Place& place, const TieRecord& tie, std::size_t opened, int direction);
+
 /// The first-order terms that a record gives are not told apart.
 bool tied_at_first_order(const TieRecord& tie);
 

@@ -162,13 +162,19 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
         std::string text;
         const Verdict verdict = judge_load_end(*place.evidence, {true, {}, {}}, direction, text);
         const bool infinite = stress.value == direction * std::numeric_limits<double>::infinity() && stress.bound == 0;
-        return verdict == Verdict::proved && infinite
+        // Where ties are chosen a slope that is not told from 0 opens nothing, as at the other ends (C1; K22).
+        const bool none = verdict == Verdict::proved || (verdict == Verdict::undecided && place.chooses);
+        return none && infinite
                    ? Objections()
                    : Objection{!infinite || verdict == Verdict::refuted,
                                fmt::format("{} = {} +- {}: found {}", name, stress.value, stress.bound, text)};
     }
-    auto found = check_meant(opens, place, [&](std::size_t opened) {
+    auto found = check_meant(opens, place, [&](std::size_t opened) -> Objections {
         ExactLoad unused;
+        const Range& slope = place.evidence->slopes()[opened];
+        if (high ? slope.positive() : slope.negative()) {
+            return Objection{true, fmt::format("the force of {} grows in this direction", to_string<2>(*opens))};
+        }
         return place.first ? check_limit_at(place, stress, opened, unused, nullptr)
                            : check_load_end(place, stress, opened, direction);
     });

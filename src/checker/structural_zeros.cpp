@@ -10,7 +10,7 @@ namespace {
 class Matching {
   public:
     explicit Matching(const Problem& problem)
-        : problem_(problem), contact_of_(problem.acting_on.size(), -1), dof_of_(problem.rows.size(), -1) {
+        : acting_on_(problem.contacts_of), contact_of_(acting_on_.size(), -1), dof_of_(problem.rows.size(), -1) {
         for (std::size_t j = 0; j < contact_of_.size(); ++j) {
             seen_.assign(dof_of_.size(), false);
             perfect_ = augment(j) && perfect_;
@@ -21,7 +21,7 @@ class Matching {
 
   private:
     bool augment(std::size_t dof) {
-        for (const int l : problem_.acting_on[dof]) {
+        for (const int l : acting_on_[dof]) {
             const auto contact = static_cast<std::size_t>(l);
             if (seen_[contact]) {
                 continue;
@@ -36,7 +36,7 @@ class Matching {
         return false;
     }
 
-    const Problem& problem_;
+    const std::vector<std::vector<int>>& acting_on_;
     std::vector<int> contact_of_;
     std::vector<int> dof_of_;
     std::vector<bool> seen_;
@@ -54,7 +54,7 @@ std::optional<std::vector<int>> structural_zeros(const Problem& problem, const F
     std::vector<std::size_t> reached;
     std::vector<bool> loaded(load.size(), false);
     for (std::size_t j = 0; j < load.size(); ++j) {
-        for (const int l : problem.acting_on[j]) {
+        for (const int l : problem.contacts_of[j]) {
             touched[static_cast<std::size_t>(l)].push_back(j);
         }
         if (load[j].lower != 0 || load[j].upper != 0) {

@@ -160,6 +160,25 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
     return {};
 }
 
+Objections check_rest(const Place& place, const TieRecord& tie, std::size_t opened, int direction) {
+    const auto pair = std::find_if(place.touching.begin(), place.touching.end(),
+                                   [&](const Gap& gap) { return to_string<2>(gap.pair) == tie.contact; });
+    if (pair == place.touching.end() || tie.choice != "zero" || tie.against != place.evidence->name(opened)) {
+        return Objection{true, fmt::format("{} is taken to keep touching, but does not touch where {} opens",
+                                           tie.contact, tie.against)};
+    }
+    const Velocities& velocities = place.first->velocities();
+    const Velocities::Solution motion = velocities.opening(opened, direction);
+    const Range rate = velocities.gap_rate(pair->pair, motion);
+    const Range bend = velocities.bend(pair->pair, opened, motion);
+    if (!rate.has_zero() || !bend.has_zero()) {
+        return Objection{true, fmt::format("{} is taken to keep touching, but the rate of its gap is in {}, the second "
+                                           "derivative in {}",
+                                           tie.contact, shown(rate), shown(bend))};
+    }
+    return {};
+}
+
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction) {
     const bool said =
         std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& t) { return t.what == "step"; });
@@ -208,6 +227,12 @@ Objections check_ties(const Place& base, const Place& from, const Place& to, con
         if (!tie.choice.empty() && !to.chooses) {
             return Objection{true,
                              fmt::format("'{}' of {} is chosen, in a run that chooses nothing", tie.what, tie.contact)};
+        }
+        if (tie.what == "rest") {
+            if (Objections wrong = check_rest(from, tie, opened, direction)) {
+                return wrong;
+            }
+            continue;
         }
         if (tie.choice == "zero" && !arc.stays_zero(tie)) {
             return Objection{true, fmt::format("'{}' of {} is left at 0, but does not vanish", tie.what, tie.contact)};

@@ -65,7 +65,7 @@ Original read_original(const std::string& file) {
         throw Error(
             ErrorKind::bad_input,
             fmt::format("{}: not a file of this program: expected a crafted packing (TOML), a state or a vertex "
-                        "text; plateau reads files of other programs",
+                        "text; isostat import makes a state of a packing of another program",
                         file));
     }
     return out;

@@ -33,10 +33,20 @@ const Kind state{"a state",
 const Kind dump{"a LAMMPS dump", {"plateau", "import", "snap"}};
 const Kind data{"a LAMMPS data file", {"plateau", "import", "snap"}};
 const Kind xyz{"extended XYZ", {"plateau", "import", "snap"}};
+const Kind table{"a table of disks", {"plateau", "import", "snap"}};
 const Kind certificate{"a certificate", {"verify"}};
 const Kind record{"a file of a run; its folder is meant", {"report", "verify", "export"}};
 const Kind run_folder{"the folder of a run", {"report", "verify", "export"}};
 const Kind ensemble_folder{"the folder of an ensemble", {"report", "verify"}};
+
+/// Rows x, y, r: the first row that is no comment names x and y, or holds numbers alone, two at least.
+bool is_table(const std::string& begin) {
+    static const std::regex comments(R"(^([ \t\r]*(#[^\n]*)?\n)*)");
+    static const std::regex numbers(R"(^[ \t]*[-+.\d][-+.\deE]*([,;\s][ \t]*[-+.\d][-+.\deE]*)+[ \t\r]*(\n|$))");
+    static const std::regex names(R"(^[ \t"\w]*\bx\b[^\n=:{]*\by\b[^\n=:{]*(\n|$))");
+    const std::string rows = std::regex_replace(begin, comments, "", std::regex_constants::format_first_only);
+    return std::regex_search(rows, numbers) || std::regex_search(rows, names);
+}
 
 const Kind* kind_of_text(const std::string& text) {
     constexpr std::size_t enough = 4096; // a format stands at the beginning
@@ -63,6 +73,7 @@ const Kind* kind_of_text(const std::string& text) {
     return foreign == "lammps-dump"                                             ? &dump
            : foreign == "lammps-data"                                           ? &data
            : foreign == "xyz" && begin.find("Properties=") != std::string::npos ? &xyz
+           : foreign == "table" && is_table(begin)                              ? &table
                                                                                 : nullptr;
 }
 

@@ -27,9 +27,11 @@ struct ArcOptions {
     bool sharp_power = false;
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
     /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
-    /// does), and those proved to keep their distance all along (both at rest).
+    /// does), those proved to keep their distance all along (both at rest), and those only taken to: where a step ends
+    /// they are looked at.
     std::vector<Contact> leaving;
     std::vector<Contact> resting;
+    std::vector<Contact> taken_to_rest;
 };
 
 /// What an arc starts from: a structure made at the packing, with factors that solve well for it. The gap of `opened`

@@ -127,6 +127,7 @@ EventScan<Dim>::EventScan(const Contact& opened, const ArcOptions& options, Cand
                           std::vector<Contact> open)
     : opened_(opened), leaving_(options.leaving), resting_(options.resting), candidates_(candidates),
       active_(std::move(open)) {
+    resting_.insert(resting_.end(), options.taken_to_rest.begin(), options.taken_to_rest.end());
     if (!active_.empty()) {
         complete();
     }

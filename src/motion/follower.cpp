@@ -357,6 +357,13 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
     here_.at = std::move(there.point.at);
     here_.tangent = std::move(there.point.tangent);
     here_power_ = there.power;
+    for (const Contact& pair : options_.taken_to_rest) {
+        constexpr double seen = 1e-10; // of a radius: far above the rounding of a length
+        if (quick_gap(here_.at, pair) < -seen * here_.at.min_radius()) {
+            return failed(FailureKind::undecided, "{} touch where the arc begins, and overlap on the way",
+                          named<Dim>(pair));
+        }
+    }
     pace_.for_dip = infinity;
     pace_.renewed = false;
     if (chord_.iterations() > 10) {

@@ -23,7 +23,7 @@ template <int Dim> Packing<Dim> a_little_before(const RoughEnd<Dim>& rough) {
     return at;
 }
 
-/// The step that closes the gaps of `at` + `correction`; empty: the contacts are structurally singular.
+/// The step that closes the gaps of `at` + `correction`; empty: the contacts are singular, structurally or to doubles.
 template <int Dim>
 std::vector<double> newton_step(const RoughEnd<Dim>& rough, const Packing<Dim>& at,
                                 const std::vector<dd_real>& correction) {
@@ -42,7 +42,8 @@ std::vector<double> newton_step(const RoughEnd<Dim>& rough, const Packing<Dim>& 
         step.push_back(place.gap_function(contact).x[0]);
     }
     Factorisation(there).solve_velocities(step); // approach velocities equal to the gaps close them
-    return step;
+    const auto finite = [](double x) { return std::isfinite(x); };
+    return std::all_of(step.begin(), step.end(), finite) ? step : std::vector<double>(); // maxima do not see a NaN
 }
 
 } // namespace

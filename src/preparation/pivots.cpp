@@ -2,6 +2,7 @@
 
 #include "contact/candidates.hpp"
 #include "contact/words.hpp"
+#include "preparation/best_conditioned.hpp"
 #include "statics/statics.hpp"
 #include "verified/configuration.hpp"
 
@@ -23,6 +24,12 @@ constexpr double smallest_pivot = 1e-6;
 /// Force of a contact as it is compared: finite part, then the infinitesimal one.
 using Force = std::pair<double, double>;
 
+/// What the bound does not tell from 0 counts as 0: pairs of a symmetric patch touch without being contacts, and forces
+/// vanish together. The sign of what rounding leaves there would exchange contacts for ever.
+double told_from_zero(const Enclosure& x) {
+    return x.positive() || x.negative() ? x.value : 0.0;
+}
+
 /// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
 template <int Dim> class Basis {
   public:
@@ -35,14 +42,14 @@ template <int Dim> class Basis {
         for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
             if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
                 others_.push_back(candidate);
-                gaps_.push_back(gap_at_vertex(packing, vertex_, candidate).value);
+                gaps_.push_back(told_from_zero(gap_at_vertex(packing, vertex_, candidate)));
             }
         }
         const double sigma = load_.loaded_stress();
         for (std::size_t l = 0; l < contacts().size(); ++l) {
             const ContactId id(l);
-            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : statics_.force(id, sigma).value,
-                                 statics_.infinitesimal(id).value);
+            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : told_from_zero(statics_.force(id, sigma)),
+                                 told_from_zero(statics_.infinitesimal(id)));
         }
     }
 
@@ -146,12 +153,30 @@ template <int Dim> class Basis {
     std::vector<Force> forces_; ///< of the contacts
 };
 
+/// Proved, or left to another proof as `candidate`.
+template <int Dim>
+Result<Polished<Dim>> end_at(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
+                             long& iterations, std::optional<State<Dim>>& candidate) {
+    auto polished = polish(packing, contacts, load, iterations);
+    const bool open = !polished.ok() && (polished.failure().kind == FailureKind::undecided ||
+                                         polished.failure().kind == FailureKind::tie);
+    if (open) {
+        candidate.emplace();
+        candidate->load = load;
+        candidate->load.refer_to(packing);
+        candidate->packing = std::move(packing);
+        candidate->contacts = std::move(contacts);
+    }
+    return polished;
+}
+
 } // namespace
 
 template <int Dim>
 Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
                                       const PivotLimits& limits, long& iterations,
                                       std::optional<State<Dim>>& candidate) {
+    bool exchanged = false;
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
             return failed(FailureKind::interrupted, "stopped after {} pivots", pivot);
@@ -168,18 +193,15 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         const Basis<Dim> basis(packing, load, structure.value());
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
-        if (!basis.known() || (!overlapping && !pulling)) {
-            auto polished = polish(packing, contacts, load, iterations);
-            const bool open = !polished.ok() && (polished.failure().kind == FailureKind::undecided ||
-                                                 polished.failure().kind == FailureKind::tie);
-            if (open) {
-                candidate.emplace();
-                candidate->load = load;
-                candidate->load.refer_to(packing);
-                candidate->packing = std::move(packing);
-                candidate->contacts = std::move(contacts);
+        if (!basis.known() && !exchanged) { // nearly dependent contacts: others of those that touch are better
+            exchanged = true;
+            if (auto others = best_conditioned(packing)) {
+                contacts = std::move(*others);
+                continue;
             }
-            return polished;
+        }
+        if (!basis.known() || (!overlapping && !pulling)) {
+            return end_at(std::move(packing), std::move(contacts), load, iterations, candidate);
         }
         if (overlapping) {
             const auto leaving = basis.leaving(*overlapping);

@@ -176,9 +176,11 @@ Result<VertexEnclosure> enclosed(const Packing<Dim>& packing, const IsostaticStr
 }
 
 /// The candidate list is complete for an admissible packing (T6): that comes first. The contacts themselves are within
-/// `max_gap` of touching, as computed; the grid steps cover the error of computing it.
-template <int Dim> std::optional<Failure> overlaps(const Packing<Dim>& packing, double max_gap) {
-    const Admissibility admissible = certify_admissible(packing, 2 * max_gap + 4 * grid_step(packing));
+/// `max_gap` of touching, as computed; the grid steps cover the error of computing it. Other pairs that touch at the
+/// true vertex are within twice its distance; their gaps there are looked at one by one.
+template <int Dim> std::optional<Failure> overlaps(const Packing<Dim>& packing, const VertexEnclosure& vertex) {
+    const double open = std::max(vertex.max_gap, vertex.distance());
+    const Admissibility admissible = certify_admissible(packing, 2 * open + 4 * grid_step(packing));
     if (admissible.verdict == Verdict::proved) {
         return std::nullopt;
     }
@@ -235,7 +237,7 @@ Result<Polished<Dim>> polish(Packing<Dim> packing, std::vector<Contact> contacts
     if (!vertex.ok()) {
         return vertex.failure();
     }
-    if (auto failure = overlaps(packing, vertex.value().max_gap)) {
+    if (auto failure = overlaps(packing, vertex.value())) {
         return *failure;
     }
     const Result<double> others = check_other_gaps(packing, structure, factorisation, inverse, vertex.value());

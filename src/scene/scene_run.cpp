@@ -136,10 +136,9 @@ std::string advice(const Scene& scene, const Failure& failure, const Packing<2>&
     }
     constexpr double ample = 1e-6;
     const double jitter = scene.preparation.jitter;
-    // Where all are equal ties are everywhere: no list of contacts is found without jitter, and a smaller one leaves
-    // more runs undecided (src/scene/README.md).
+    // Where all are equal ties are everywhere: a smaller jitter leaves more runs undecided (src/scene/README.md).
     const bool all = equal && radius.front() == radius.back();
-    const bool choose = can_choose && !scene.programme.empty() && !all;
+    const bool choose = can_choose && !scene.programme.empty();
     return equal && jitter == 0 ? fmt::format("; equal radii: try [packing] jitter = {}{}", all ? "1e-4" : "1e-9",
                                               choose ? ", or ties = \"choose\" in [run]" : "")
            : jitter > 0 && jitter < ample ? fmt::format("; nearly equal radii: try a larger jitter than {}", jitter)

@@ -42,6 +42,9 @@ template <int Dim> class LimitContest final : public Contest {
     bool stays_zero(ContactId l) {
         return perturbed_ != nullptr && perturbed_->chooses() && is_tie(rate_sign(l), slope_size());
     }
+    /// A member of the class of the limiting force that opens nothing: its own force stays at 0, or grows from 0.
+    /// Without ties all of a class are positive before, and fall.
+    bool opens_nothing(ContactId l) { return stays_zero(l) || (perturbed_ != nullptr && rate_sign(l).sign > 0); }
     /// Where the force of the last one that stood vanishes, and what vanishes with it.
     [[nodiscard]] const LoadLimit& limit() const { return limit_; }
 
@@ -340,7 +343,8 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
         }
     }
     LoadLimit limit = contest.limit();
-    std::erase_if(limit.tie_class, [&](ContactId l) { return l.index() != *minimum.index && contest.stays_zero(l); });
+    std::erase_if(limit.tie_class,
+                  [&](ContactId l) { return l.index() != *minimum.index && contest.opens_nothing(l); });
     const Result<Opening> chosen = first_of_class(statics, limit.tie_class);
     if (!chosen.ok()) {
         return failed(chosen.failure().kind, "structural tie class of {} contacts: {}", limit.tie_class.size(),

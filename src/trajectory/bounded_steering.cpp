@@ -35,6 +35,7 @@ BoundedSteering<Dim>::BoundedSteering(std::shared_ptr<const Vertex<Dim>> from, A
         next_to_ = departure_.value().closes;
         arc_options_.leaving = departure_.value().leaving;
         arc_options_.resting = departure_.value().resting;
+        arc_options_.taken_to_rest = departure_.value().taken_to_rest;
     }
 }
 
@@ -112,6 +113,7 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
     arc.tangent = std::move(path.tangent);
     arc.stays = next_to_.has_value();
     arc.resting = departure_.value().resting;
+    arc.taken_to_rest = departure_.value().taken_to_rest;
     arc.settled = departure_.value().settled;
     arc.contacts = IsostaticStructure<Dim>::exchange(from_.structure, arc.end, start_.opening.contact, path.closed);
     if (arc.contacts) {

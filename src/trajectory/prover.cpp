@@ -226,11 +226,20 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         return at_end(found.failure());
     }
     proof.closed_before = found.value().negative;
+    const std::vector<Contact>& taken = arc.taken_to_rest;
+    if (proof.closed_before && std::find(taken.begin(), taken.end(), *proof.closed_before) != taken.end()) {
+        return at_end(failed(FailureKind::undecided,
+                             "{} overlap: they touch where it begins, and neither the rate nor the second derivative "
+                             "of their gap is told from 0 there",
+                             named<Dim>(*proof.closed_before)));
+    }
     if (proof.closed_before) {
         return std::nullopt;
     }
+    std::vector<Contact> resting = arc.resting;
+    resting.insert(resting.end(), taken.begin(), taken.end());
     const bool overlapped = arc.relists || overlaps_at_first_order(from);
-    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, arc.resting, overlapped}, found.value());
+    return arrive(proof, arc.settled, {arc.opening.contact, arc.stays, resting, overlapped}, found.value());
 }
 
 template <int Dim>

@@ -53,6 +53,7 @@ template <int Dim> struct ArcProposal {
     bool stays = false;                  ///< the way is of length O(eps)
     bool relists = false;                ///< only the list changes, and pairs that touch may overlap at first order
     std::vector<Contact> resting;        ///< pairs that touch all along
+    std::vector<Contact> taken_to_rest;  ///< pairs that seem to: the gaps at the end tell
     std::vector<TieDecision> settled;    ///< ties at the start of the way
     std::optional<SteeredEnd<Dim>> last; ///< no force is negative at the end
     WorkCounts work{};                   ///< to be counted when it is recorded

@@ -52,6 +52,11 @@ std::vector<double> tie_direction(const std::vector<double>& radius, std::uint64
 
 namespace {
 
+/// As far as `tie_bits` tell.
+bool vanishes(const Enclosure& rate) {
+    return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits);
+}
+
 /// First-order terms of a vertex: in double, then with more bits where that does not tell.
 template <int Dim> class Terms {
   public:
@@ -66,13 +71,23 @@ template <int Dim> class Terms {
     }
     /// Second derivative of a gap whose rate vanishes as far as `tie_bits` tell; otherwise nothing is known.
     Enclosure bend(const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
-        return std::abs(rate.value) + rate.radius <= std::ldexp(1.0, -tie_bits)
-                   ? precise_.bend(opened, direction, pair)
-                   : Enclosure{0, std::numeric_limits<double>::infinity()};
+        return vanishes(rate) ? precise_.bend(opened, direction, pair)
+                              : Enclosure{0, std::numeric_limits<double>::infinity()};
     }
     Enclosure gap(const Contact& pair) {
         const Enclosure c = first_.gap(pair);
         return c.decided() ? c : precise_.gap(rho_, pair);
+    }
+    /// Of a pair that closes, its first-order gap known already. Contacts that are nearly singular leave a way in
+    /// double that is told from no other.
+    Enclosure way(const Enclosure& gap, const Enclosure& rate, ContactId opened, int direction, const Contact& pair) {
+        constexpr double enough = 1e-9;
+        const Enclosure way = length_of_way(gap, rate);
+        if (way.radius <= enough * std::abs(way.value)) {
+            return way;
+        }
+        const Enclosure closer = precise_.rate(opened, direction, pair);
+        return closer.negative() ? length_of_way(precise_.gap(rho_, pair), closer) : way;
     }
 
   private:
@@ -127,6 +142,7 @@ Result<Contact> first_of(const std::vector<Closing>& closing, bool choose, std::
 template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, ContactId opened, int direction) {
     Departure<Dim> departure;
     std::vector<Closing> closing;
+    std::vector<TieDecision> at_rest;
     const bool chooses = from.perturbed->statics.chooses();
     const bool held = from.structure.contacts()[opened.index()].kind == ContactKind::held;
     Terms<Dim> terms(from);
@@ -141,13 +157,17 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
         if (rate.positive() || bend.positive()) {
             departure.leaving.push_back(contact);
         } else if (rate.negative()) {
-            closing.push_back({contact, length_of_way(c, rate)});
+            closing.push_back({contact, terms.way(c, rate, opened, direction, contact)});
         } else if (bend.negative() && !held) {
             if (!departure.overlaps || contact < departure.overlaps->pair) {
                 departure.overlaps = BentPair{contact, rate, bend};
             }
         } else if (chooses && from.perturbed->first.moves_as_linkage(opened, contact)) {
             departure.resting.push_back(contact);
+        } else if (asks && !bend.negative() && vanishes(rate)) {
+            departure.taken_to_rest.push_back(contact);
+            at_rest.push_back(
+                {"rest", contact, bend, from.structure.contacts()[opened.index()], rate, 0, 0, TieChoice::zero});
         } else {
             return failed(FailureKind::undecided,
                           "{} touch without being a contact, and the rate of their gap when {} opens is "
@@ -157,6 +177,7 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
         }
     }
     if (closing.empty()) {
+        departure.settled = std::move(at_rest);
         return departure;
     }
     const auto first = first_of(closing, from.perturbed->statics.chooses(), departure.settled);

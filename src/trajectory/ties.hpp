@@ -11,6 +11,9 @@ template <int Dim> struct Departure {
     std::vector<Contact> leaving; ///< proved to separate at once
     std::vector<Contact>
         resting; ///< they keep touching: grains of one body (R1), or where ties are chosen a linkage (R2)
+    /// Where ties are chosen: neither rate nor second derivative is told from 0, and no count says why. They are taken
+    /// to keep touching; the end of the arc tells (C4).
+    std::vector<Contact> taken_to_rest;
     /// The first pair to close, when some approach: the way is of length O(eps), the configuration stays.
     std::optional<Contact> closes;
     /// Where ties are chosen and none closes: the first by name of the pairs that would overlap at second order. Before
@@ -26,7 +29,7 @@ template <int Dim> Result<Departure<Dim>> depart(const Vertex<Dim>& from, Contac
 struct Way {
     ContactId slot;                      ///< of the new contact
     bool stays;                          ///< its length is O(eps)
-    const std::vector<Contact>& resting; ///< pairs that touch all along
+    const std::vector<Contact>& resting; ///< pairs that touch all along, or are taken to
     bool overlapped;                     ///< pairs that touch at its start overlap at first order
 };
 

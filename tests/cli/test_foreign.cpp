@@ -177,7 +177,8 @@ BOOST_AUTO_TEST_CASE(genericity_refuses_what_it_cannot_perturb) {
     expect(run({"genericity", packings + "two_disks.toml", "--samples", "0"}), 65, {"samples"});
     const scratch::Folder folder;
     scratch::write(folder / "x.csv", "x,y,r\n1,1,1\n");
-    expect(run({"genericity", (folder / "x.csv").string()}), 65, {"plateau reads files of other programs"});
+    expect(run({"genericity", (folder / "x.csv").string()}), 65,
+           {"isostat import makes a state of a packing of another program"});
 }
 
 BOOST_AUTO_TEST_SUITE_END()

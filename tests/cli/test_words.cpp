@@ -33,6 +33,17 @@ BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
         expect(run(words), 65, {"a LAMMPS dump: for isostat plateau, import, snap, not for " + words[0]});
     }
     expect(run({"convert", scratch::data("series/disks.dump"), "-o", path("c")}), 65, {"isostat import makes a state"});
+    for (const char* rows : {"x,y,r\n1,1,1\n", "#format x_y_z_r\n1\t1\t0\t1\n", "# disks\n\n1 1 1\n"}) {
+        scratch::write(folder / "table.csv", rows);
+        for (const char* command :
+             {"run", "plan", "prepare", "inspect", "certify", "verify", "genericity", "compare"}) {
+            std::vector<std::string> words{command, path("table.csv")};
+            if (words[0] == "run" || words[0] == "prepare" || words[0] == "certify") {
+                words.insert(words.end(), {"-o", path("o")});
+            }
+            expect(run(words), 65, {"a table of disks: for isostat plateau, import, snap, not for " + words[0]});
+        }
+    }
     // The right kind with something wrong in it gets no such advice.
     scratch::write(folder / "bad.toml", "[packing]\ndisks = 4\nsede = 1\n");
     const Outcome bad = run({"plan", path("bad.toml")});

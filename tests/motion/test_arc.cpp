@@ -132,6 +132,7 @@ BOOST_AUTO_TEST_CASE(the_first_of_two_ends_is_found_where_double_sees_a_stretch)
         BOOST_TEST(std::abs(end->q[4] - direction * 2 * std::sin(angle)) < 1e-15);
     }
     BOOST_TEST(!Grazing(-overlap).end(1).has_value(), "it passes by");
+    BOOST_TEST(!Grazing(0).end(0).has_value(), "on top the contacts are singular: no step is a number");
 }
 
 BOOST_AUTO_TEST_CASE(an_exactly_grazing_gap_is_never_followed_by_a_guess_beyond_rounding) {

@@ -56,7 +56,9 @@ struct TieDecision {
     /// - "gap": `against` touches where `chosen` closes (or touches on from before); `other` is its first-order gap;
     /// - "step": both close on the way of length O(eps); first-order lengths of the two ways.
     /// - "second order": `chosen` touches, would overlap, and took the place of `against` in the list (C3,
-    ///   degenerate.md); `first`: second derivative of its gap, `other`: the share of `against` in its row.
+    ///   degenerate.md); `first`: second derivative of its gap, `other`: the share of `against` in its row;
+    /// - "rest": `chosen` touches, and neither the second derivative `first` of its gap nor the rate `other` is told
+    ///   from 0 when `against` opens: taken to keep touching, which the end of the arc confirms or not (C4).
     std::string what;
     Contact chosen;
     Enclosure first;

@@ -1,0 +1,52 @@
+#include "preparation/best_conditioned.hpp"
+
+#include "contact/candidates.hpp"
+#include "preparation/polish.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+
+namespace isostat::preparation {
+
+template <int Dim> std::optional<std::vector<Contact>> best_conditioned(const Packing<Dim>& packing) {
+    constexpr int most = 2000;           // degrees of freedom: seconds
+    constexpr double touching = 1e-6;    // of the smallest radius: above what nearly dependent contacts leave open
+    constexpr double independent = 1e-6; // of the largest pivot
+    const DofMap<Dim> dofs(packing);
+    const int n = dofs.dof_count();
+    if (n > most) {
+        return std::nullopt;
+    }
+    std::vector<Contact> pairs = find_candidates(packing, pivot_reach).contacts;
+    std::erase_if(pairs, [&](const Contact& c) { return gap(packing, c) > touching * packing.min_radius(); });
+    const auto count = static_cast<Eigen::Index>(pairs.size());
+    if (count < n) {
+        return std::nullopt;
+    }
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(n, count);
+    for (Eigen::Index l = 0; l < count; ++l) {
+        const GapGradient<Dim> g = gap_gradient(packing, pairs[static_cast<std::size_t>(l)]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            if (dof >= 0) {
+                columns(dof, l) += g.value[k];
+            }
+        }
+    }
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
+    const auto diagonal = [&](Eigen::Index k) { return std::abs(factors.matrixQR()(k, k)); };
+    if (!(diagonal(n - 1) > independent * diagonal(0))) {
+        return std::nullopt;
+    }
+    std::vector<Contact> kept;
+    for (Eigen::Index k = 0; k < n; ++k) {
+        kept.push_back(pairs[static_cast<std::size_t>(factors.colsPermutation().indices()(k))]);
+    }
+    std::sort(kept.begin(), kept.end());
+    return kept;
+}
+
+template std::optional<std::vector<Contact>> best_conditioned<2>(const Packing<2>&);
+
+} // namespace isostat::preparation

@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// Another list of contacts at a vertex where more pairs touch.
+
+#include <isostat/contact/contact.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace isostat::preparation {
+
+/// As many of the pairs that touch as there are degrees of freedom, with rows as independent as an orthogonal
+/// factorisation with column pivoting finds them. A linear solver may keep contacts whose rows are independent only
+/// because its coordinates are rounded: those of equal disks in line. Nothing: too few touch, their rows are dependent
+/// to rounding, or the packing is too large for full matrices. A guess, which later proofs judge. Cost: N_f^3.
+template <int Dim> std::optional<std::vector<Contact>> best_conditioned(const Packing<Dim>& packing);
+
+extern template std::optional<std::vector<Contact>> best_conditioned<2>(const Packing<2>&);
+
+} // namespace isostat::preparation

@@ -11,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace isostat::preparation {
@@ -24,16 +25,21 @@ constexpr double smallest_pivot = 1e-6;
 /// Force of a contact as it is compared: finite part, then the infinitesimal one.
 using Force = std::pair<double, double>;
 
-/// What the bound does not tell from 0 counts as 0: pairs of a symmetric patch touch without being contacts, and forces
-/// vanish together. The sign of what rounding leaves there would exchange contacts for ever.
-double told_from_zero(const Enclosure& x) {
-    return x.positive() || x.negative() ? x.value : 0.0;
+/// How signs are read.
+enum class Signs {
+    as_computed, ///< mostly right beyond their bounds too: radii that differ by 1e-13 are told apart
+    told,        ///< what the bound does not tell from 0 counts as 0: in symmetric patches pairs touch without being
+          ///< contacts and forces vanish together, and what rounding leaves there would exchange contacts for ever
+};
+
+double value_of(const Enclosure& x, Signs signs) {
+    return signs == Signs::as_computed || x.positive() || x.negative() ? x.value : 0.0;
 }
 
 /// One basis: contacts that are sorted, a configuration at which their gaps are 0 to rounding.
 template <int Dim> class Basis {
   public:
-    Basis(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure)
+    Basis(const Packing<Dim>& packing, const Load<Dim>& load, const IsostaticStructure<Dim>& structure, Signs signs)
         : packing_(packing), load_(final_load(load, packing)), structure_(structure), factorisation_(structure),
           inverse_(bound_inverse(structure, factorisation_, cache_)),
           vertex_(enclose_vertex_double_double(packing, structure, factorisation_, inverse_)),
@@ -42,14 +48,14 @@ template <int Dim> class Basis {
         for (const Contact& candidate : find_candidates(packing, pivot_reach).contacts) {
             if (!std::binary_search(contacts().begin(), contacts().end(), candidate)) {
                 others_.push_back(candidate);
-                gaps_.push_back(told_from_zero(gap_at_vertex(packing, vertex_, candidate)));
+                gaps_.push_back(value_of(gap_at_vertex(packing, vertex_, candidate), signs));
             }
         }
         const double sigma = load_.loaded_stress();
         for (std::size_t l = 0; l < contacts().size(); ++l) {
             const ContactId id(l);
-            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : told_from_zero(statics_.force(id, sigma)),
-                                 told_from_zero(statics_.infinitesimal(id)));
+            forces_.emplace_back(statics_.is_structural_zero(id) ? 0.0 : value_of(statics_.force(id, sigma), signs),
+                                 value_of(statics_.infinitesimal(id), signs));
         }
     }
 
@@ -170,18 +176,20 @@ Result<Polished<Dim>> end_at(Packing<Dim> packing, std::vector<Contact> contacts
     return polished;
 }
 
-} // namespace
-
 template <int Dim>
-Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                                      const PivotLimits& limits, long& iterations,
-                                      std::optional<State<Dim>>& candidate) {
-    bool exchanged = false;
+Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
+                            const PivotLimits& limits, Signs signs, long& iterations,
+                            std::optional<State<Dim>>& candidate) {
+    bool exchanged = signs == Signs::as_computed;
+    std::set<std::vector<Contact>> seen;
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
             return failed(FailureKind::interrupted, "stopped after {} pivots", pivot);
         }
         std::sort(contacts.begin(), contacts.end());
+        if (signs == Signs::as_computed && !seen.insert(contacts).second) {
+            return failed(FailureKind::not_converged, "after {} pivots the contacts are those of before", pivot);
+        }
         if (auto failure = newton(packing, contacts, iterations)) {
             return *failure;
         }
@@ -190,7 +198,7 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
         if (!structure.ok()) {
             return structure.failure();
         }
-        const Basis<Dim> basis(packing, load, structure.value());
+        const Basis<Dim> basis(packing, load, structure.value(), signs);
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
         if (!basis.known() && !exchanged) { // nearly dependent contacts: others of those that touch are better
@@ -228,7 +236,26 @@ Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact>
     return failed(FailureKind::not_converged, "no vertex after {} pivots", limits.pivots);
 }
 
-template Result<Polished<2>> pivot_to_vertex<2>(Packing<2>, std::vector<Contact>, const Load<2>&, const PivotLimits&,
-                                                long&, std::optional<State<2>>&);
+} // namespace
+
+template <int Dim>
+Result<Polished<Dim>> pivot_to_vertex(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
+                                      const Load<Dim>& load, const PivotLimits& limits, long& iterations,
+                                      std::optional<State<Dim>>& candidate) {
+    auto first = pivot(packing, contacts, load, limits, Signs::as_computed, iterations, candidate);
+    if (first.ok() || first.failure().kind == FailureKind::interrupted) {
+        return first;
+    }
+    std::optional<State<Dim>> other;
+    auto second = pivot(packing, contacts, load, limits, Signs::told, iterations, other);
+    const bool better = second.ok() || other.has_value();
+    if (better) {
+        candidate = std::move(other);
+    }
+    return better ? second : first;
+}
+
+template Result<Polished<2>> pivot_to_vertex<2>(const Packing<2>&, const std::vector<Contact>&, const Load<2>&,
+                                                const PivotLimits&, long&, std::optional<State<2>>&);
 
 } // namespace isostat::preparation

@@ -19,16 +19,18 @@ struct PivotLimits {
 /// double-double, so that gaps and forces far below the rounding of a length have signs): a negative gap is closed
 /// (dual simplex: the contact whose force reaches 0 first, lexicographically in (f0, f1), is left); else the most
 /// negative force is opened (primal simplex: the gap that closes first is taken). The choices are made in rounded
-/// arithmetic and prove nothing; `polish` proves the end, and its failure is the answer when it cannot.
+/// arithmetic and prove nothing; `polish` proves the end, and its failure is the answer when it cannot. Where that
+/// comes to nothing, or to the same contacts again, it begins once more, and what bounds do not tell from 0 counts as
+/// 0, and nearly dependent contacts are replaced by others that touch: packings of equal disks.
 /// When the last basis has gaps and forces of the right sign as computed and `polish` cannot prove them in
 /// double-double, the state is in `candidate`: another proof may. Failures beside those: `unbounded`, `not_converged`
 /// (limits), `interrupted`. Cost: a rank proof, a factorisation and a bound of the inverse per pivot.
 template <int Dim>
-Result<Polished<Dim>> pivot_to_vertex(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
-                                      const PivotLimits& limits, long& iterations,
+Result<Polished<Dim>> pivot_to_vertex(const Packing<Dim>& packing, const std::vector<Contact>& contacts,
+                                      const Load<Dim>& load, const PivotLimits& limits, long& iterations,
                                       std::optional<State<Dim>>& candidate);
 
-extern template Result<Polished<2>> pivot_to_vertex<2>(Packing<2>, std::vector<Contact>, const Load<2>&,
+extern template Result<Polished<2>> pivot_to_vertex<2>(const Packing<2>&, const std::vector<Contact>&, const Load<2>&,
                                                        const PivotLimits&, long&, std::optional<State<2>>&);
 
 } // namespace isostat::preparation

@@ -3,6 +3,7 @@
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "support/crafted.hpp"
+#include "support/scratch.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/io/state_file.hpp>
@@ -210,6 +211,23 @@ BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_are_as_far_as_its_reach_less_the_way_
     BOOST_TEST((c.claims.gaps->rung == Rung::double_double));
     BOOST_TEST(c.claims.gaps->smallest <= reach - 1e-10 * std::sqrt(2.0));
     BOOST_TEST(c.claims.gaps->smallest >= reach - 1e-9);
+}
+
+BOOST_AUTO_TEST_CASE(what_the_grid_moved_the_pinned_disk_by_is_part_of_the_radius_in_a_cell) {
+    State<2> state = read_any_state<2>(scratch::data("cells/tilt_16.json")).state;
+    snap_to_grid(state.packing);
+    const auto centre = std::move(Centre<2>::make(state.packing, state.contacts).value());
+    const auto radius = [&](double off_the_grid) {
+        State<2> stored = state;
+        const auto pin = static_cast<std::size_t>(state.packing.cell.pin);
+        stored.packing.q[2 * pin] += off_the_grid;
+        stored.packing.q[2 * (pin + 1)] -= off_the_grid;
+        const auto vertex = in_double(Subject<2>(stored, centre->structure), *centre);
+        BOOST_TEST_REQUIRE(vertex->exists());
+        return vertex->radius();
+    };
+    BOOST_TEST(radius(0) < 1e-9);
+    check_above(radius(1e-6), 2e-6, 0.01); // the vertex has the pin where it is stored: the other disk is 2e-6 off
 }
 
 BOOST_AUTO_TEST_SUITE_END()

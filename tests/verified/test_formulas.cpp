@@ -3,6 +3,7 @@
 #include "oracle/random.hpp"
 #include "support/crafted.hpp"
 #include "support/scale.hpp"
+#include "support/scratch.hpp"
 #include "verified/configuration.hpp"
 #include "verified/first_order.hpp"
 #include "verified/force_solution.hpp"
@@ -214,6 +215,40 @@ BOOST_AUTO_TEST_CASE(rates_of_change_are_those_of_V4_and_V6) {
         }
         const Real heaviest = *std::max_element(weight.begin(), weight.end());
         check_above(turn_of_forces(state.packing, state.contacts, x), 2 * heaviest / Real("0.99"), 0.02);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(rates_of_change_in_cells_are_those_of_C5) {
+    // w^2 = 2 + |m|^2 of a pair, |m|^2 of a disk and its own image; the cell is a place of its own, where contacts with
+    // images meet.
+    oracle::Random random(6);
+    for (const char* name : {"tilt", "rect", "channel"}) {
+        const State<2> state = read_any_state<2>(scratch::data(std::string("cells/") + name + "_16.json")).state;
+        const std::size_t disks = state.packing.radius.size();
+        std::vector<Real> fourth(disks + 1, Real(0));
+        std::vector<Real> turn(disks + 1, Real(0));
+        std::vector<double> x;
+        for (const Contact& c : state.contacts) {
+            x.push_back(random.real(-1, 1));
+            if (c.kind != ContactKind::disk_disk) {
+                continue;
+            }
+            const Real m2 = c.image.m[0] * c.image.m[0] + c.image.m[1] * c.image.m[1];
+            const Real m = sqrt(m2);
+            const bool own = c.i == c.j;
+            const Real d = target(state.packing, c);
+            const Real w2 = (own ? 0 : 2) + m2;
+            const Real part = abs(Real(x.back())) / d;
+            for (const int i : {c.i, c.j}) {
+                fourth[static_cast<std::size_t>(i)] += own ? Real(0) : Real(w2 * w2 / (d * d));
+                turn[static_cast<std::size_t>(i)] += own ? Real(0) : Real(part * (2 + m));
+            }
+            fourth[disks] += m2 == 0 ? Real(0) : Real(w2 * w2 / (d * d));
+            turn[disks] += part * m * ((own ? 0 : 2) + m);
+        }
+        const auto largest = [](const std::vector<Real>& v) { return *std::max_element(v.begin(), v.end()); };
+        check_above(lipschitz(state.packing, state.contacts), sqrt(largest(fourth)), 1e-8);
+        check_above(turn_of_forces(state.packing, state.contacts, x), largest(turn) / Real("0.99"), 0.03);
     }
 }
 

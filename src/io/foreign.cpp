@@ -98,9 +98,8 @@ void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std
     for (std::size_t i = 0; i < packing.radius.size(); ++i) {
         double& x = packing.q[2 * i + a];
         if (!(low < x && x < high)) {
-            refuse(source,
-                   fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}{}{}",
-                               a == 0 ? 'x' : 'y', i, x, low, high, raw.types.empty() ? "" : "; ", raw.types));
+            refuse(source, fmt::format("{} of disk {} is {}: expected a centre between the walls at {} and {}{}{}",
+                                       a == 0 ? 'x' : 'y', i, x, low, high, raw.types.empty() ? "" : "; ", raw.types));
         }
         x = shifted(x, low, worst);
     }

@@ -2,6 +2,7 @@
 // purpose: then every term of every bound is large enough to be seen.
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
+#include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/scratch.hpp"
 
@@ -228,6 +229,24 @@ BOOST_AUTO_TEST_CASE(what_the_grid_moved_the_pinned_disk_by_is_part_of_the_radiu
     };
     BOOST_TEST(radius(0) < 1e-9);
     check_above(radius(1e-6), 2e-6, 0.01); // the vertex has the pin where it is stored: the other disk is 2e-6 off
+}
+
+BOOST_AUTO_TEST_CASE(pairs_beyond_the_list_of_a_cell_have_the_weight_of_C4) {
+    // One disk and its images in a cell of fixed tilt, off its vertex by 1e-10. The tilt is such that the nearest pair
+    // is just inside the list: then what is claimed is the reach of the list, less C4's weight times the distance.
+    State<2> state = cells::in_cell({{0.5, 0.25, 0.5}}, {1, 1, 0}, false, 1, 1,
+                                    {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, 0)});
+    const double reach = find_candidates(state.packing, 0.82).reach;
+    const double tilt = std::ldexp(std::round(std::ldexp(1 - std::pow(1 + reach - 1e-11, 2) / 2, 45)), -45);
+    const double off = 1e-10;
+    const double height = std::sqrt(1 - tilt * tilt);
+    state.packing.q = {0.25, 0.5, 1, height - off, tilt};
+    BOOST_TEST_REQUIRE(find_candidates(state.packing, 0.82).reach == reach);
+    const Certification c = certify(state);
+    BOOST_TEST_REQUIRE(c.claims.gaps.has_value());
+    const double stretch = height / std::hypot(1.0, tilt, height); // determinant over the norm
+    const double weight = std::sqrt(2.0) + (2 * 0.5 + reach) / stretch;
+    check_above(reach - c.claims.gaps->smallest, weight * c.claims.vertex->radius * (1 - 1e-3), 0.01); // Ly alone moves
 }
 
 BOOST_AUTO_TEST_SUITE_END()

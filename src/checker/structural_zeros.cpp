@@ -10,7 +10,7 @@ namespace {
 class Matching {
   public:
     explicit Matching(const Problem& problem)
-        : acting_on_(problem.contacts_of), contact_of_(acting_on_.size(), -1), dof_of_(problem.rows.size(), -1) {
+        : contacts_of_(problem.contacts_of), contact_of_(contacts_of_.size(), -1), dof_of_(problem.rows.size(), -1) {
         for (std::size_t j = 0; j < contact_of_.size(); ++j) {
             seen_.assign(dof_of_.size(), false);
             perfect_ = augment(j) && perfect_;
@@ -21,7 +21,7 @@ class Matching {
 
   private:
     bool augment(std::size_t dof) {
-        for (const int l : acting_on_[dof]) {
+        for (const int l : contacts_of_[dof]) {
             const auto contact = static_cast<std::size_t>(l);
             if (seen_[contact]) {
                 continue;
@@ -36,7 +36,7 @@ class Matching {
         return false;
     }
 
-    const std::vector<std::vector<int>>& acting_on_;
+    const std::vector<std::vector<int>>& contacts_of_;
     std::vector<int> contact_of_;
     std::vector<int> dof_of_;
     std::vector<bool> seen_;

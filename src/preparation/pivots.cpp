@@ -180,7 +180,7 @@ template <int Dim>
 Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts, const Load<Dim>& load,
                             const PivotLimits& limits, Signs signs, long& iterations,
                             std::optional<State<Dim>>& candidate) {
-    bool exchanged = signs == Signs::as_computed;
+    bool may_replace = signs == Signs::told;
     std::set<std::vector<Contact>> seen;
     for (int pivot = 0; pivot < limits.pivots; ++pivot) {
         if (limits.stop != nullptr && limits.stop->load(std::memory_order_relaxed)) {
@@ -201,8 +201,8 @@ Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts,
         const Basis<Dim> basis(packing, load, structure.value(), signs);
         const auto overlapping = basis.overlapping();
         const auto pulling = basis.pulling();
-        if (!basis.known() && !exchanged) { // nearly dependent contacts: others of those that touch are better
-            exchanged = true;
+        if (!basis.known() && may_replace) { // nearly dependent contacts: others of those that touch are better
+            may_replace = false;
             if (auto others = best_conditioned(packing)) {
                 contacts = std::move(*others);
                 continue;

@@ -1,4 +1,5 @@
 #include "certificate/exact_counting.hpp"
+#include "certificate/reach.hpp"
 #include "certificate/true_vertex.hpp"
 #include "contact/candidates.hpp"
 #include "contact/images.hpp"
@@ -14,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 namespace isostat {
@@ -22,95 +22,6 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
-
-/// The bounds count roundings, not underflow or overflow: where those could matter, nothing is claimed.
-template <int Dim> std::optional<std::string> out_of_range(const State<Dim>& state) {
-    constexpr double largest = 1e100;
-    constexpr double smallest = 1e-100;
-    const auto [least, most] = std::minmax_element(state.packing.radius.begin(), state.packing.radius.end());
-    const auto size = [](const std::vector<double>& x) {
-        return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double c) { return std::max(m, std::abs(c)); });
-    };
-    if (least == state.packing.radius.end() || *least < smallest || *most > largest ||
-        size(state.packing.q) > largest) {
-        return "there are no disks, or lengths beyond 1e-100 and 1e100";
-    }
-    for (const double load : {size(state.load.external_force(state.packing)), size(state.load.infinitesimal)}) {
-        if (load != 0 && !(load > smallest && load < largest)) {
-            return fmt::format("the largest load is {:.3g}, beyond 1e-100 and 1e100", load);
-        }
-    }
-    return std::nullopt;
-}
-
-/// Why nothing is claimed of a state.
-template <int Dim> std::optional<std::string> beyond_claims(const State<Dim>& state) {
-    const auto held = std::find_if(state.contacts.begin(), state.contacts.end(),
-                                   [](const Contact& c) { return c.kind == ContactKind::held; });
-    return held == state.contacts.end()
-               ? out_of_range(state)
-               : fmt::format("the state keeps a coordinate ({}), which is not a contact", to_string<Dim>(*held));
-}
-
-/// Largest coordinate or radius.
-template <int Dim> double largest_length(const Packing<Dim>& packing) {
-    double largest = packing.max_radius();
-    for (std::size_t k = 0; k < packing.q.size(); ++k) {
-        const bool exists =
-            k < Dim * packing.radius.size() || packing.cell.any() || packing.walls.upper[k % Dim] != WallKind::absent;
-        largest = exists ? std::max(largest, std::abs(packing.q[k])) : largest;
-    }
-    return largest;
-}
-
-/// Some image is farther away than the grid allows for (proofs/cells.md, C2).
-bool any_far(const std::vector<Contact>& pairs) {
-    return std::any_of(pairs.begin(), pairs.end(), [](const Contact& pair) { return is_beyond(pair, farthest_image); });
-}
-
-/// A cell on the grid, where every r is exact, with `moved` bound of what that changes of a coordinate. Nothing where a
-/// part of the cell that cannot move would have to, or an image is too far.
-template <int Dim>
-std::optional<Packing<Dim>> on_grid(Packing<Dim> packing, const std::vector<Contact>& contacts, double& moved) {
-    const Packing<Dim> before = packing;
-    moved = snap_to_grid(packing);
-    const DofMap<Dim> dofs(packing);
-    bool stays = !any_far(contacts);
-    for (std::size_t k = packing.length_at(0); k < packing.q.size(); ++k) {
-        stays = stays && (dofs.dof_of(k) >= 0 || packing.q[k] == before.q[k]);
-    }
-    return stays ? std::optional(std::move(packing)) : std::nullopt;
-}
-
-/// The smallest stretch of a lattice vector, from below: |A m| >= that times |m|.
-double least_stretch(const Packing<2>& packing) {
-    const auto period = [&](std::size_t a) { return packing.cell.periodic[a] ? packing.lattice(a, a) : infinity; };
-    if (!packing.cell.all()) {
-        return std::min(period(0), period(1));
-    }
-    const double size = std::hypot(period(0), packing.lattice(0, 1), period(1));
-    return period(0) / size * period(1) * (1 - 1e-12); // determinant / norm
-}
-
-/// The gap of a pair that is not among the candidates, at a distance from where they were found, is at least their
-/// reach minus this times the distance (proofs/cells.md, C4; V4 (d) in a box).
-template <int Dim> double far_weight(const Packing<Dim>& packing, double reach) {
-    constexpr double root2 = 1.4143;
-    if (!packing.cell.any()) {
-        return root2;
-    }
-    double extent = 0; // of the centres
-    for (std::size_t a = 0; a < Dim; ++a) {
-        double low = infinity;
-        double high = -infinity;
-        for (std::size_t i = 0; i < packing.radius.size(); ++i) {
-            low = std::min(low, packing.q[Dim * i + a]);
-            high = std::max(high, packing.q[Dim * i + a]);
-        }
-        extent = std::hypot(extent, high - low);
-    }
-    return root2 + (2 * packing.max_radius() + reach + extent) / least_stretch(packing) * (1 + 1e-12);
-}
 
 /// Words for the first force that is negative, and for the first whose sign is not known; empty: there is none.
 struct SignFailures {

@@ -16,7 +16,7 @@ constexpr Contact none{ContactKind::disk_disk, -1, -1};
 
 /// The load at which a force that is almost 0 at the stored stress vanishes. \pre its slope is told from 0.
 template <int Dim> LimitLoad<Dim> zero_load(Statics<Dim>& statics, ContactId at_zero, const Load<Dim>& load) {
-    LimitLoad<Dim> at{load, nullptr, 0, {0, 0}};
+    LimitLoad<Dim> at{load};
     const Enclosure slope = statics.slope(at_zero);
     const Enclosure f = statics.force(at_zero, at.stress());
     at.error = (std::abs(f.value) + f.radius) / (std::abs(slope.value) - slope.radius) * (1 + 1e-10);

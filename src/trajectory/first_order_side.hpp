@@ -17,10 +17,11 @@ namespace isostat {
 
 /// The load of an equilibrium or of a rearrangement.
 template <int Dim> struct LimitLoad {
-    Load<Dim> load;                         ///< as it is stored
-    std::shared_ptr<const LoadShift> shift; ///< the exact stress less the stored one; null: it is meant as it is stored
-    double error = 0;                       ///< bound of that
-    Enclosure stress_rate{0, 0};            ///< first-order term of the stress
+    Load<Dim> load; ///< as it is stored
+    std::shared_ptr<const LoadShift> shift =
+        nullptr;                 ///< the exact stress less the stored one; null: it is meant as it is stored
+    double error = 0;            ///< bound of that
+    Enclosure stress_rate{0, 0}; ///< first-order term of the stress
 
     [[nodiscard]] double stress() const { return load.loaded_stress(); }
     void set_stress(double stress) { load.loaded_stress() = stress; }

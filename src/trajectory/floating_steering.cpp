@@ -157,7 +157,7 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     auto next = IsostaticStructure<Dim>::exchange(*structure_, path.end, start_.opening.contact, path.closed,
                                                   predicted && predicted->contacts ? &*predicted->contacts : nullptr);
     if (!next) {
-        return failed(FailureKind::not_isostatic, "the contacts are structurally singular at the end of {}",
+        return failed(FailureKind::undecided, "the contacts are structurally singular at the end of {}",
                       names(arc.record));
     }
     if (!next->predicted()) { // a normal turned into or out of an axis: the backbone may be another one

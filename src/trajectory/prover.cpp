@@ -215,7 +215,7 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
     auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, options);
     if (!made.ok()) {
-        return at_end(made.failure());
+        return at_end(not_proved(made.failure()));
     }
     proof.vertex = std::move(made.value());
     if (first_order_ != nullptr) {
@@ -409,7 +409,7 @@ EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, 
     proof.vertex = std::move(made.value());
     Vertex<Dim>& vertex = *proof.vertex;
     if (first_order_ != nullptr) { // the load is again the stored one, if the forces allow it
-        first_order_->attach(vertex, {limit.load, nullptr, 0, {0, 0}});
+        first_order_->attach(vertex, {limit.load});
     }
     auto found = gaps(vertex);
     if (!found.ok()) {

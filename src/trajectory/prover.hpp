@@ -54,6 +54,14 @@ template <int Dim> struct EndProof {
     std::optional<Result<Description<Dim>>> description; ///< of an equilibrium only
 };
 
+/// A failure at the end of an arc, where N = N_f: a rank that is not proved full is no proof that it is smaller.
+inline Failure not_proved(Failure failure) {
+    if (failure.kind == FailureKind::not_isostatic) {
+        failure.kind = FailureKind::undecided;
+    }
+    return failure;
+}
+
 /// Owns what successive proofs leave for the next ones: candidates, which of them are contacts, bounds of the inverse.
 /// Nothing else touches these, whatever thread the prover works on; one thread at a time.
 template <int Dim> class Prover {

@@ -10,13 +10,20 @@
 
 namespace isostat {
 
+template <int Dim> void Standing<Dim>::move_to(std::shared_ptr<Vertex<Dim>> to, const Opening& opens) {
+    const ArcKind begins = kind_of(to->structure.contacts()[opens.contact.index()], opens.infinitesimal);
+    *this = {std::move(to), opens, begins};
+}
+
 template <int Dim>
 Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following)
     : prover_(prover), recorder_(recorder), following_(following), at_(std::move(start.at)),
-      here_(std::move(start.vertex)), opening_(start.opening), kind_(start.kind), chosen_(std::move(start.chosen)),
-      tilts_at_start_(here_->packing.q.begin() + static_cast<std::ptrdiff_t>(here_->packing.length_at(Dim)),
-                      here_->packing.q.end()),
-      by_steps_(!chosen_.empty()) {}
+      here_{std::move(start.vertex), start.opening, start.kind, std::move(start.chosen)},
+      tilts_at_start_(here_.vertex->packing.q.begin() +
+                          static_cast<std::ptrdiff_t>(here_.vertex->packing.length_at(Dim)),
+                      here_.vertex->packing.q.end()) {
+    here_.by_steps = !here_.settled.empty();
+}
 
 template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
     return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
@@ -27,7 +34,7 @@ template <int Dim> std::string Rearrangement<Dim>::at_equilibrium() const {
 }
 
 template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<NextRearrangement<Dim>> begun) {
-    if (begun && kind_ == ArcKind::limit && begun->starts_with(opening_.contact, at_)) {
+    if (begun && here_.kind == ArcKind::limit && begun->starts_with(here_.opening.contact, at_)) {
         begun->count_work();
         steering_ = std::move(begun);
     }
@@ -50,7 +57,7 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<
             return Reached<Dim>{std::move(*end_), arcs_, std::move(next_)};
         }
         // Only plain steering ends where a force is negative: it goes on from there.
-        goes_on_from(end_->vertex, *decision.opening);
+        here_.move_to(end_->vertex, *decision.opening);
         steering_.reset();
         end_.reset();
         next_.reset();
@@ -60,8 +67,8 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<
 
 /// The other rules choose by differences that floating steering does not resolve.
 template <int Dim> bool Rearrangement<Dim>::floats() const {
-    return plain() || (!at_first_order(options().ties) && options().rule == OpeningRule::most_negative && !by_steps_ &&
-                       resting_.empty());
+    return plain() || (!at_first_order(options().ties) && options().rule == OpeningRule::most_negative &&
+                       !here_.by_steps && here_.resting.empty());
 }
 
 /// Propose, prove, record, decide, until no force is negative.
@@ -74,7 +81,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
         if (!steering_) {
             steering_ = make_steering();
         }
-        ProofChain<Dim> chain(prover_, here_, opening_, at_);
+        ProofChain<Dim> chain(prover_, here_.vertex, here_.opening, at_);
         Proofs proofs([&](ArcProposal<Dim>& arc) { return plain() ? unproved(arc) : chain.prove(arc); },
                       ahead_ ? window : 0);
         const int before = arcs_;
@@ -128,49 +135,49 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
 }
 
 template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steering() {
-    ArcStart<Dim> start{opening_, kind_, recorder_.counters.steps + 1, &at_.load, {}};
+    const Vertex<Dim>& vertex = *here_.vertex;
+    ArcStart<Dim> start{here_.opening, here_.kind, recorder_.counters.steps + 1, &at_.load, {}};
     ahead_ = floats() && !plain();
     if (!floats()) {
         if (arcs_ == 0) {
-            take_log(*here_, start.settled);
-            start.settled.insert(start.settled.end(), chosen_.begin(), chosen_.end());
+            take_log(*here_.vertex, start.settled);
         }
         auto departure = depart();
-        start.settled.insert(start.settled.end(), relisted_.begin(), relisted_.end());
-        return std::make_unique<BoundedSteering<Dim>>(here_, std::move(start), std::move(departure),
+        start.settled.insert(start.settled.end(), here_.settled.begin(), here_.settled.end());
+        return std::make_unique<BoundedSteering<Dim>>(here_.vertex, std::move(start), std::move(departure),
                                                       options().step_fraction, prover_.candidates());
     }
     return std::make_unique<FloatingSteering<Dim>>(
-        typename FloatingSteering<Dim>::Origin{here_->packing, here_->structure, here_->factorisation}, start,
+        typename FloatingSteering<Dim>::Origin{vertex.packing, vertex.structure, vertex.factorisation}, start,
         options(), prover_.candidates(), ahead_);
 }
 
 /// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
 template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
     constexpr std::size_t most_exchanges = 1000;
-    if (!here_->perturbed || here_->perturbed->touching.empty()) {
+    if (!here_.vertex->perturbed || here_.vertex->perturbed->touching.empty()) {
         return Departure<Dim>{};
     }
     while (true) {
-        auto departure = isostat::depart(*here_, opening_.contact, opening_.direction);
+        auto departure = isostat::depart(*here_.vertex, here_.opening.contact, here_.opening.direction);
         if (!departure.ok() || !departure.value().overlaps) {
             return departure;
         }
         const BentPair& bent = *departure.value().overlaps;
-        if (relisted_.size() >= most_exchanges) {
+        if (here_.settled.size() >= most_exchanges) {
             return failed(FailureKind::undecided, "{} lists were exchanged where pairs touch, and {} would overlap",
-                          relisted_.size(), named<Dim>(bent.pair));
+                          here_.settled.size(), named<Dim>(bent.pair));
         }
-        const auto exchange = give_way(*here_, opening_, bent, at_.stress());
+        const auto exchange = give_way(*here_.vertex, here_.opening, bent, at_.stress());
         if (!exchange.ok()) {
             return exchange.failure();
         }
-        auto next = prover_.exchange(*here_, exchange.value(), at_);
+        auto next = prover_.exchange(*here_.vertex, exchange.value(), at_);
         if (!next.ok()) {
             return next.failure();
         }
-        here_ = std::move(next.value());
-        relisted_.push_back(exchange.value().decision);
+        here_.vertex = std::move(next.value());
+        here_.settled.push_back(exchange.value().decision);
     }
 }
 
@@ -227,16 +234,13 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
         return std::nullopt;
     }
     const OpeningDecision& decision = proof.next->value();
-    relisted_.clear();
-    last_hold_ = record.power_turn ? opening_.contact : ContactId();
-    resting_.clear();
-    by_steps_ = false;
+    const ContactId held = record.power_turn ? here_.opening.contact : ContactId();
     if (decision.opening) {
-        goes_on_from(proof.vertex, *decision.opening);
+        here_.move_to(proof.vertex, *decision.opening);
+        here_.fresh_hold = held;
         return std::nullopt;
     }
-    here_ = proof.vertex;
-    zeros_ = decision.zeros;
+    here_ = {.vertex = proof.vertex, .opening = here_.opening, .fresh_hold = held, .zeros = decision.zeros};
     ended_ = true;
     recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung, decision.perturbed});
     return std::nullopt;
@@ -261,19 +265,13 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::flows(const ArcPro
     return std::nullopt;
 }
 
-template <int Dim> void Rearrangement<Dim>::goes_on_from(std::shared_ptr<Vertex<Dim>> vertex, const Opening& opening) {
-    here_ = std::move(vertex);
-    opening_ = opening;
-    kind_ = kind_of(here_->structure.contacts()[opening.contact.index()], opening.infinitesimal);
-}
-
 /// What to do about an arc that could not be proposed, or whose proof did not agree; `any`: others before did.
 template <int Dim>
 std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& refused,
                                                   const std::optional<Failure>& failed, bool any) {
     if (ahead_) { // proposed in vain: what depends on it is done again
         count_all(refused ? refused->work : WorkCounts{});
-        by_steps_ = !any;
+        here_.by_steps = !any;
         steering_.reset();
         return std::nullopt;
     }
@@ -282,7 +280,7 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
         if (plain()) {
             ++recorder_.counters.tally.plain;
         } else {
-            recorder_.count({DecisionKind::opening, opening_.margin, opening_.rung, opening_.perturbed});
+            recorder_.count({DecisionKind::opening, here_.opening.margin, here_.opening.rung, here_.opening.perturbed});
         }
         return located(*failed, where(arcs_ + 1));
     }
@@ -301,7 +299,7 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
         return located(refused->next->failure(), where(arcs_));
     }
     recorder_.count(*refused);
-    if (refused->reached && kind_ == ArcKind::release && !refused->descends) {
+    if (refused->reached && here_.kind == ArcKind::release && !refused->descends) {
         return set_aside(refused->record);
     }
     ++recorder_.counters.steps;
@@ -311,12 +309,12 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
 /// It turned back where it stood, or went up: its multiplier is noise, and there is no descent. Released once more it
 /// would do so for ever.
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const ArcRecord<Dim>& record) {
-    resting_.push_back(opening_.contact);
-    ZeroHolds zero{std::nullopt, resting_};
-    if (last_hold_.valid()) {
-        zero.fresh = last_hold_;
+    here_.resting.push_back(here_.opening.contact);
+    ZeroHolds zero{std::nullopt, here_.resting};
+    if (here_.fresh_hold.valid()) {
+        zero.fresh = here_.fresh_hold;
     }
-    auto again = prover_.decide(*here_, at_.stress(), zero, recorder_.counters.steps);
+    auto again = prover_.decide(*here_.vertex, at_.stress(), zero, recorder_.counters.steps);
     if (!again.ok()) {
         return located(again.failure(), where(arcs_ + 1));
     }
@@ -326,13 +324,15 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::set_aside(const Ar
                       "turn is located: whether and where it moves is not decided",
                       where(arcs_ + 1), named<Dim>(record.opened));
     }
-    goes_on_from(here_, *again.value().opening);
+    here_.opening = *again.value().opening;
+    here_.kind =
+        kind_of(here_.vertex->structure.contacts()[here_.opening.contact.index()], here_.opening.infinitesimal);
     steering_.reset();
     return std::nullopt;
 }
 
 template <int Dim> SteeredEnd<Dim> Rearrangement<Dim>::at_here() const {
-    return {here_->packing, here_->structure.contacts(), last_hold_, {}};
+    return {here_.vertex->packing, here_.vertex->structure.contacts(), here_.fresh_hold, {}};
 }
 
 /// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
@@ -354,8 +354,9 @@ template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prov
         next_ = std::make_unique<NextRearrangement<Dim>>(*beginning, prover.candidates());
     }
     const long step = recorder_.counters.steps;
-    Future<EndProof<Dim>> proving(
-        [&, hold = end.fresh_hold, step] { return prover.prove_end(std::move(*beginning), at_, hold, zeros_, step); });
+    Future<EndProof<Dim>> proving([&, hold = end.fresh_hold, step] {
+        return prover.prove_end(std::move(*beginning), at_, hold, here_.zeros, step);
+    });
     if (next_ && next_->begin(at_.load, *following_, options(), step + 1)) {
         next_->propose_ahead([&] { return !proving.underway() || recorder_.stopped(); });
     } else {
@@ -366,7 +367,7 @@ template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prov
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndProof<Dim>& end) const {
     if (end.failure) {
-        return located(*end.failure, at_equilibrium());
+        return located(not_proved(*end.failure), at_equilibrium());
     }
     if (end.gaps.negative) {
         const auto overlap = named<Dim>(*end.gaps.negative);
@@ -392,6 +393,7 @@ template <int Dim> std::optional<ArcProof<Dim>> Rearrangement<Dim>::unproved(Arc
     return proof;
 }
 
+template struct Standing<2>;
 template class Rearrangement<2>;
 
 } // namespace isostat

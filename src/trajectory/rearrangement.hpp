@@ -21,6 +21,22 @@ template <int Dim> struct Reached {
     std::unique_ptr<NextRearrangement<Dim>> next; ///< what follows, if it was begun
 };
 
+/// Where a rearrangement stands, and what is known there.
+template <int Dim> struct Standing {
+    std::shared_ptr<Vertex<Dim>> vertex; ///< the last one that was proved
+    Opening opening;                     ///< what opens there
+    ArcKind kind = ArcKind::limit;       ///< of the arc that it begins
+    /// Why this one opens, where the rule takes another first; lists that were exchanged. Recorded with the arc.
+    std::vector<TieDecision> settled{};
+    ContactId fresh_hold{};           ///< of the power turn that ended there
+    std::vector<ContactId> resting{}; ///< holds whose multipliers are 0 as far as their turns are located
+    std::vector<ContactId> zeros{};   ///< forces of an equilibrium that vanish in the base
+    bool by_steps = false;            ///< the next arc must be proved before going on
+
+    /// To what opens at `vertex`, of which nothing else is known.
+    void move_to(std::shared_ptr<Vertex<Dim>> to, const Opening& opens);
+};
+
 /// One rearrangement under a constant load (paper, section 2.3): a contact opens, the grains move until another one
 /// closes, and the contact with the largest traction opens next, until there is none. Every arc is *proposed* by a
 /// steering, *proved*, *recorded*, and its end *decides* what opens; the level and the ties say who steers and what is
@@ -62,7 +78,6 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof<Dim>& proof);
     [[nodiscard]] std::optional<Failure> flows(const ArcProof<Dim>& proof) const;
-    void goes_on_from(std::shared_ptr<Vertex<Dim>> vertex, const Opening& opening);
     std::optional<Failure> answer(std::optional<ArcProof<Dim>>& refused, const std::optional<Failure>& failed,
                                   bool any);
     std::optional<Failure> set_aside(const ArcRecord<Dim>& record);
@@ -76,26 +91,19 @@ template <int Dim> class Rearrangement {
     Recorder<Dim>& recorder_;
     const Segment* following_;
     LimitLoad<Dim> at_;
-    std::shared_ptr<Vertex<Dim>> here_; ///< the last vertex that was proved
-    Opening opening_;                   ///< what opens there
-    ArcKind kind_;
-    std::vector<TieDecision> chosen_;   ///< recorded with the first arc
-    std::vector<TieDecision> relisted_; ///< lists exchanged at `here_` since it was reached
+    Standing<Dim> here_;
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;
-    ContactId last_hold_;            ///< of the power turn at `here_`
-    std::vector<ContactId> resting_; ///< holds at `here_` whose multipliers are 0 as far as their turns are located
-    std::vector<ContactId> zeros_;   ///< forces at the end that vanish in the base
-    bool by_steps_ = false;          ///< the next arc is one that must be proved before going on
-    bool ahead_ = false;             ///< the steering goes ahead of the proofs
-    int proposed_ = 0;               ///< arcs by it
-    bool ended_ = false;             ///< no force is negative where it is
+    bool ended_ = false; ///< no force is negative where it is
+    bool ahead_ = false; ///< the steering goes ahead of the proofs
+    int proposed_ = 0;   ///< arcs by it
     std::unique_ptr<NextRearrangement<Dim>> next_;
-    std::unique_ptr<Steering<Dim>> steering_;   ///< refers to `here_`
+    std::unique_ptr<Steering<Dim>> steering_;   ///< refers to `here_.vertex`
     std::optional<SteeredEnd<Dim>> steered_to_; ///< by `steering_`, if it came to an end
     std::optional<EndProof<Dim>> end_;
 };
 
+extern template struct Standing<2>;
 extern template class Rearrangement<2>;
 
 } // namespace isostat

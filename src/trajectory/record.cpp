@@ -306,6 +306,28 @@ std::optional<Failure> record_smallest_gap(EquilibriumRecord<Dim>& record, const
     return std::nullopt;
 }
 
+template <int Dim>
+std::optional<Failure> check_equilibrium(const EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
+                                         const Load<Dim>& load, const CandidateList<Dim>& candidates) {
+    // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
+    const double allowance = 4 * vertex.enclosure.distance();
+    const Admissibility admissible = certify_admissible(vertex.packing, allowance, &candidates);
+    if (admissible.verdict != Verdict::proved) {
+        return failed(FailureKind::overlap, "equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}",
+                      load.loaded_stress(), named<Dim>(admissible.worst), admissible.worst_gap);
+    }
+    const Packing<Dim>& packing = vertex.packing;
+    const bool plain = load.disk_force.empty() && packing.fixed.empty();
+    const bool walled = packing.cell.any() || packing.walls == Walls<Dim>::box(); // nothing is free as a whole
+    const int expected = vertex.structure.dofs().dof_count() - Dim * record.rattlers;
+    if (plain && walled && record.held == 0 && record.backbone != expected) {
+        return failed(FailureKind::undecided,
+                      "backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}", record.backbone,
+                      record.rattlers, Dim, expected);
+    }
+    return std::nullopt;
+}
+
 template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load) {
     const VertexEnclosure at = at_true_vertex(end);
     const Enclosure strain = strain_of(TrueCoordinates<Dim>{end, at}, load, static_cast<std::size_t>(load.loaded_axis));
@@ -324,6 +346,8 @@ template <int Dim> void record_path(ArcRecord<Dim>& record, const Arc<Dim>& path
 
 template std::optional<Failure> record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&, const VertexEnclosure&,
                                                        const CandidateList<2>&);
+template std::optional<Failure> check_equilibrium<2>(const EquilibriumRecord<2>&, const Vertex<2>&, const Load<2>&,
+                                                     const CandidateList<2>&);
 template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);

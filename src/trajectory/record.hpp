@@ -30,6 +30,13 @@ template <int Dim>
 std::optional<Failure> record_smallest_gap(EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
                                            const VertexEnclosure& at, const CandidateList<Dim>& candidates);
 
+/// What holds of every equilibrium, looked at once more: no two grains overlap by more than the uncertainty of the
+/// stored configuration, all pairs included; the contacts that carry force are as many as the degrees of freedom of the
+/// grains that do. Failure: `overlap`, `undecided`.
+template <int Dim>
+std::optional<Failure> check_equilibrium(const EquilibriumRecord<Dim>& record, const Vertex<Dim>& vertex,
+                                         const Load<Dim>& load, const CandidateList<Dim>& candidates);
+
 /// eps_2 at the end of an arc, with its bound.
 template <int Dim> void record_strain(ArcRecord<Dim>& record, const Vertex<Dim>& end, const Load<Dim>& load);
 
@@ -45,6 +52,8 @@ template <int Dim> std::vector<double> finite_forces(const Vertex<Dim>& vertex, 
 extern template Result<Description<2>> describe<2>(Vertex<2>&, const Load<2>&);
 extern template std::optional<Failure> record_smallest_gap<2>(EquilibriumRecord<2>&, const Vertex<2>&,
                                                               const VertexEnclosure&, const CandidateList<2>&);
+extern template std::optional<Failure> check_equilibrium<2>(const EquilibriumRecord<2>&, const Vertex<2>&,
+                                                            const Load<2>&, const CandidateList<2>&);
 extern template void record_strain<2>(ArcRecord<2>&, const Vertex<2>&, const Load<2>&);
 extern template void record_path<2>(ArcRecord<2>&, const Arc<2>&);
 extern template std::vector<int> rattlers<2>(const Vertex<2>&);

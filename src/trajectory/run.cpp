@@ -1,13 +1,12 @@
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"
-#include "trajectory/rearrangement.hpp"
+#include "trajectory/limit_attempts.hpp"
+#include "trajectory/segment_start.hpp"
 
-#include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <fmt/format.h>
-#include <qd/dd_real.h>
 
 #include <algorithm>
 #include <array>
@@ -34,40 +33,24 @@ template <int Dim> class Run {
   private:
     [[nodiscard]] bool perturbs() const { return first_order_ != nullptr; }
     [[nodiscard]] bool resumed() const { return counters_.equilibria != 0 || counters_.steps != 0; }
-    [[nodiscard]] LimitLoad<Dim> load() const { return {state_.load, nullptr, 0, {0, 0}}; }
-    [[nodiscard]] double sigma() const { return load().stress(); }
+    [[nodiscard]] LimitLoad<Dim> load() const { return {state_.load}; }
+    [[nodiscard]] double sigma() const { return state_.load.loaded_stress(); }
     [[nodiscard]] double elapsed() const {
         return seconds_before_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
     }
 
     std::optional<Failure> start();
-    Result<bool> choose_start();
     std::optional<Failure> resume();
-    std::optional<Failure> first_equilibrium(const typename Vertex<Dim>::Gaps& gaps, bool touching);
+    std::optional<Failure> first_equilibrium(const SegmentStart<Dim>& start);
     std::optional<Failure> still_equilibrium();
     std::optional<Failure> reload();
     /// True: the goal of the segment is reached.
     Result<bool> next_equilibrium();
     Result<LoadLimit> find_limit();
     Result<bool> reach_stress(const LoadLimit& limit);
-    std::optional<double> beyond(double limit);
-    /// A rearrangement as it was begun.
-    struct Attempt {
-        Opening opening;
-        ArcKind kind = ArcKind::limit;
-        LimitLoad<Dim> at;
-        std::vector<TieDecision> chosen; ///< why this one opens, where the rule takes another first
-        bool begun = false;              ///< an arc was recorded
-        [[nodiscard]] bool in_vain(const Result<Reached<Dim>>& reached) const {
-            return !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
-        }
-    };
-    Result<Reached<Dim>> begin_at_limit(Attempt& attempt);
-    Result<Reached<Dim>> follow(Attempt& attempt);
-    [[nodiscard]] Failure offering_class(const Failure& failure, ContactId first) const;
+    Result<Reached<Dim>> follow(Attempt<Dim>& attempt);
     std::optional<Failure> rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at);
     std::optional<Failure> report(int arcs, std::optional<Result<Description<Dim>>> known = std::nullopt);
-    [[nodiscard]] std::optional<Failure> check(const EquilibriumRecord<Dim>& record);
 
     State<Dim>& state_;
     const Segment& segment_;
@@ -111,69 +94,12 @@ template <int Dim> SegmentOutcome Run<Dim>::run() {
 }
 
 template <int Dim> std::optional<Failure> Run<Dim>::start() {
-    const auto at_start = [](const Failure& failure) { return located(failure, "start"); };
-    prover_.start_at(state_.packing);
-    bool touching = false; // a choice at first order was made
-    if (perturbs()) {
-        auto chosen = choose_start();
-        if (!chosen.ok()) {
-            return at_start(chosen.failure());
-        }
-        touching = chosen.value();
+    auto begun = start_segment(state_, prover_, first_order_.get(), resumed());
+    if (!begun.ok()) {
+        return located(begun.failure(), "start");
     }
-    auto made = prover_.vertex(state_.packing, state_.contacts, load());
-    if (!made.ok()) {
-        return at_start(made.failure());
-    }
-    vertex_ = std::move(made.value());
-    auto gaps = prover_.gaps(*vertex_);
-    if (!gaps.ok()) {
-        return at_start(gaps.failure());
-    }
-    if (gaps.value().negative) {
-        return failed(FailureKind::overlap, "start: {} overlap", named<Dim>(*gaps.value().negative));
-    }
-    if (perturbs()) {
-        if (auto failure = first_order_->resume(*vertex_, gaps.value().zero)) {
-            return at_start(*failure);
-        }
-        touching = touching || !gaps.value().zero.empty();
-    }
-    return resumed() ? resume() : first_equilibrium(gaps.value(), touching);
-}
-
-/// Of the contacts of a hyperstatic start those are kept that carry the load for small eps > 0: of those listed, and of
-/// the pairs that touch without being listed. True: a choice was made.
-template <int Dim> Result<bool> Run<Dim>::choose_start() {
-    if (resumed()) {
-        return false;
-    }
-    const auto dofs = static_cast<std::size_t>(DofMap<Dim>(state_.packing).dof_count());
-    const bool hyperstatic = state_.contacts.size() > dofs;
-    if (hyperstatic) {
-        if (auto failure = first_order_->choose_contacts()) {
-            return *failure;
-        }
-    }
-    auto made = prover_.vertex(state_.packing, state_.contacts, load());
-    if (!made.ok()) {
-        return made.failure();
-    }
-    auto gaps = prover_.gaps(*made.value());
-    if (!gaps.ok()) {
-        return gaps.failure();
-    }
-    const auto overlap = settle_touching(*made.value(), gaps.value().zero);
-    if (hyperstatic || !overlap || overlap->kind != FailureKind::overlap) {
-        return hyperstatic;
-    }
-    for (const auto& [contact, order] : gaps.value().zero) {
-        state_.contacts.push_back(contact);
-    }
-    if (auto failure = first_order_->choose_contacts()) {
-        return *failure;
-    }
-    return true;
+    vertex_ = begun.value().vertex;
+    return resumed() ? resume() : first_equilibrium(begun.value());
 }
 
 /// The same questions as when the equilibrium was found: the statics then stand on the same rung, and the run goes on
@@ -192,9 +118,8 @@ template <int Dim> std::optional<Failure> Run<Dim>::resume() {
 }
 
 /// Rearranged at its own load where a force is negative.
-template <int Dim>
-std::optional<Failure> Run<Dim>::first_equilibrium(const typename Vertex<Dim>::Gaps& gaps, bool touching) {
-    recorder_.count({DecisionKind::gaps, gaps.margin, gaps.rung});
+template <int Dim> std::optional<Failure> Run<Dim>::first_equilibrium(const SegmentStart<Dim>& start) {
+    recorder_.count({DecisionKind::gaps, start.gaps.margin, start.gaps.rung});
     auto decided = prover_.decide(*vertex_, sigma(), {}, 0);
     if (!decided.ok()) {
         return located(decided.failure(), "start");
@@ -208,7 +133,7 @@ std::optional<Failure> Run<Dim>::first_equilibrium(const typename Vertex<Dim>::G
         vertex_->perturbed->zeros = decision.zeros;
         vertex_->perturbed->statics.log.clear();
     }
-    recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung, decision.perturbed || touching});
+    recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung, decision.perturbed || start.chosen});
     return report(0);
 }
 
@@ -313,9 +238,7 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
     if (!(ahead > 0)) {
         return false;
     }
-    LimitLoad<Dim> at = load();
-    at.set_stress(*segment_.to_stress);
-    state_.load = at.load;
+    state_.load.loaded_stress() = *segment_.to_stress;
     if (perturbs()) {
         if (auto failure = reload()) {
             return *failure;
@@ -328,71 +251,7 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
     return true;
 }
 
-/// The first double beyond the limit at which a rearrangement began in vain; none: it is not known that well. The
-/// nearest double may lie before the limit: the force that opens is then still positive, by roundings, and on a way as
-/// short as those the potential grows.
-template <int Dim> std::optional<double> Run<Dim>::beyond(double limit) {
-    const double step = std::nextafter(std::abs(limit), infinity) - std::abs(limit);
-    auto found = isostat::find_limit(vertex_->statics, sigma(), segment_.direction, vertex_->first_order());
-    while (found.ok() && !(found.value().stress_error <= step) && vertex_->statics.climb()) {
-        found = isostat::find_limit(vertex_->statics, sigma(), segment_.direction, vertex_->first_order());
-    }
-    if (!found.ok() || !(found.value().stress_error <= step)) {
-        return std::nullopt;
-    }
-    return std::nextafter(found.value().stress + segment_.direction * found.value().stress_error,
-                          segment_.direction * infinity);
-}
-
-/// In vain: its first arc is not decided. Then it may begin with the load rounded away, or, by `TiePolicy::by_class`,
-/// with another force that vanishes at the same one.
-template <int Dim> Result<Reached<Dim>> Run<Dim>::begin_at_limit(Attempt& attempt) {
-    const RunCounters before = counters_;
-    const LimitLoad<Dim> nearest = attempt.at;
-    auto reached = follow(attempt);
-    if (!attempt.in_vain(reached) || perturbs()) {
-        return reached;
-    }
-    if (const auto stress = beyond(nearest.stress())) {
-        counters_ = before;
-        attempt.at.set_stress(*stress);
-        reached = follow(attempt);
-    }
-    if (attempt.in_vain(reached) && recorder_.options.ties == TiePolicy::by_class) {
-        const auto& contacts = vertex_->structure.contacts();
-        for (const TieDecision& choice : others_of_class(vertex_->statics, attempt.opening.contact)) {
-            const auto chosen = std::find(contacts.begin(), contacts.end(), choice.chosen) - contacts.begin();
-            const RunCounters after = std::exchange(counters_, before);
-            for (const LimitLoad<Dim>& at : {nearest, attempt.at}) {
-                counters_ = before;
-                Attempt other{attempt.opening, attempt.kind, at, {choice}};
-                other.opening.contact = ContactId(static_cast<std::size_t>(chosen));
-                auto its = follow(other);
-                if (!other.in_vain(its)) {
-                    attempt = std::move(other);
-                    return its;
-                }
-            }
-            counters_ = after;
-        }
-    }
-    if (attempt.in_vain(reached)) {
-        return offering_class(reached.failure(), attempt.opening.contact);
-    }
-    return reached;
-}
-
-/// What a run that chooses nothing says where another policy would look further.
-template <int Dim> Failure Run<Dim>::offering_class(const Failure& failure, ContactId first) const {
-    const RunOptions& options = recorder_.options;
-    const bool may = options.ties == TiePolicy::stop && options.certify != CertifyLevel::plain &&
-                     !others_of_class(vertex_->statics, first).empty();
-    return may ? failed(failure.kind, "{}; other forces vanish with it: ties = \"class\" in [run] may open one of them",
-                        failure)
-               : failure;
-}
-
-template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt& attempt) {
+template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt<Dim>& attempt) {
     const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
     prover_.start_at(vertex_->packing);
     Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at, attempt.chosen}, prover_,
@@ -403,8 +262,10 @@ template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt& attempt) {
 }
 
 template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& opening, ArcKind kind, LimitLoad<Dim> at) {
-    Attempt attempt{opening, kind, std::move(at), {}};
-    auto reached = kind == ArcKind::limit ? begin_at_limit(attempt) : follow(attempt);
+    Attempt<Dim> attempt{opening, kind, std::move(at)};
+    LimitAttempts<Dim> attempts(vertex_->statics, sigma(), segment_.direction, recorder_,
+                                [this](Attempt<Dim>& a) { return follow(a); });
+    auto reached = kind == ArcKind::limit ? attempts.begin(attempt) : follow(attempt);
     if (!reached.ok()) {
         return reached.failure();
     }
@@ -428,7 +289,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     if (auto failure = record_smallest_gap(record, *vertex_, described.value().vertex, prover_.candidates())) {
         return located(*failure, fmt::format("equilibrium at sigma = {:.17g}", sigma()));
     }
-    if (auto failure = check(record)) {
+    if (auto failure = check_equilibrium(record, *vertex_, state_.load, prover_.candidates())) {
         return failure;
     }
     recorder_.count({DecisionKind::equilibrium, record.margin, record.decided_by});
@@ -448,67 +309,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     return recorder_.observer.objection();
 }
 
-/// What holds of every equilibrium.
-template <int Dim> std::optional<Failure> Run<Dim>::check(const EquilibriumRecord<Dim>& record) {
-    // No two grains overlap by more than the uncertainty of the stored configuration, all pairs included.
-    const double allowance = 4 * vertex_->enclosure.distance();
-    const Admissibility admissible = certify_admissible(vertex_->packing, allowance, &prover_.candidates());
-    if (admissible.verdict != Verdict::proved) {
-        return failed(FailureKind::overlap, "equilibrium at sigma = {:.17g}: {} overlap, gap {:.6g}", sigma(),
-                      named<Dim>(admissible.worst), admissible.worst_gap);
-    }
-    const Packing<Dim>& packing = vertex_->packing;
-    const bool plain = state_.load.disk_force.empty() && packing.fixed.empty();
-    const bool walled = packing.cell.any() || packing.walls == Walls<Dim>::box(); // nothing is free as a whole
-    const int expected = vertex_->structure.dofs().dof_count() - Dim * record.rattlers;
-    if (plain && walled && record.held == 0 && record.backbone != expected) {
-        return failed(FailureKind::undecided,
-                      "backbone of {} contacts with {} rattlers: expected N_f - {} rattlers = {}", record.backbone,
-                      record.rattlers, Dim, expected);
-    }
-    return std::nullopt;
-}
-
 } // namespace
-
-template <int Dim>
-void require_followed(const State<Dim>& state, const RunOptions& options, const std::string& source) {
-    const Cell<Dim>& cell = state.packing.cell;
-    if (!cell.any()) {
-        return;
-    }
-    const auto refuse = [&](const std::string& what) {
-        throw Error(ErrorKind::bad_input, source + ": a periodic cell; " + what);
-    };
-    if (cell.keeps_shape) {
-        refuse("it keeps its shape, and a load on its size only scales the forces: no contact ever opens. Expected a "
-               "rectangular or tilted cell (inspect, certify and verify take this one)");
-    }
-    if (at_first_order(options.ties)) { // first-order gaps and bodies know no images (proofs/perturbation.md)
-        refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\" or \"class\"");
-    }
-    const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
-    if (state.load.kind == LoadKind::true_stress && shears) {
-        refuse(
-            "true stresses have no potential where the tilt moves, and nothing would tell where a run leads: expected "
-            "dead loads, kind = \"nominal\", or a tilt that does not move");
-    }
-    for (std::size_t a = 0; a < Dim; ++a) {
-        const auto balanced = [&](const std::vector<double>& forces, const char* what) {
-            dd_real sum = 0.0;
-            for (std::size_t k = a; k < forces.size() && cell.periodic[a]; k += Dim) {
-                sum += forces[k];
-            }
-            if (!(sum == 0.0)) {
-                refuse(fmt::format("the {} along axis {} sum to {}: expected 0 exactly, or the pinned disk would bear "
-                                   "the rest",
-                                   what, a, to_double(sum)));
-            }
-        };
-        balanced(state.load.infinitesimal, "infinitesimal loads");
-        balanced(state.load.disk_force, "forces on disks");
-    }
-}
 
 template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
@@ -525,7 +326,6 @@ SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segmen
     return Run<Dim>(state, segment, segment_number, {options, counters, observer}).run();
 }
 
-template void require_followed<2>(const State<2>&, const RunOptions&, const std::string&);
 template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
                                        RunObserver<2>&);
 

@@ -77,9 +77,9 @@ struct SegmentOutcome {
     std::optional<Failure> failure; ///< otherwise: why not; the state is the last equilibrium
 };
 
-/// Throws `Error(bad_input)` when a run does not follow this state so far: in a periodic cell other tie policies than
-/// `stop`, levels above `decisions`, true stresses, forces on disks; and, whatever is followed, infinitesimal loads
-/// that do not sum to 0 along a periodic axis. `source` starts the message. `run_segment` asks it too.
+/// Throws `Error(bad_input)` when a run does not follow this state so far. All of these are about periodic cells: one
+/// that keeps its shape; ties at first order; true stresses where the tilt moves; infinitesimal loads, or forces on
+/// disks, that do not sum to 0 along a periodic axis. `source` starts the message. `run_segment` asks it too.
 template <int Dim> void require_followed(const State<Dim>& state, const RunOptions& options, const std::string& source);
 
 /// Runs one segment from `state`, which must be a vertex with N_f contacts.

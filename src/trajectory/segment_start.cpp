@@ -1,0 +1,82 @@
+#include "trajectory/segment_start.hpp"
+
+#include "contact/words.hpp"
+
+namespace isostat {
+
+namespace {
+
+template <int Dim> Result<SegmentStart<Dim>> prove_start(const State<Dim>& state, Prover<Dim>& prover) {
+    auto vertex = prover.vertex(state.packing, state.contacts, {state.load});
+    if (!vertex.ok()) {
+        return vertex.failure();
+    }
+    auto gaps = prover.gaps(*vertex.value());
+    if (!gaps.ok()) {
+        return gaps.failure();
+    }
+    return SegmentStart<Dim>{std::move(vertex.value()), std::move(gaps.value())};
+}
+
+/// True: a choice was made.
+template <int Dim>
+Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& prover, const FirstOrderSide<Dim>& first_order) {
+    const auto dofs = static_cast<std::size_t>(DofMap<Dim>(state.packing).dof_count());
+    const bool hyperstatic = state.contacts.size() > dofs;
+    if (hyperstatic) {
+        if (auto failure = first_order.choose_contacts()) {
+            return *failure;
+        }
+    }
+    const auto listed = prove_start(state, prover);
+    if (!listed.ok()) {
+        return listed.failure();
+    }
+    const ZeroGaps& zero = listed.value().gaps.zero;
+    const auto overlap = settle_touching(*listed.value().vertex, zero);
+    if (hyperstatic || !overlap || overlap->kind != FailureKind::overlap) {
+        return hyperstatic;
+    }
+    for (const auto& [contact, order] : zero) {
+        state.contacts.push_back(contact);
+    }
+    if (auto failure = first_order.choose_contacts()) {
+        return *failure;
+    }
+    return true;
+}
+
+} // namespace
+
+template <int Dim>
+Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, const FirstOrderSide<Dim>* first_order,
+                                        bool resumed) {
+    prover.start_at(state.packing);
+    bool chosen = false;
+    if (first_order != nullptr && !resumed) {
+        const auto choice = choose_contacts(state, prover, *first_order);
+        if (!choice.ok()) {
+            return choice.failure();
+        }
+        chosen = choice.value();
+    }
+    auto start = prove_start(state, prover);
+    if (!start.ok()) {
+        return start;
+    }
+    SegmentStart<Dim>& begun = start.value();
+    if (begun.gaps.negative) {
+        return failed(FailureKind::overlap, "{} overlap", named<Dim>(*begun.gaps.negative));
+    }
+    if (first_order != nullptr) {
+        if (auto failure = first_order->resume(*begun.vertex, begun.gaps.zero)) {
+            return *failure;
+        }
+        begun.chosen = chosen || !begun.gaps.zero.empty();
+    }
+    return start;
+}
+
+template Result<SegmentStart<2>> start_segment<2>(State<2>&, Prover<2>&, const FirstOrderSide<2>*, bool);
+
+} // namespace isostat

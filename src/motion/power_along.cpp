@@ -39,16 +39,21 @@ template <int Dim> double third_approach(const CurveCourse<Dim>& course, const C
 } // namespace
 
 template <int Dim> double PowerAlong<Dim>::operator()(const Packing<Dim>& at, const std::vector<double>& t) const {
-    return product(force(at), t);
+    if (load_.infinitesimal) {
+        return product(load_.load->infinitesimal, t);
+    }
+    double power = 0;
+    load_.load->for_each_force(at, [&](std::size_t k, double f) { power += f * t[k]; });
+    return power;
 }
 
 template <int Dim> double PowerAlong<Dim>::largest_force(const Packing<Dim>& at) const {
-    const std::vector<double> pushing = force(at);
-    return isostat::largest(pushing);
-}
-
-template <int Dim> std::vector<double> PowerAlong<Dim>::force(const Packing<Dim>& at) const {
-    return load_.infinitesimal ? load_.load->infinitesimal : load_.load->external_force(at);
+    if (load_.infinitesimal) {
+        return isostat::largest(load_.load->infinitesimal);
+    }
+    double most = 0;
+    load_.load->for_each_force(at, [&most](std::size_t, double f) { most = std::max(most, std::abs(f)); });
+    return most;
 }
 
 /// DF v: true stresses act on lengths, linear in q in two dimensions. Empty when the load is dead.

@@ -30,7 +30,6 @@ template <int Dim> class PowerAlong {
     [[nodiscard]] std::optional<double> dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const;
 
   private:
-    [[nodiscard]] std::vector<double> force(const Packing<Dim>& at) const;
     [[nodiscard]] std::vector<double> change(const Packing<Dim>& at, const std::vector<double>& v) const;
 
     PowerLoad<Dim> load_;

@@ -64,12 +64,8 @@ template <int Dim> int Load<Dim>::loaded_wall_row(const Packing<Dim>& packing, c
 }
 
 template <int Dim> std::vector<double> Load<Dim>::external_force(const Packing<Dim>& packing) const {
-    std::vector<double> force = fixed_force(packing);
-    for (const WallForce& wall : wall_forces(packing)) {
-        if (wall.loaded) {
-            force[static_cast<std::size_t>(wall.coordinate)] = -(wall.stress * wall.length);
-        }
-    }
+    std::vector<double> force(packing.q.size(), 0.0);
+    for_each_force(packing, [&force](std::size_t k, double f) { force[k] = f; });
     return force;
 }
 
@@ -95,11 +91,8 @@ template <int Dim> std::vector<double> Load<Dim>::fixed_force(const Packing<Dim>
 }
 
 template <int Dim> double potential(const Packing<Dim>& packing, const Load<Dim>& load) {
-    const std::vector<double> force = load.external_force(packing);
     double work = 0;
-    for (std::size_t k = 0; k < force.size(); ++k) {
-        work -= force[k] * packing.q[k];
-    }
+    load.for_each_force(packing, [&](std::size_t k, double f) { work -= f * packing.q[k]; });
     return work;
 }
 

@@ -157,12 +157,11 @@ Enclosure precise_decrease(const Vertex<Dim>& from, const Vertex<Dim>& to, const
 } // namespace
 
 template <int Dim> WorkOfArc work_of(const Load<Dim>& load, const Packing<Dim>& from, const Packing<Dim>& to) {
-    const std::vector<double> force = load.external_force(from);
     WorkOfArc work;
-    for (std::size_t k = 0; k < force.size(); ++k) {
-        work.value += force[k] * (to.q[k] - from.q[k]);
-        work.size += std::abs(force[k] * to.q[k]);
-    }
+    load.for_each_force(from, [&](std::size_t k, double f) {
+        work.value += f * (to.q[k] - from.q[k]);
+        work.size += std::abs(f * to.q[k]);
+    });
     return work;
 }
 

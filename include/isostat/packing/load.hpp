@@ -78,8 +78,17 @@ template <int Dim> struct Load {
     /// (-1: it cannot move, or its stress presses on nothing).
     [[nodiscard]] std::vector<int> loaded_rows(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const;
     [[nodiscard]] int loaded_wall_row(const Packing<Dim>& packing, const DofMap<Dim>& dofs) const;
-    /// External force on every coordinate (as many as `Packing::q` has) for the current stresses, each rounded to the
-    /// nearest.
+    /// Calls `visit(coordinate, force)` for every external force under the current stresses, each rounded to the
+    /// nearest, coordinates ascending; those that are not visited have none.
+    template <class Visit> void for_each_force(const Packing<Dim>& packing, const Visit& visit) const {
+        for (std::size_t k = 0; k < disk_force.size(); ++k) {
+            visit(k, disk_force[k]);
+        }
+        for (const WallForce& wall : wall_forces(packing)) {
+            visit(static_cast<std::size_t>(wall.coordinate), -(wall.stress * wall.length));
+        }
+    }
+    /// External force on every coordinate (as many as `Packing::q` has): the same, none left out.
     [[nodiscard]] std::vector<double> external_force(const Packing<Dim>& packing) const;
     /// Its derivative with respect to the loaded stress: one non-zero entry, on the loaded wall, not rounded.
     [[nodiscard]] std::vector<double> unit_force(const Packing<Dim>& packing) const;

@@ -8,6 +8,16 @@ Range component(const Problem& problem, const Velocities::Solution& v, std::size
     return problem.dof_of[k] >= 0 ? Range::around(v.middle[k], v.radius) : Range(Rational(0));
 }
 
+/// d of two disks, of what `at` says of the coordinates.
+template <class At> std::array<Range, 2> separate(const Row& row, At at) {
+    std::array<Range, 2> d;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
+        d[row.axis[k]] =
+            d[row.axis[k]] + Range(Rational(row.sign[k])) * at(static_cast<std::size_t>(row.coordinate[k]));
+    }
+    return d;
+}
+
 Range place(const Problem& problem, const TrueVertex& vertex, std::size_t k) {
     return Range::around(problem.length(vertex.middle[k]), problem.dof_of[k] >= 0 ? vertex.radius : Rational(0));
 }
@@ -106,14 +116,8 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
     const auto j = static_cast<std::size_t>(pair.j);
     if (pair.kind == ContactKind::disk_disk) {
         const Row row(pair, e_.problem.disks);
-        std::array<Range, 2> x;
-        std::array<Range, 2> change;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-            const auto coordinate = static_cast<std::size_t>(row.coordinate[k]);
-            const Range sign(Rational(row.sign[k]));
-            x[row.axis[k]] = x[row.axis[k]] + sign * place(e_.problem, e_.vertex, coordinate);
-            change[row.axis[k]] = change[row.axis[k]] + sign * component(e_.problem, v, coordinate);
-        }
+        const auto x = separate(row, [&](std::size_t k) { return place(e_.problem, e_.vertex, k); });
+        const auto change = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
         const Range sum = x[0] * change[0] + x[1] * change[1];
         const Rational distance = Rational(e_.state.packing.radius[i]) + Rational(e_.state.packing.radius[j]);
         return sum / Range(distance);
@@ -126,15 +130,12 @@ Range Velocities::gap_rate(const Contact& pair, const Solution& v) const {
 
 /// |D v|^2: what the velocity adds to F'' of a pair of disks.
 Range Velocities::turning(const Contact& pair, const Solution& v) const {
-    Range sum(Rational(0));
-    if (pair.kind == ContactKind::disk_disk) {
-        for (std::size_t a = 0; a < 2; ++a) {
-            const Range w = component(e_.problem, v, 2 * static_cast<std::size_t>(pair.i) + a) -
-                            component(e_.problem, v, 2 * static_cast<std::size_t>(pair.j) + a);
-            sum = sum + w * w;
-        }
+    if (pair.kind != ContactKind::disk_disk) {
+        return Range(Rational(0));
     }
-    return sum;
+    const Row row(pair, e_.problem.disks);
+    const auto [x, y] = separate(row, [&](std::size_t k) { return component(e_.problem, v, k); });
+    return x * x + y * y;
 }
 
 Range Velocities::bend(const Contact& pair, std::size_t opened, const Solution& v) const {
@@ -195,12 +196,7 @@ std::vector<Range> FirstOrder::forces(const std::vector<Range>& f0) const {
         }
         const Range g = f0[l] / Range(e_.problem.force_factor(static_cast<int>(l)));
         const Row& row = e_.problem.rows[l];
-        std::array<Range, 2> turn;
-        for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
-            const Range sign(Rational(row.sign[k]));
-            turn[row.axis[k]] =
-                turn[row.axis[k]] + sign * component(e_.problem, change_, static_cast<std::size_t>(row.coordinate[k]));
-        }
+        const auto turn = separate(row, [&](std::size_t k) { return component(e_.problem, change_, k); });
         for (std::size_t k = 0; k < static_cast<std::size_t>(row.count); ++k) {
             add(static_cast<std::size_t>(row.coordinate[k]), Range(Rational(row.sign[k])) * g * turn[row.axis[k]]);
         }

@@ -116,10 +116,11 @@ class Collector {
         best_ = std::min(best_, gap);
         near_.emplace_back(gap, pair);
     }
+    /// Each once: a pair across a side of the cell is met there and at the opposite side.
     [[nodiscard]] std::vector<Contact> nearest() const {
         std::vector<Contact> pairs;
         for (const auto& [gap, pair] : near_) {
-            if (gap <= limit()) {
+            if (gap <= limit() && std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) {
                 pairs.push_back(pair);
             }
         }

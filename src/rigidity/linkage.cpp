@@ -1,6 +1,7 @@
 #include "rigidity/linkage.hpp"
 
 #include "exact/rank.hpp"
+#include "rigidity/unwound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -248,17 +249,21 @@ template <int Dim> class Linkage {
 
 template <int Dim>
 bool moves_as_linkage(const Packing<Dim>& packing, const std::vector<Contact>& among, const Contact& pair) {
-    std::vector<Contact> touching = among;
-    touching.push_back(pair);
+    std::vector<Contact> all = among;
+    all.push_back(pair);
     const auto stands = [&packing](int i) { return packing.is_fixed(DiskId(static_cast<std::size_t>(i))); };
     const auto foreign = [&](const Contact& c) {
         return c.kind == ContactKind::held || stands(c.i) ||
                (c.kind == ContactKind::disk_disk && (c.i == c.j || stands(c.j)));
     };
-    if (packing.cell.any() || std::any_of(touching.begin(), touching.end(), foreign)) {
+    if (std::any_of(all.begin(), all.end(), foreign)) {
         return false;
     }
-    const Linkage<Dim> linkage(packing, touching);
+    const auto touching = unwound(packing.disk_count(), std::move(all));
+    if (!touching) {
+        return false;
+    }
+    const Linkage<Dim> linkage(packing, *touching);
     const int motions = linkage.motions();
     return motions >= 0 && motions == linkage.free() - static_cast<int>(among.size());
 }

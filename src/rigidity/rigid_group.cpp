@@ -1,5 +1,7 @@
 #include "rigidity/rigid_group.hpp"
 
+#include "rigidity/unwound.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -24,6 +26,12 @@ template <int Dim> struct Group {
     }
 };
 
+/// Whether a coordinate of a disk counts as one that moves. That of a pinned disk does (proofs/cells.md, C1): a group
+/// that belongs to no cell may be moved as a whole.
+template <int Dim> bool counts(const DofMap<Dim>& dofs, std::size_t disk, std::size_t axis) {
+    return dofs.is_periodic(axis) || dofs.dof_of(Dim * disk + axis) >= 0;
+}
+
 /// Translations along an axis and rotations that keep every gap in the group: none of them may move what is fixed.
 template <int Dim> int rigid_motions(const DofMap<Dim>& dofs, const Group<Dim>& group) {
     static_assert(Dim == 2, "one rotation");
@@ -34,7 +42,7 @@ template <int Dim> int rigid_motions(const DofMap<Dim>& dofs, const Group<Dim>& 
         bool moves = !group.lower[axis] && (!group.upper[axis] || dofs.dof_of(walls + axis) >= 0);
         rotates = rotates && !group.lower[axis] && !group.upper[axis];
         for (std::size_t i = 0; i < group.disk.size(); ++i) {
-            if (group.disk[i] != 0 && dofs.dof_of(Dim * i + axis) < 0) {
+            if (group.disk[i] != 0 && !counts(dofs, i, axis)) {
                 moves = rotates = false;
             }
         }
@@ -49,7 +57,7 @@ template <int Dim> int motions_to_hold(const DofMap<Dim>& dofs, const Group<Dim>
     int free = 0;
     for (std::size_t i = 0; i < group.disk.size(); ++i) {
         for (std::size_t axis = 0; group.disk[i] != 0 && axis < Dim; ++axis) {
-            free += dofs.dof_of(Dim * i + axis) >= 0 ? 1 : 0;
+            free += counts(dofs, i, axis) ? 1 : 0;
         }
     }
     for (std::size_t axis = 0; axis < Dim; ++axis) {
@@ -58,26 +66,22 @@ template <int Dim> int motions_to_hold(const DofMap<Dim>& dofs, const Group<Dim>
     return free - rigid_motions(dofs, group);
 }
 
-/// No pair of grains, or one that depends on the shape of the cell.
-bool foreign(const Contact& c) {
-    return c.kind == ContactKind::held || !c.image.is_here();
-}
-
 } // namespace
 
 template <int Dim>
 bool moves_as_one(const DofMap<Dim>& dofs, int disks, const std::vector<Contact>& among, const Contact& pair) {
-    if (foreign(pair) || std::any_of(among.begin(), among.end(), foreign)) {
+    std::vector<Contact> all = among;
+    all.push_back(pair);
+    if (!unwound(disks, all)) {
         return false;
     }
     Group<Dim> group(disks);
-    group.add(pair);
-    std::for_each(among.begin(), among.end(), [&](const Contact& c) { group.add(c); });
+    std::for_each(all.begin(), all.end(), [&](const Contact& c) { group.add(c); });
     return static_cast<int>(among.size()) == motions_to_hold(dofs, group);
 }
 
 template <int Dim> bool carries_alone(const DofMap<Dim>& dofs, const std::vector<Contact>& carrying, int axis) {
-    if (axis < 0 || axis >= Dim || std::any_of(carrying.begin(), carrying.end(), foreign)) {
+    if (axis < 0 || axis >= Dim || !unwound(dofs.disk_count(), carrying)) {
         return false;
     }
     Group<Dim> group(dofs.disk_count());

@@ -230,12 +230,6 @@ void read_run(Section& section, Scene& scene) {
                                    "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
                                    "equilibria");
     }
-    if (at_first_order(run.ties) && scene.preparation.cell != PreparedCell::none) {
-        section.refuse("ties",
-                       "ties = \"" + policy +
-                           "\" in [run] and there is a [cell]: expected \"stop\" or \"class\", ties are settled "
-                           "in boxes only (radii without ties: 'jitter' in [packing])");
-    }
     if (at_first_order(run.ties)) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
     } else if (ties_seed) {

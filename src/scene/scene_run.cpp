@@ -75,7 +75,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
                                                           source, a, state.load.stress[a]));
         }
     }
-    require_followed(state, scene.run, source);
+    require_followed(state, source);
     check_start(state, source, at_first_order(scene.run.ties));
     check_programme(scene, state.load.ratio());
     if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged

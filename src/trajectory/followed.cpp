@@ -11,8 +11,7 @@
 
 namespace isostat {
 
-template <int Dim>
-void require_followed(const State<Dim>& state, const RunOptions& options, const std::string& source) {
+template <int Dim> void require_followed(const State<Dim>& state, const std::string& source) {
     const Cell<Dim>& cell = state.packing.cell;
     if (!cell.any()) {
         return;
@@ -23,9 +22,6 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
     if (cell.keeps_shape) {
         refuse("it keeps its shape, and a load on its size only scales the forces: no contact ever opens. Expected a "
                "rectangular or tilted cell (inspect, certify and verify take this one)");
-    }
-    if (at_first_order(options.ties)) { // first-order gaps and bodies know no images (proofs/perturbation.md)
-        refuse("ties = \"perturb\" and \"choose\" are for boxes only so far: expected ties = \"stop\" or \"class\"");
     }
     const bool shears = std::find(cell.tilt_moves.begin(), cell.tilt_moves.end(), true) != cell.tilt_moves.end();
     if (state.load.kind == LoadKind::true_stress && shears) {
@@ -50,6 +46,6 @@ void require_followed(const State<Dim>& state, const RunOptions& options, const 
     }
 }
 
-template void require_followed<2>(const State<2>&, const RunOptions&, const std::string&);
+template void require_followed<2>(const State<2>&, const std::string&);
 
 } // namespace isostat

@@ -315,7 +315,7 @@ template <int Dim>
 SegmentOutcome run_segment(State<Dim>& state, const Segment& segment, int segment_number, const RunOptions& options,
                            RunCounters& counters, RunObserver<Dim>& observer) {
     require_floating_point();
-    require_followed(state, options, "state");
+    require_followed(state, "state");
     const double stress = state.load.loaded_stress();
     if (segment.to_stress && segment.direction * (*segment.to_stress - stress) < 0) {
         return {false, failed(FailureKind::no_limit,

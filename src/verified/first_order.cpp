@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace isostat {
 
@@ -25,6 +26,24 @@ double length_of(const std::vector<double>& x) {
     std::vector<double> size(x.size());
     std::transform(x.begin(), x.end(), size.begin(), [](double c) { return std::abs(c); });
     return norm_above(size);
+}
+
+/// Of a row times a vector: 4 terms, with an image 7, their sum, 5u per entry, and one for three periods.
+double rounding(const Contact& contact) {
+    return (contact.image.is_here() ? 12 : 16) * u;
+}
+
+/// Rounding of a relative velocity where periods are added: seven operations or less on each of two components. Without
+/// an image a component is one difference, and nothing of its size is lost.
+template <int Dim> double lost_to_periods(const std::vector<double>& v, const Contact& pair) {
+    double size = 0;
+    if (!pair.image.is_here()) {
+        const int disks = static_cast<int>(v.size()) / Dim - 1;
+        Separation<Dim>(pair, disks).for_each_coordinate([&](std::size_t k, std::size_t, int multiple) {
+            size += std::abs(multiple * v[k]);
+        });
+    }
+    return 16 * u * size;
 }
 
 /// The grains of a contact, disks first, then walls.
@@ -103,35 +122,50 @@ std::vector<Contact> closed_among(const Packing<Dim>& packing, const IsostaticSt
     return among;
 }
 
+/// Where a disk is, seen from the first of a pair, and how it moves: from contact to contact, through images.
+struct Seen {
+    std::array<double, 2> place{};
+    std::array<double, 2> velocity{};
+    /// The grain behind a contact: of its second disk, or (`sign` -1) of its first.
+    template <int Dim>
+    [[nodiscard]] Seen across(const Packing<Dim>& packing, const std::vector<double>& v, const Contact& c,
+                              int sign) const {
+        const auto d = separation<Dim>(packing.q, c);
+        const auto w = separation<Dim>(v, c);
+        Seen other = *this;
+        for (std::size_t a = 0; a < d.size(); ++a) {
+            other.place[a] += sign * d[a];
+            other.velocity[a] += sign * w[a];
+        }
+        return other;
+    }
+};
+
 /// Contacts that stay closed when `opened` opens and join, to the grains of a pair, grains that move with them as a
 /// body, as far as doubles tell; `v`: the motion. Walls are grains of a body that does not turn.
 template <int Dim>
 std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,
                                   ContactId opened, const std::vector<double>& v, const Contact& pair) {
     const std::size_t disks = packing.radius.size();
-    const auto at = [](std::size_t disk, std::size_t axis) { return Dim * disk + axis; };
-    const auto first = static_cast<std::size_t>(pair.i);
-    const auto second = static_cast<std::size_t>(pair.j);
     const double fastest =
         std::abs(*std::max_element(v.begin(), v.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    std::vector<std::optional<Seen>> body(disks + 2 * Dim); // of walls: nothing in it
+    const auto grains = grains_of(pair, disks);
+    body[grains[0]].emplace();
     double turn = 0;
     if (pair.kind == ContactKind::disk_disk) {
-        const double x = packing.q[at(second, 0)] - packing.q[at(first, 0)];
-        const double y = packing.q[at(second, 1)] - packing.q[at(first, 1)];
-        turn = (x * (v[at(second, 1)] - v[at(first, 1)]) - y * (v[at(second, 0)] - v[at(first, 0)])) / (x * x + y * y);
+        const Seen second = Seen().across(packing, v, pair, 1);
+        const auto& [x, w] = second;
+        turn = (x[0] * w[1] - x[1] * w[0]) / (x[0] * x[0] + x[1] * x[1]);
+        body[grains[1]] = second;
+    } else {
+        body[grains[1]].emplace();
     }
     const bool turns = std::abs(turn) * packing.min_radius() > carries_or_moves * fastest;
-    const auto moves_with = [&](std::size_t disk) {
-        const double x = packing.q[at(disk, 0)] - packing.q[at(first, 0)];
-        const double y = packing.q[at(disk, 1)] - packing.q[at(first, 1)];
-        const double off = std::abs(v[at(disk, 0)] - v[at(first, 0)] + turn * y) +
-                           std::abs(v[at(disk, 1)] - v[at(first, 1)] - turn * x);
-        return off <= carries_or_moves * fastest;
+    const auto moves_with = [&](const Seen& disk) {
+        const auto& [x, w] = disk;
+        return std::abs(w[0] + turn * x[1]) + std::abs(w[1] - turn * x[0]) <= carries_or_moves * fastest;
     };
-    std::vector<unsigned char> in_body(disks + 2 * Dim, 0);
-    for (const std::size_t grain : grains_of(pair, disks)) {
-        in_body[grain] = 1;
-    }
     std::vector<Contact> list;
     std::vector<unsigned char> taken(structure.contacts().size(), 0);
     for (bool grows = true; grows;) {
@@ -141,15 +175,25 @@ std::vector<Contact> moving_alike(const Packing<Dim>& packing, const IsostaticSt
             if (taken[l] != 0 || l == opened.index() || c.kind == ContactKind::held) {
                 continue;
             }
-            const auto grains = grains_of(c, disks);
-            const bool wall = c.kind != ContactKind::disk_disk;
-            const bool joined = in_body[grains[0]] != 0 || (!wall && in_body[grains[1]] != 0);
-            if (joined && (wall ? !turns : moves_with(grains[0]) && moves_with(grains[1]))) {
-                in_body[grains[0]] = in_body[grains[1]] = 1;
-                list.push_back(c);
-                taken[l] = 1;
-                grows = true;
+            const auto [i, j] = grains_of(c, disks);
+            Seen other; // of a wall nothing is asked
+            if (c.kind != ContactKind::disk_disk) {
+                if (!body[i] || turns) {
+                    continue;
+                }
+            } else if (body[i] || body[j]) {
+                other = body[i] ? body[i]->across(packing, v, c, 1) : body[j]->across(packing, v, c, -1);
+                if (!moves_with(other)) {
+                    continue;
+                }
+            } else {
+                continue;
             }
+            std::optional<Seen>& joins = body[i] ? body[j] : body[i];
+            joins = joins ? joins : other;
+            list.push_back(c);
+            taken[l] = 1;
+            grows = true;
         }
     }
     return list;
@@ -214,7 +258,7 @@ typename FirstOrder<Dim>::Velocity FirstOrder<Dim>::velocity(const std::vector<d
             dot += term;
             terms += std::abs(term);
         }
-        residual[l] = std::abs(dot) + 12 * u * terms; // at most 4 terms, 5u per entry
+        residual[l] = std::abs(dot) + rounding(structure_->contacts()[l]) * terms;
     }
     Velocity result;
     result.v.assign(packing_->q.size(), 0.0);
@@ -239,6 +283,7 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, c
         sum += term;
         terms += std::abs(term);
     }
+    const double weight = separation_weight(contact);
     double turned = 0; // the normal of the true vertex is another one
     if (contact.kind == ContactKind::disk_disk) {
         double square = 0;
@@ -246,9 +291,10 @@ template <int Dim> Enclosure FirstOrder<Dim>::gap_rate(const Contact& contact, c
             square += r * r;
         }
         // |n - n*| <= 2 |x - x*| / d for the relative positions x
-        turned = std::sqrt(square) * 2 * root2 * away_ / (0.99 * target(*packing_, contact));
+        turned = (std::sqrt(square) + lost_to_periods<Dim>(velocity.v, contact)) * 2 * weight * away_ /
+                 (0.99 * target(*packing_, contact));
     }
-    return {sum, (root2 * velocity.error + turned + 12 * u * terms) * raise};
+    return {sum, (weight * velocity.error + turned + rounding(contact) * terms) * raise};
 }
 
 template <int Dim> Enclosure FirstOrder<Dim>::gap(const Contact& contact) const {
@@ -310,14 +356,17 @@ typename FirstOrder<Dim>::LoadChange FirstOrder<Dim>::load_change(const std::vec
         const double d = std::sqrt(square);
         speed = std::sqrt(speed);
         // dn = (r - n (n.r)) / d; relative errors of n and d at the true vertex, of r, and of the arithmetic.
-        const double place = root2 * away_ / d;
-        const double off = (root2 * change_.error + speed * (6 * place + 40 * u)) / d * 1.01;
+        const double weight = separation_weight(c);
+        const double lost = lost_to_periods<Dim>(v, c);
+        speed += lost;
+        const double place = weight * away_ / d;
+        const double off = (weight * change_.error + lost + speed * (6 * place + 40 * u)) / d * 1.01;
         Separation<Dim>(c, packing_->disk_count()).for_each_coordinate([&](std::size_t k, std::size_t e, int sign) {
             const double turn = (r[e] - x[e] * dot / square) / d;
             const double push = f0[l].value * turn;
             const double unknown = f0[l].radius * (std::abs(turn) + off) + std::abs(f0[l].value) * off;
             on.value[k] += sign * push; // column l of H is minus the gradient of the gap
-            on.error[k] += unknown + 2 * u * (std::abs(push) + std::abs(on.value[k]));
+            on.error[k] += std::abs(sign) * (unknown + 2 * u * std::abs(push)) + 2 * u * std::abs(on.value[k]);
         });
     }
     if (load.kind == LoadKind::true_stress) { // the force on a wall follows the other length

@@ -1,7 +1,9 @@
 #include "verified/precise_first_order.hpp"
 
-#include "core/roundoff.hpp"
+#include "contact/separation.hpp"
 #include "verified/contact_system.hpp"
+
+#include <cstdlib>
 
 namespace isostat {
 
@@ -19,38 +21,39 @@ template <int Dim> struct PreciseFirstOrder<Dim>::Rung {
 
 namespace {
 
-using roundoff::root2;
-
 /// Rate of the gap of a pair that touches at the true vertex, on a motion on the degrees of freedom.
 template <int Dim>
 PreciseInterval gap_rate(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Dim>& dofs,
                          const BoundedVector<Real>& motion, const Contact& pair) {
     const Arithmetic<Real>& a = vertex.at().arithmetic();
-    const auto component = [&](int coordinate) {
-        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
+    const auto component = [&](std::size_t coordinate) {
+        const int dof = dofs.dof_of(coordinate);
         return dof < 0 ? a.number(0) : motion.value[static_cast<std::size_t>(dof)];
     };
-    const UpperBound unknown = root2 * motion.bound;
+    const UpperBound unknown = separation_weight(pair) * motion.bound;
     if (pair.kind != ContactKind::disk_disk) {
-        const Real v = component(Dim * pair.i + pair.j);
-        const int wall = Dim * vertex.at().packing().disk_count() + pair.j;
+        const Real v = component(static_cast<std::size_t>(Dim * pair.i + pair.j));
+        const auto wall = static_cast<std::size_t>(Dim * vertex.at().packing().disk_count() + pair.j);
         const Real rate = pair.kind == ContactKind::lower_wall ? v : component(wall) - v;
         return {rate, (unknown + a.unit() * (a.size(v) + a.size(rate))).real(), a.bits()};
     }
     const auto x = vertex.at().separation(pair);
+    const Separation<Dim> separation(pair, vertex.at().packing().disk_count());
+    const auto w = separation.of_disks(component, [](const Real& to, const Real& from) -> Real { return to - from; });
     Real sum = a.number(0);
     UpperBound speed(0);
     UpperBound size(0);
-    for (int k = 0; k < Dim; ++k) {
-        const Real v = component(Dim * pair.j + k) - component(Dim * pair.i + k);
-        const Real& d = x[static_cast<std::size_t>(k)];
-        sum += d * v;
-        speed += a.size(v) + a.size(component(Dim * pair.i + k)) + a.size(component(Dim * pair.j + k));
-        size += a.size(d);
+    separation.for_each_coordinate([&](std::size_t coordinate, std::size_t, int multiple) {
+        speed += std::abs(multiple) * a.size(component(coordinate));
+    });
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        sum += x[k] * w[k];
+        speed += a.size(w[k]);
+        size += a.size(x[k]);
     }
-    // |x.v - x*.v*| <= |x| |v - v*| + |x - x*| |v*|; a component of x within 8 unit |x|, of v within 2 unit of `speed`,
+    // |x.v - x*.v*| <= |x| |v - v*| + |x - x*| |v*|; a component of x within 8 unit |x|, of v within 8 unit of `speed`,
     // and two products and sums.
-    const UpperBound away = root2 * vertex.radius();
+    const UpperBound away = separation_weight(pair) * vertex.radius();
     const UpperBound error = size * unknown + away * (speed + unknown) + 32 * a.unit() * size * speed;
     const PreciseInterval product(sum, error.real(), a.bits());
     const Real length = vertex.at().length(pair); // of x*: the pair touches
@@ -68,8 +71,8 @@ PreciseInterval turning(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Di
     const auto enclosed = [&](const Real& x, const UpperBound& radius) {
         return PreciseInterval(x, (radius + 8 * a.unit() * a.size(x)).real(), a.bits());
     };
-    const auto component = [&](int coordinate) {
-        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
+    const auto component = [&](std::size_t coordinate) {
+        const int dof = dofs.dof_of(coordinate);
         return dof < 0 ? enclosed(a.number(0), 0) : enclosed(motion.value[static_cast<std::size_t>(dof)], motion.bound);
     };
     const auto x = vertex.at().separation(pair);
@@ -77,14 +80,17 @@ PreciseInterval turning(const EnclosedVertex<Dim, Real>& vertex, const DofMap<Di
     for (const Real& d : x) {
         size += a.size(d);
     }
+    const auto w =
+        Separation<Dim>(pair, vertex.at().packing().disk_count())
+            .of_disks(component, [](const PreciseInterval& to, const PreciseInterval& from) -> PreciseInterval {
+                return to - from;
+            });
+    const UpperBound off = separation_weight(pair) * vertex.radius() + 8 * a.unit() * size;
     PreciseInterval square(a.bits());
     PreciseInterval along(a.bits());
-    for (int k = 0; k < Dim; ++k) {
-        const PreciseInterval w = component(Dim * pair.j + k) - component(Dim * pair.i + k);
-        const PreciseInterval d =
-            enclosed(x[static_cast<std::size_t>(k)], root2 * vertex.radius() + 8 * a.unit() * size);
-        square = square + w * w;
-        along = along + d * w;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        square = square + w[k] * w[k];
+        along = along + enclosed(x[k], off) * w[k];
     }
     const PreciseInterval length = enclosed(vertex.at().length(pair), 0);
     return (square - along * along / (length * length)) / length;

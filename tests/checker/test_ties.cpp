@@ -2,6 +2,7 @@
 // name changed in each kind of record must be found.
 #include "support/forger.hpp"
 #include "support/mirror.hpp"
+#include "support/mirror_cells.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
@@ -171,6 +172,33 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_foun
     const std::size_t begin = stored.find("],", open) + 2;
     const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
     finds(folder, "states/eq_000001.json", "]," + term, "]," + scaled(term, -1), "first-order gap");
+}
+
+BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_are_found) {
+    const scratch::Folder scratch_folder;
+    int ties = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        const fs::path folder = scratch_folder / ("mirror" + std::to_string(seed));
+        play(cells::mirror_pairs(), towards(+1, 1), TiePolicy::perturb, seed, folder);
+        is_proved(folder);
+        ties += verify_run(folder).ties_checked;
+        const std::string events = scratch::read(folder / "events.jsonl");
+        const std::string first = value_of(events, "against_first_order").substr(1);
+        finds(folder, "events.jsonl", "\"against_first_order\":[" + first,
+              "\"against_first_order\":[" + scaled(first, 1 + 1e-6), "first-order");
+        // The pair that stays open touches across a side of the cell.
+        const std::string stored = scratch::read(folder / "states/eq_000001.json");
+        const std::size_t open = stored.find("\"open\":[[");
+        BOOST_REQUIRE(open != std::string::npos);
+        const std::size_t begin = stored.find("]],", open) + 3;
+        const std::string term = stored.substr(begin, stored.find(',', begin) - begin);
+        finds(folder, "states/eq_000001.json", "]]," + term, "]]," + scaled(term, 1.001), "first-order gap");
+    }
+    BOOST_TEST(ties > 5);
+    // A hyperstatic start.
+    const fs::path folder = scratch_folder / "hyperstatic";
+    play(cells::unfolded(crafted::three_disks(1, 1.1, 1.5, 1, 1), 0), towards(+1, 2), TiePolicy::perturb, 1, folder);
+    is_proved(folder);
 }
 
 BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {

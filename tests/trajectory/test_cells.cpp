@@ -416,29 +416,22 @@ BOOST_AUTO_TEST_CASE(a_dead_shear_that_flows_ends_the_run) {
 
 BOOST_AUTO_TEST_CASE(what_is_not_followed_is_refused) {
     const State<2> start = start_of("rect_16");
-    const auto refuses = [&](State<2> state, const RunOptions& options, const std::string& words) {
-        BOOST_CHECK_EXCEPTION(require_followed(state, options, "state"), Error, [&](const Error& error) {
+    const auto refuses = [&](const State<2>& state, const std::string& words) {
+        BOOST_CHECK_EXCEPTION(require_followed(state, "state"), Error, [&](const Error& error) {
             return std::string(error.what()).find(words) != std::string::npos;
         });
     };
-    BOOST_CHECK_NO_THROW(require_followed(start, RunOptions(), "state"));
-    RunOptions options;
-    for (const TiePolicy ties : {TiePolicy::choose, TiePolicy::perturb}) {
-        options.ties = ties;
-        refuses(start, options, "expected ties = \"stop\"");
-    }
-    options.ties = TiePolicy::by_class;
-    BOOST_CHECK_NO_THROW(require_followed(start, options, "state"));
+    BOOST_CHECK_NO_THROW(require_followed(start, "state"));
     State<2> state = start_of("tilt_16");
     state.load.kind = LoadKind::true_stress;
-    refuses(state, {}, "no potential where the tilt moves");
+    refuses(state, "no potential where the tilt moves");
     state = with_forces(start);
-    BOOST_CHECK_NO_THROW(require_followed(state, RunOptions(), "state"));
+    BOOST_CHECK_NO_THROW(require_followed(state, "state"));
     state.load.disk_force[4] += 0x1p-40;
-    refuses(state, {}, "forces on disks along axis 0");
+    refuses(state, "forces on disks along axis 0");
     state = start;
     state.load.infinitesimal[0] += 1;
-    refuses(state, {}, "expected 0 exactly");
+    refuses(state, "expected 0 exactly");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -138,6 +138,8 @@ template <int Dim> class DofMap {
     /// "x of disk 12", "right wall", "period along x", "tilt xy": for messages.
     [[nodiscard]] std::string name(int dof) const;
     [[nodiscard]] int disk_count() const { return disks_; }
+    /// Along a periodic axis one disk is pinned, whichever.
+    [[nodiscard]] bool is_periodic(std::size_t axis) const { return periodic_[axis]; }
 
   private:
     int disks_;

@@ -77,10 +77,10 @@ struct SegmentOutcome {
     std::optional<Failure> failure; ///< otherwise: why not; the state is the last equilibrium
 };
 
-/// Throws `Error(bad_input)` when a run does not follow this state so far. All of these are about periodic cells: one
-/// that keeps its shape; ties at first order; true stresses where the tilt moves; infinitesimal loads, or forces on
-/// disks, that do not sum to 0 along a periodic axis. `source` starts the message. `run_segment` asks it too.
-template <int Dim> void require_followed(const State<Dim>& state, const RunOptions& options, const std::string& source);
+/// Throws `Error(bad_input)` when a run does not follow this state: a periodic cell that keeps its shape, true stresses
+/// where the tilt moves, loads on disks that do not sum to 0 along a periodic axis. `source` starts the message.
+/// `run_segment` asks it too.
+template <int Dim> void require_followed(const State<Dim>& state, const std::string& source);
 
 /// Runs one segment from `state`, which must be a vertex with N_f contacts.
 /// \post `state` is the last equilibrium reached (also after a failure), with its stress set; `counters` advanced.
@@ -111,7 +111,7 @@ template <int Dim> struct MechanismInspection {
 template <int Dim>
 Result<MechanismInspection<Dim>> inspect_mechanism(const State<Dim>& state, const Counting& counting);
 
-extern template void require_followed<2>(const State<2>&, const RunOptions&, const std::string&);
+extern template void require_followed<2>(const State<2>&, const std::string&);
 extern template SegmentOutcome run_segment<2>(State<2>&, const Segment&, int, const RunOptions&, RunCounters&,
                                               RunObserver<2>&);
 extern template Result<MechanismInspection<2>> inspect_mechanism<2>(const State<2>&, const Counting&);

@@ -1,0 +1,186 @@
+// First-order terms of gaps and forces in periodic cells, and second derivatives, against differences of packings that
+// Newton's method makes.
+#include "linear/factorisation.hpp"
+#include "support/course.hpp"
+#include "support/mirror_cells.hpp"
+#include "support/scratch.hpp"
+#include "verified/first_order.hpp"
+#include "verified/precise_first_order.hpp"
+
+#include <isostat/io/state_file.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <functional>
+
+using namespace isostat;
+using namespace crafted;
+
+namespace {
+
+constexpr double step = 1e-4;
+
+/// The packing near a state with these gaps of its contacts, in double.
+Packing<2> with_gaps(const State<2>& state, const std::vector<double>& radius, std::size_t opened, double gap_of_it) {
+    Packing<2> packing = state.packing;
+    packing.radius = radius;
+    for (int newton = 0; newton < 8; ++newton) {
+        const auto structure = IsostaticStructure<2>::prove(packing, state.contacts).value();
+        std::vector<double> v;
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            v.push_back(gap(packing, state.contacts[l]) - (l == opened ? gap_of_it : 0));
+        }
+        Factorisation(structure).solve_velocities(v);
+        for (std::size_t mu = 0; mu < v.size(); ++mu) {
+            packing.q[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))] += v[mu];
+        }
+    }
+    return packing;
+}
+
+std::vector<double> forces_in(const State<2>& state, const Packing<2>& packing) {
+    const auto structure = IsostaticStructure<2>::prove(packing, state.contacts).value();
+    std::vector<double> f = on_dofs(state.load.external_force(packing), structure.dofs());
+    Factorisation(structure).solve_forces(f);
+    return f;
+}
+
+std::vector<double> changed(const State<2>& state, const std::vector<double>& rho, double eps) {
+    std::vector<double> radius = state.packing.radius;
+    for (std::size_t i = 0; i < rho.size(); ++i) {
+        radius[i] += eps * rho[i];
+    }
+    return radius;
+}
+
+struct Derivatives {
+    double first, second;
+};
+/// Of a function of s at 0.
+Derivatives derivatives(const std::function<double(double)>& f) {
+    const double after = f(step);
+    const double before = f(-step);
+    return {(after - before) / (2 * step), (after + before - 2 * f(0)) / (step * step)};
+}
+
+struct Vertex {
+    explicit Vertex(const State<2>& state)
+        : packing(state.packing), structure(IsostaticStructure<2>::prove(packing, state.contacts).value()),
+          factorisation(structure), bound(bound_inverse(structure, factorisation, cache)),
+          enclosure(enclose_vertex(packing, structure, factorisation, bound)), rho(tie_direction(packing.radius, 3)),
+          first(packing, structure, factorisation, bound, enclosure, rho),
+          precise(packing, structure, factorisation, bound, {}) {}
+    Packing<2> packing;
+    IsostaticStructure<2> structure;
+    Factorisation factorisation;
+    InverseBoundCache cache;
+    InverseBound bound;
+    VertexEnclosure enclosure;
+    std::vector<double> rho;
+    FirstOrder<2> first;
+    PreciseFirstOrder<2> precise;
+};
+
+/// Vertices where pairs touch besides the contacts, through images too: the end of a tie of two gaps, with disks stored
+/// a period away, and lattices.
+std::vector<State<2>> vertices_with_touching_pairs() {
+    std::vector<State<2>> vertices{follow_load(cells::mirror_pairs(), +1, 1, TiePolicy::perturb, 1).states.back()};
+    for (const bool tilts : {false, true}) {
+        const State<2> lattice = cells::loaded_lattice(3, 1, tilts);
+        vertices.push_back(follow_load(lattice, +1, 1, TiePolicy::choose, 1).states.front());
+    }
+    return vertices;
+}
+
+bool near(double a, double b) {
+    return std::abs(a - b) < 1e-5 * (1 + std::abs(b));
+}
+
+/// Every pair of disks through every image next to the cell that is no contact.
+std::vector<Contact> other_pairs(const State<2>& state) {
+    std::vector<Contact> pairs;
+    for (int i = 0; i < state.packing.disk_count(); ++i) {
+        for (int j = i + 1; j < state.packing.disk_count(); ++j) {
+            for (const int x : {-2, -1, 0, 1}) {
+                pairs.push_back(cells::across(i, j, state.packing.cell.periodic[0] ? x : 0,
+                                              state.packing.cell.periodic[1] ? 1 + x : 0));
+            }
+        }
+    }
+    return pairs;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(statics)
+
+BOOST_AUTO_TEST_CASE(gaps_and_forces_of_changed_radii_in_cells_are_those_of_packings_that_are_made) {
+    for (const std::string name : {"tilt_16", "rect_16", "channel_16"}) {
+        State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
+        snap_to_grid(state.packing);
+        for (const LoadKind kind : {LoadKind::nominal, LoadKind::true_stress}) {
+            state.load.kind = kind;
+            const bool refused = kind == LoadKind::true_stress && state.packing.cell.tilt_moves[0];
+            const Vertex at(state);
+            std::vector<Enclosure> f0;
+            for (const double f : forces_in(state, state.packing)) {
+                f0.push_back({f, 1e-12});
+            }
+            const std::vector<Enclosure> f1 = at.first.forces(f0, std::vector<unsigned char>(f0.size(), 0), state.load);
+            for (std::size_t l = 0; l < f1.size() && !refused; ++l) {
+                const double f = derivatives([&](double eps) {
+                                     const auto radius = changed(state, at.rho, eps);
+                                     return forces_in(state, with_gaps(state, radius, 0, 0))[l];
+                                 }).first;
+                BOOST_TEST(near(f1[l].value, f),
+                           name << " " << to_string<2>(state.contacts[l]) << " " << f1[l].value << " " << f);
+                BOOST_TEST(f1[l].radius < 1e-6);
+            }
+            for (const Contact& pair : other_pairs(state)) {
+                const double h = derivatives([&](double eps) {
+                                     return gap(with_gaps(state, changed(state, at.rho, eps), 0, 0), pair);
+                                 }).first;
+                BOOST_TEST(near(at.first.gap(pair).value, h), name << " " << to_string<2>(pair));
+            }
+        }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(
+    rates_and_second_derivatives_of_pairs_that_touch_through_images_are_those_of_motions_that_are_made) {
+    int images = 0;
+    int bent = 0;
+    for (const State<2>& state : vertices_with_touching_pairs()) {
+        Vertex at(state);
+        for (const auto& [pair, c] : state.perturbation->open) {
+            images += pair.image.is_here() ? 0 : 1;
+            BOOST_TEST(near(at.precise.gap(at.rho, pair).value, at.first.gap(pair).value));
+            for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+                const ContactId id(l);
+                const Derivatives d =
+                    derivatives([&](double s) { return gap(with_gaps(state, state.packing.radius, l, s), pair); });
+                BOOST_TEST_CONTEXT(to_string<2>(pair) << " when " << to_string<2>(state.contacts[l]) << " opens") {
+                    BOOST_TEST(near(at.first.rate(id, +1, pair).value, d.first));
+                    BOOST_TEST(near(at.precise.rate(id, +1, pair).value, d.first));
+                    BOOST_TEST(std::abs(at.precise.bend(id, +1, pair).value - d.second) <
+                               1e-3 * (1 + std::abs(d.second)));
+                }
+                bent += !pair.image.is_here() && std::abs(d.second) > 0.1 ? 1 : 0;
+            }
+        }
+        // Of a contact everything is known: its gap is 0, and that of the one that opens grows at unit rate.
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const Contact& contact = state.contacts[l];
+            BOOST_TEST(near(at.first.gap(contact).value, 0), to_string<2>(contact));
+            for (std::size_t opened = 0; opened < state.contacts.size(); ++opened) {
+                const double rate = opened == l ? 1 : 0;
+                BOOST_TEST(near(at.precise.rate(ContactId(opened), +1, contact).value, rate), to_string<2>(contact));
+            }
+        }
+    }
+    BOOST_TEST(images > 5);
+    BOOST_TEST(bent > 10);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -5,7 +5,7 @@ burakericok/hard_disk_crits) against the counts of proofs/cells.md:
     python3 examples/peers/critical_disks.py FOLDER       # that holds 2disk.csv ... 12disk.csv
 
 Each is polished with its stress: gaps of the listed contacts 0 at one radius, forces balanced, their sum 1, one Newton
-iteration for all. Its index, the number of motions along which the radius must shrink, is compared with
+iteration for all. Its index, the number of motions along which the radius grows, is compared with
 k - 2 rattlers - 2 (components - 1), k the mechanisms of the fixed cell. Ranks are those of doubles, not proved.
 Needs numpy and scipy.
 """

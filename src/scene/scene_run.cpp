@@ -122,7 +122,7 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
 
 std::string advice(const Scene& scene, const Failure& failure, const Packing<2>& packing) {
     std::vector<double> radius = packing.radius;
-    const bool can_choose = scene.run.ties != TiePolicy::choose && !packing.cell.any();
+    const bool can_choose = scene.run.ties != TiePolicy::choose;
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
     const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;

@@ -2,9 +2,11 @@
 
 #include "examples.hpp"
 
+#include <isostat/contact/contact.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <Eigen/Dense>
 #include <boost/test/unit_test.hpp>
 
 #include <algorithm>
@@ -220,6 +222,49 @@ BOOST_AUTO_TEST_CASE(rattlers_are_left_out_of_what_is_jammed) {
     }
     packing.length[1] *= Number(2);
     BOOST_TEST((inspected(packing).jamming->collective == Verdict::refuted));
+}
+
+/// How many independent mechanisms of the fixed cell lengthen some contact at second order: along them the radius
+/// grows. The squares of the relative velocities of all contacts, summed over the kernel of the matrix.
+int motions_that_lengthen(const ExactPacking& exact, const std::vector<Contact>& contacts) {
+    const isostat::Packing<2> packing = approximate(exact);
+    const auto disks = static_cast<Eigen::Index>(packing.disk_count());
+    const auto count = static_cast<Eigen::Index>(contacts.size());
+    Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(count, 2 * disks);
+    Eigen::MatrixXd apart = Eigen::MatrixXd::Zero(2 * count, 2 * disks);
+    for (Eigen::Index l = 0; l < count; ++l) {
+        const Contact& c = contacts[static_cast<std::size_t>(l)];
+        const auto g = gap_gradient(packing, c);
+        for (std::size_t e = 0; e < static_cast<std::size_t>(g.count); ++e) {
+            if (g.coordinate[e] < 2 * disks) {
+                gradient(l, g.coordinate[e]) = g.value[e];
+            }
+        }
+        for (Eigen::Index a = 0; a < 2; ++a) {
+            apart(2 * l + a, 2 * c.i + a) -= 1;
+            apart(2 * l + a, 2 * c.j + a) += 1;
+        }
+    }
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(gradient);
+    return static_cast<int>(Eigen::FullPivLU<Eigen::MatrixXd>(apart * lu.kernel()).setThreshold(1e-9).rank());
+}
+
+// Disks of one radius on the hexagonal torus of side 1, critical for the radius: the index is k - 2 rattlers -
+// 2 (components - 1), as it is of published ones (examples/peers/critical_disks.py).
+BOOST_AUTO_TEST_CASE(the_index_of_critical_disks_is_k_less_what_moves_without_a_contact) {
+    struct Critical {
+        const char* file;
+        int index, rattlers, components;
+    };
+    for (const Critical& c : {Critical{"largest", 0, 0, 1}, Critical{"saddle", 1, 0, 1}, Critical{"row", 2, 0, 1},
+                              Critical{"two_rows", 4, 0, 2}, Critical{"row_and_rattler", 2, 1, 1}}) {
+        const ExactPacking packing = example("cell_hexagonal_" + std::string(c.file) + ".toml");
+        const Inspection found = inspected(packing);
+        BOOST_TEST(found.mechanisms - 2 * c.rattlers - 2 * (c.components - 1) == c.index, c.file);
+        BOOST_TEST(motions_that_lengthen(packing, exact_contacts(packing).value()) == c.index, c.file);
+        BOOST_TEST((found.one_sign.kind == isostat::exact::OneSign::strict),
+                   c.file); // critical: a positive self-stress
+    }
 }
 
 BOOST_AUTO_TEST_CASE(a_stored_state_has_the_counts_of_its_stored_numbers) {

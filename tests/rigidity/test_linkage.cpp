@@ -56,6 +56,22 @@ BOOST_AUTO_TEST_CASE(three_parallel_bars_between_two_bodies_and_none_that_is_mis
     count_of_each_is_needed(Wheels());
 }
 
+BOOST_AUTO_TEST_CASE(parallel_bars_across_a_side_of_a_cell_and_none_around_it) {
+    Wheels wheels;
+    wheels.packing.q.push_back(0);
+    wheels.packing.walls = Walls<2>::none();
+    wheels.packing.cell = {{true, true}, {true, true}, {true}, 3};
+    // Disks of the second wheel stored a period further along: the bars to it go through that image.
+    const auto across = [](const Contact& c) { return (c.i < 5) != (c.j < 5) ? pair_of(c.i, c.j, {{-1, 1, 0}}) : c; };
+    for (Contact& c : wheels.among) {
+        c = across(c);
+    }
+    wheels.last = across(wheels.last);
+    count_of_each_is_needed(wheels);
+    wheels.last.image.m[0] = 0; // another image of the wheel
+    BOOST_TEST(!moves_as_linkage(wheels.packing, wheels.among, wheels.last));
+}
+
 BOOST_AUTO_TEST_CASE(mirror_images_at_two_walls) {
     count_of_each_is_needed(Mirror());
 }

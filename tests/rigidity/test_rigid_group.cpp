@@ -1,5 +1,6 @@
 // Grains that move as one body: the count against the exact rank with and without the row of the pair.
 #include "rigidity/rigid_group.hpp"
+#include "support/cells.hpp"
 #include "support/crafted.hpp"
 #include "support/mirror.hpp"
 
@@ -72,6 +73,38 @@ BOOST_AUTO_TEST_CASE(walls_count_as_grains_and_leave_translations_along_them) {
     BOOST_TEST(!counts(state, {bottom(0), pair(0, 1), top(0)}, top(1)));
     // With both side walls the box is closed: four walls' worth of contacts, and nothing slides.
     BOOST_TEST(counts(state, {bottom(0), bottom(1), pair(0, 1), top(0), left(0), right(1)}, top(1)));
+}
+
+BOOST_AUTO_TEST_CASE(a_body_across_a_side_of_the_cell_moves_as_one_and_one_that_winds_around_it_is_not_counted) {
+    const State<2> box = hexagon();
+    State<2> state = box;
+    state.packing.walls = Walls<2>::none();
+    state.packing.q.push_back(3); // the tilt
+    for (const bool tilts : {false, true}) {
+        for (int pin = 0; pin < 7; ++pin) { // in the body, whichever
+            state.packing.cell = {{true, true}, {true, true}, {tilts}, pin};
+            state.contacts = box.contacts;
+            state.contacts.push_back(pair(1, 6));
+            State<2> moved = cells::with_other_representatives(
+                state, {cells::image(0, 0), cells::image(1, 0), cells::image(0, -1), cells::image(-1, 1),
+                        cells::image(0, 0), cells::image(0, 0), cells::image(1, 1)});
+            const Contact last = moved.contacts.back();
+            BOOST_TEST(!last.image.is_here());
+            moved.contacts.pop_back();
+            BOOST_TEST(counts(moved, moved.contacts, last));
+            BOOST_TEST(adds_nothing(moved, last));
+            for (std::size_t l = 0; l < moved.contacts.size(); ++l) {
+                State<2> open = moved;
+                open.contacts.erase(open.contacts.begin() + static_cast<std::ptrdiff_t>(l));
+                BOOST_TEST(!counts(open, open.contacts, last));
+            }
+            // The same disks, the last pair through another image.
+            const Contact other =
+                pair_of(last.i, last.j, {{last.image.m[0], static_cast<std::int8_t>(last.image.m[1] + 1), 0}});
+            BOOST_TEST(!counts(moved, moved.contacts, other));
+            BOOST_TEST(!adds_nothing(moved, other));
+        }
+    }
 }
 
 BOOST_AUTO_TEST_CASE(a_held_coordinate_belongs_to_no_body) {

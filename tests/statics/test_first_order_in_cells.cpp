@@ -1,5 +1,6 @@
 // First-order terms of gaps and forces in periodic cells, and second derivatives, against differences of packings that
-// Newton's method makes.
+// Newton's method makes; the checker's own terms too.
+#include "checker/first_order.hpp"
 #include "linear/factorisation.hpp"
 #include "support/course.hpp"
 #include "support/mirror_cells.hpp"
@@ -93,6 +94,11 @@ std::vector<State<2>> vertices_with_touching_pairs() {
     return vertices;
 }
 
+/// The middle of what the checker proves.
+double middle(const checker::Range& range) {
+    return (range.lower.get_d() + range.upper.get_d()) / 2;
+}
+
 bool near(double a, double b) {
     return std::abs(a - b) < 1e-5 * (1 + std::abs(b));
 }
@@ -153,6 +159,8 @@ BOOST_AUTO_TEST_CASE(
     int bent = 0;
     for (const State<2>& state : vertices_with_touching_pairs()) {
         Vertex at(state);
+        const checker::Evidence evidence(state, CheckerArithmetic::automatic);
+        const checker::Velocities velocities(evidence);
         for (const auto& [pair, c] : state.perturbation->open) {
             images += pair.image.is_here() ? 0 : 1;
             BOOST_TEST(near(at.precise.gap(at.rho, pair).value, at.first.gap(pair).value));
@@ -165,6 +173,10 @@ BOOST_AUTO_TEST_CASE(
                     BOOST_TEST(near(at.precise.rate(id, +1, pair).value, d.first));
                     BOOST_TEST(std::abs(at.precise.bend(id, +1, pair).value - d.second) <
                                1e-3 * (1 + std::abs(d.second)));
+                    const auto motion = velocities.opening(l, +1);
+                    BOOST_TEST(near(middle(velocities.gap_rate(pair, motion)), d.first));
+                    const double bend = middle(velocities.bend(pair, l, motion));
+                    BOOST_TEST(near(bend, at.precise.bend(id, +1, pair).value));
                 }
                 bent += !pair.image.is_here() && std::abs(d.second) > 0.1 ? 1 : 0;
             }

@@ -138,7 +138,13 @@ SoftList list_by_forces(const std::string& file, const ReadPacking& packing, con
     compare::PairImages images(packing.packing);
     std::map<Contact, double> forces;
     for (const PairForce& row : read_local_dump(contacts, {names[0], names[1], names[2]}, packing.ids, number)) {
-        forces.emplace(images.next(row.i, row.j), row.force);
+        const Contact pair = images.next(row.i, row.j);
+        if (!forces.emplace(pair, row.force).second) {
+            refuse(fmt::format("{}:{}", contacts, row.line),
+                   fmt::format("disks {} and {} come twice: expected each pair once",
+                               packing.ids[static_cast<std::size_t>(row.i)],
+                               packing.ids[static_cast<std::size_t>(row.j)]));
+        }
     }
     const std::size_t pairs = forces.size();
     const std::vector<Contact> walls = walls_of(packing.packing);

@@ -24,7 +24,7 @@ namespace {
 /// Equilibrium 0 of a run, or a state file.
 State<2> start_of(const std::string& reference) {
     const std::filesystem::path path = reference;
-    return read_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
+    return read_any_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
 }
 
 std::string shown(double x) {

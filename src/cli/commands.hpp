@@ -148,10 +148,10 @@ struct CompareArguments {
     std::string series, output, reference;
     int bundle = 16;
     std::string frames; ///< "A:B"; empty: all
-    bool local = false;
+    bool local = false, nearest_arc = false;
 };
 /// A series of frames against the exact run. 0: every frame at rest is the exact equilibrium; 1: one departs; 2:
-/// undecided.
+/// undecided, or none is at rest.
 int compare_series(const CompareArguments& arguments);
 
 struct ExportArguments {

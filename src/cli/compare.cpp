@@ -24,7 +24,7 @@ namespace {
 /// Equilibrium 0 of a run, or a state file.
 State<2> start_of(const std::string& reference) {
     const std::filesystem::path path = reference;
-    return read_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
+    return read_any_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
 }
 
 std::string shown(double x) {
@@ -41,11 +41,12 @@ void print_frames(const compare::Comparison& comparison) {
                                   : f.found < 0           ? fmt::format("{}/-", f.expected)
                                                           : fmt::format("{}/{}", f.expected, f.found);
         const std::string local = f.local.empty() ? "" : fmt::format("; from the frame before: {}", f.local);
-        fmt::print("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}{}\n",
+        const std::string arc = f.nearest_arc.empty() ? "" : "; " + f.nearest_arc;
+        fmt::print("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}{}{}\n",
                    f.frame, f.sigma2, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count,
                    f.counting.hyperstaticity, f.counting.mechanisms, f.rattlers, shown(f.distance), shown(f.law),
                    shown(f.rest), shown(f.stiffness), place, to_string(f.status), f.reason.empty() ? "" : ": ",
-                   f.reason, local);
+                   f.reason, local, arc);
     }
 }
 
@@ -68,6 +69,24 @@ void print_bundle(const compare::Bundle& bundle) {
     fmt::print(
         "\nbundle: {} exact runs from the same start come through {} equilibria; the first {} are common to all\n",
         bundle.members.size(), bundle.nodes.size(), bundle.common);
+}
+
+/// The loads on both sides of the departure, and the limits of the exact run between them.
+void print_loads(const compare::Comparison& comparison, const compare::Departure& departure) {
+    const auto load = [&](int number) {
+        const auto at = std::find_if(comparison.frames.begin(), comparison.frames.end(),
+                                     [&](const compare::FrameResult& f) { return f.frame == number; });
+        return at == comparison.frames.end() ? comparison.frames.front().sigma2 : at->sigma2;
+    };
+    const double from = load(departure.from), to = load(departure.to);
+    std::string limits;
+    for (const compare::PathEquilibrium& e : comparison.path) {
+        limits += e.arcs > 0 && std::min(from, to) <= e.sigma2 && e.sigma2 <= std::max(from, to)
+                      ? fmt::format(" {:.7g}", e.sigma2)
+                      : "";
+    }
+    fmt::print("  sigma2 {:.7g} -> {:.7g}; limits of the exact run between:{}\n", from, to,
+               limits.empty() ? " none" : limits);
 }
 
 void print_ends(const compare::Comparison& comparison, double stiffness) {
@@ -99,6 +118,7 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
     if (const auto& d = comparison.departure) {
         fmt::print("FIRST DEPARTURE: frames {} -> {}: {}: {}\n", d->from < 0 ? "-" : std::to_string(d->from), d->to,
                    d->reason, d->words);
+        print_loads(comparison, *d);
         fmt::print("  opened{}; closed{}\n", compare::names_of(d->opened), compare::names_of(d->closed));
     }
 }
@@ -111,6 +131,7 @@ int compare_series(const CompareArguments& a) {
     compare::CompareOptions options;
     options.bundle = a.bundle;
     options.local = a.local;
+    options.nearest_arc = a.nearest_arc;
     if (!a.frames.empty()) {
         const auto [first, last] = parse_range(a.frames, "--frames");
         constexpr double most = std::numeric_limits<int>::max();

@@ -360,7 +360,8 @@ struct Program {
             "downhill from the file,\n"
             "under the stresses given, and certify proves it. Its force-carrying contacts must be those of the file: "
             "where a plateau of\n"
-            "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local. A "
+            "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local or a "
+            "table. A "
             "crafted packing (TOML) is\n"
             "rounded to doubles and keeps its contacts and its load. With --jitter a state is taken as well.\n"
             "In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.\n"
@@ -372,11 +373,12 @@ struct Program {
         command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
         CLI::Option* contacts =
             command
-                .add_option("--contacts", a.contacts,
-                            "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; "
-                            "or a dump of style local with forces (default: plateau; nearest in a periodic cell)")
+                .add_option(
+                    "--contacts", a.contacts,
+                    "plateau: as the widest range of thresholds with an isostatic backbone says; nearest: any; "
+                    "or a dump of style local or a table with forces (default: plateau; nearest in a periodic cell)")
                 ->type_name("plateau|nearest|FILE");
-        command.add_option("--contact-columns", a.contact_columns, "columns of that dump: two ids and the force")
+        command.add_option("--contact-columns", a.contact_columns, "columns of that file: two ids and the force")
             ->type_name("I,J,FORCE");
         command.add_option("--threshold", a.threshold, "pairs with this gap or less are the contacts")
             ->excludes(contacts);
@@ -400,7 +402,8 @@ struct Program {
         SnapArguments& a = snap_arguments;
         CLI::App& command = add(
             "snap", "a frame of soft grains -> the vertex of rigid grains with the same contacts, with proof",
-            "The list: pairs with a force in a LAMMPS dump of style local, or those that overlap, or the contacts of a "
+            "The list: pairs with a force in a LAMMPS dump of style local or a table, or those that overlap, or the "
+            "contacts of a "
             "state. Newton's method\n"
             "ends at the vertex where they all touch; certify proves it there, with its distance from the file. "
             "Rattlers must have room and\n"
@@ -411,9 +414,10 @@ struct Program {
             "'c_1[1],c_1[2],c_2[2]' --stress 1,1.2 -o state.json");
         command.add_option("file", a.file, "packing, or state")->required()->type_name("FILE");
         command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
-        CLI::Option* contacts =
-            command.add_option("--contacts", a.contacts, "LAMMPS dump of style local (default: pairs that overlap)")
-                ->type_name("FILE");
+        CLI::Option* contacts = command
+                                    .add_option("--contacts", a.contacts,
+                                                "LAMMPS dump of style local, or a table (default: pairs that overlap)")
+                                    ->type_name("FILE");
         command.add_option("--contact-columns", a.contact_columns, "columns of that dump: two ids and the force")
             ->type_name("I,J,FORCE")
             ->needs(contacts);
@@ -446,8 +450,8 @@ struct Program {
             "exact run, and why. The folder gets comparison.csv, path.csv, comparison.json, bundle/ and\n"
             "the figure.\n"
             "Exit status 0: every frame at rest is the exact equilibrium of its load, proved; 1: a frame departs; 2: "
-            "none departs, one is\n"
-            "undecided.\n"
+            "none departs, and one is\n"
+            "undecided or all are in motion.\n"
             "Example: isostat compare series.toml -o comparison");
         command.add_option("series", a.series, "manifest (isostat-series 1)")->required()->type_name("SERIES.toml");
         command.add_option("-o,--output", a.output, "folder for tables and figure")->type_name("DIR");
@@ -465,6 +469,9 @@ struct Program {
         command.add_flag(
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
+        command.add_flag(
+            "--nearest-arc", a.nearest_arc,
+            "besides, the arc of the exact run whose contacts are nearest to those of each frame in motion");
         command.add_option("--frames", a.frames, "the frames from A to B only, by their numbers from 0 (default: all)")
             ->type_name("A:B");
         add_threads(command, a.common);

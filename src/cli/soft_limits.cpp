@@ -55,10 +55,10 @@ std::string soft_limits(const fs::path& run, const fs::path& output, double stif
             ++left_out;
             continue;
         }
-        const State<2> state = read_state<2>(file).state;
-        if (!(state.packing.walls == Walls<2>::box())) {
-            throw Error(ErrorKind::bad_input,
-                        file.string() + ": expected a box with two fixed and two movable walls for --stiffness");
+        const State<2> state = read_any_state<2>(file).state;
+        if (!state.packing.cell.any() && !(state.packing.walls == Walls<2>::box())) {
+            throw Error(ErrorKind::bad_input, file.string() + ": expected a box with two fixed and two movable walls, "
+                                                              "or a periodic cell, for --stiffness");
         }
         add_rows(rows, equilibrium, state, stiffness);
     }

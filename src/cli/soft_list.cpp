@@ -19,6 +19,17 @@ namespace isostat::cli {
 
 namespace {
 
+/// The disk that is nearest to a wall, and its gap.
+std::pair<int, double> nearest_to(const Packing<2>& packing, ContactKind wall, int axis) {
+    std::pair<int, double> out{-1, HUGE_VAL};
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        if (const double g = gap<2>(packing, {wall, i, axis}); g < out.second) {
+            out = {i, g};
+        }
+    }
+    return out;
+}
+
 /// Walls that a disk overlaps.
 std::vector<Contact> walls_of(const Packing<2>& packing) {
     std::vector<Contact> out;
@@ -28,6 +39,21 @@ std::vector<Contact> walls_of(const Packing<2>& packing) {
                 if (!packing.cell.periodic[static_cast<std::size_t>(axis)] && gap<2>(packing, {kind, i, axis}) <= 0) {
                     out.emplace_back(kind, i, axis);
                 }
+            }
+        }
+    }
+    return out;
+}
+
+/// Empty, or the walls that no disk overlaps: soft grains press on each, so digits of its position are missing.
+std::string walls_apart(const Packing<2>& packing) {
+    std::string out;
+    for (const ContactKind kind : {ContactKind::lower_wall, ContactKind::upper_wall}) {
+        for (int axis = 0; axis < 2 && !packing.cell.any(); ++axis) {
+            if (const auto [disk, distance] = nearest_to(packing, kind, axis); distance > 0) {
+                out += fmt::format("; none with the {} wall, which is {:.3g} from disk {} (are digits of its position "
+                                   "rounded?)",
+                                   to_string<2>({kind, 0, axis}).substr(2), distance, disk);
             }
         }
     }
@@ -88,15 +114,8 @@ std::string far_wall(const Packing<2>& packing) {
         for (const int axis : {0, 1}) {
             const auto a = static_cast<std::size_t>(axis);
             const WallKind wall = kind == ContactKind::lower_wall ? packing.walls.lower[a] : packing.walls.upper[a];
-            int nearest = -1;
-            double distance = HUGE_VAL;
-            for (int i = 0; i < packing.disk_count() && wall != WallKind::absent; ++i) {
-                if (const double g = gap<2>(packing, {kind, i, axis}); g < distance) {
-                    nearest = i;
-                    distance = g;
-                }
-            }
-            if (nearest >= 0 && distance > nearly_touching * packing.min_radius()) {
+            const auto [nearest, distance] = nearest_to(packing, kind, axis);
+            if (wall != WallKind::absent && nearest >= 0 && distance > nearly_touching * packing.min_radius()) {
                 return fmt::format("no disk is near the {} wall, the nearest gap is {:.3g} (disk {}): expected the "
                                    "positions of the walls, --box XLO:XHI,YLO:YHI (bounds of a file often are not "
                                    "those)",
@@ -138,7 +157,13 @@ SoftList list_by_forces(const std::string& file, const ReadPacking& packing, con
     compare::PairImages images(packing.packing);
     std::map<Contact, double> forces;
     for (const PairForce& row : read_local_dump(contacts, {names[0], names[1], names[2]}, packing.ids, number)) {
-        forces.emplace(images.next(row.i, row.j), row.force);
+        const Contact pair = images.next(row.i, row.j);
+        if (!forces.emplace(pair, row.force).second) {
+            refuse(fmt::format("{}:{}", contacts, row.line),
+                   fmt::format("disks {} and {} come twice: expected each pair once",
+                               packing.ids[static_cast<std::size_t>(row.i)],
+                               packing.ids[static_cast<std::size_t>(row.j)]));
+        }
     }
     const std::size_t pairs = forces.size();
     const std::vector<Contact> walls = walls_of(packing.packing);
@@ -146,7 +171,8 @@ SoftList list_by_forces(const std::string& file, const ReadPacking& packing, con
         forces.emplace(wall, NAN);
     }
     const std::string beside = packing.packing.cell.any() ? "" : fmt::format(", {} overlaps with walls", walls.size());
-    out.words = fmt::format("{} pairs with a force in {}{}, without rattlers", pairs, contacts, beside);
+    out.words = fmt::format("{} pairs with a force in {}{}, without rattlers{}", pairs, contacts, beside,
+                            walls_apart(packing.packing));
     for (const auto& [contact, force] : forces) {
         out.contacts.push_back(contact);
     }
@@ -165,7 +191,7 @@ SoftList list_by_overlaps(const Packing<2>& packing) {
             out.contacts.push_back(c);
         }
     }
-    out.words = fmt::format("{} overlaps, without rattlers", out.contacts.size());
+    out.words = fmt::format("{} overlaps, without rattlers{}", out.contacts.size(), walls_apart(packing));
     out.contacts = compare::able_to_carry(packing, out.contacts);
     return out;
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 
 namespace isostat::compare {
 
@@ -104,14 +105,21 @@ Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<do
     paths.front() = path;
     const Snap vertex =
         snap({start.packing, carrying(start, certify(start)), start.load}); // rattlers leave what they touch
+    std::array<std::optional<Result<State<2>>>, rests.size()> at_rest;      // of all rules
+    parallel_pieces(std::min(rests.size(), paths.size()), [&](std::size_t rest) {
+        if (rest == 0 && paths.size() <= rests.size()) {
+            return; // the exact run alone
+        }
+        at_rest[rest] = vertex.outcome == SnapOutcome::vertex
+                            ? with_resting_rattlers(vertex, infinitesimal_towards(rest, vertex.packing))
+                            : Failure{FailureKind::undecided, vertex.reason};
+    });
     parallel_pieces(paths.size(), [&](std::size_t k) {
         if (k == 0) {
             return;
         }
         const BundleMember m = member(static_cast<int>(k));
-        auto resting = vertex.outcome == SnapOutcome::vertex
-                           ? with_resting_rattlers(vertex, infinitesimal_towards(k % rests.size(), vertex.packing))
-                           : Failure{FailureKind::undecided, vertex.reason};
+        const Result<State<2>>& resting = *at_rest[k % rests.size()];
         if (!resting.ok()) {
             paths[k].end = resting.failure().message();
             paths[k].at_load.assign(loads.size(), -1);
@@ -121,7 +129,7 @@ Bundle make_bundle(const State<2>& start, const Path& path, const std::vector<do
         run.rule = m.rule;
         run.rule_seed = m.seed;
         run.max_arcs = std::min(run.max_arcs, most_arcs);
-        paths[k] = follow(std::move(resting.value()), loads, run);
+        paths[k] = follow(resting.value(), loads, run);
     });
     Tree tree(out);
     for (std::size_t k = 0; k < paths.size(); ++k) {

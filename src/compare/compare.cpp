@@ -55,6 +55,36 @@ void place(JudgedFrame& judged, const Path& path, int expected) {
     }
 }
 
+/// The equilibria with this list, or that support this load, by their numbers.
+std::string numbers_of(const std::vector<const PathEquilibrium*>& known, const std::vector<Contact>& list, double load,
+                       bool here) {
+    std::string text;
+    for (const PathEquilibrium* e : known) {
+        if (here ? e->contacts == list : e->contacts != list && e->proved && e->low <= load && load <= e->high) {
+            text += fmt::format(" {}", e->number);
+        }
+    }
+    return text.empty() ? " none" : text;
+}
+
+/// The vertex downhill of a frame is one, not the only one: where it is known from, and which others support the load.
+void add_others(JudgedFrame& judged, const Path& path, const Bundle& bundle) {
+    if (judged.downhill.empty()) {
+        return;
+    }
+    std::vector<const PathEquilibrium*> known;
+    for (const BundleNode& node : bundle.nodes) {
+        known.push_back(&node.equilibrium);
+    }
+    for (std::size_t k = 0; k < path.equilibria.size() && bundle.nodes.empty(); ++k) {
+        known.push_back(&path.equilibria[k]);
+    }
+    const auto numbers = [&](bool here) { return numbers_of(known, judged.downhill, judged.result.sigma2, here); };
+    judged.result.reason += fmt::format("; {} with its list:{}; others that support this load:{}",
+                                        bundle.nodes.empty() ? "equilibria of the exact run" : "nodes of the bundle",
+                                        numbers(true), numbers(false));
+}
+
 /// And in the bundle.
 void place(JudgedFrame& judged, Bundle& bundle) {
     FrameResult& r = judged.result;
@@ -122,9 +152,10 @@ int status_of(const std::vector<FrameResult>& frames) {
     const auto at_rest_and_elsewhere = [](const FrameResult& f) {
         return f.status != FrameStatus::same && f.status != FrameStatus::moving && f.status != FrameStatus::undecided;
     };
-    return has(at_rest_and_elsewhere)                                                     ? 1
-           : has([](const FrameResult& f) { return f.status == FrameStatus::undecided; }) ? 2
-                                                                                          : 0;
+    const auto is = [](FrameStatus status) { return [status](const FrameResult& f) { return f.status == status; }; };
+    return has(at_rest_and_elsewhere)                                       ? 1
+           : has(is(FrameStatus::undecided)) || !has(is(FrameStatus::same)) ? 2 // or nothing was at rest
+                                                                            : 0;
 }
 
 } // namespace
@@ -158,7 +189,11 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
         loads.push_back(frame.result.sigma2);
     }
     if (start) {
-        path = follow_beyond(*start, loads, run, series.linear_stiffness());
+        NearestArcs arcs(judged);
+        path = follow_beyond(*start, loads, run, series.linear_stiffness(), options.nearest_arc ? &arcs : nullptr);
+        if (options.nearest_arc) {
+            arcs.tell(judged);
+        }
     } else {
         path.at_load.assign(loads.size(), -1);
         path.end = "no frame has a proved vertex to start from";
@@ -169,6 +204,7 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     for (std::size_t k = 0; k < judged.size(); ++k) {
         place(judged[k], path, path.at_load[k]);
         place(judged[k], out.bundle);
+        add_others(judged[k], path, out.bundle);
         out.frames.push_back(judged[k].result);
     }
     out.departure = find_departure(series, judged, path, out.bundle, options);

@@ -92,6 +92,7 @@ void try_exchange(const SoftState& soft, const Reading& reading, const Snap& sna
         r.reason += fmt::format("; the vertex downhill is proved, not that it is the only one near: without{}; with{}",
                                 names_of(without(out.list, e.contacts)), names_of(without(e.contacts, out.list)));
     }
+    out.downhill = std::move(e.contacts);
     out.state = std::move(e.state);
 }
 
@@ -102,6 +103,7 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
     JudgedFrame out;
     out.result = begin(frame, reading);
     out.list = reading.contacts;
+    out.pressed = reading.pressed;
     FrameResult& r = out.result;
     if (!reading.contradiction.empty()) {
         r.status = FrameStatus::file;
@@ -116,8 +118,8 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
     }
     if (!(reading.unbalanced <= series.rest)) {
         r.status = FrameStatus::moving;
-        r.reason = fmt::format("a force of {:.3g} mean forces is left: expected at most {:.3g} at rest",
-                               reading.unbalanced, series.rest);
+        r.reason = fmt::format("a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}",
+                               reading.unbalanced, series.rest, reading.few);
         return out;
     }
     const Snap snapped = snap(soft);

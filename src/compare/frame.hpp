@@ -13,6 +13,8 @@ namespace isostat::compare {
 struct JudgedFrame {
     FrameResult result;
     std::vector<Contact> list;     ///< of the file
+    std::vector<Contact> pressed;  ///< of a frame in motion, every contact with a positive force
+    std::vector<Contact> downhill; ///< of the vertex that exchange found, proved; or none
     std::optional<State<2>> state; ///< complete, where one was asked for or exchange found it
 };
 

@@ -23,9 +23,17 @@ double& loaded(State<2>& state) {
 /// Keeps the equilibria with their lists; those that only another load made are the same one.
 class Collector final : public RunObserver<2> {
   public:
-    explicit Collector(std::vector<PathEquilibrium>& out) : out_(out) {}
+    Collector(std::vector<PathEquilibrium>& out, NearestArcs* arcs) : out_(out), arcs_(arcs) {}
+    void on_arc(const ArcRecord<2>& arc) override {
+        if (arcs_ != nullptr) {
+            arcs_->add(arc, static_cast<int>(out_.size()));
+        }
+    }
     void on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                         const std::vector<double>& /*forces*/) override {
+        if (arcs_ != nullptr) {
+            arcs_->start(state);
+        }
         if (!out_.empty() && record.arcs == 0) {
             return;
         }
@@ -51,6 +59,7 @@ class Collector final : public RunObserver<2> {
 
   private:
     std::vector<PathEquilibrium>& out_;
+    NearestArcs* arcs_;
     std::vector<Contact> highs_, lows_;
 };
 
@@ -73,7 +82,8 @@ namespace {
 /// The run along the loads, segment by segment.
 class Follower {
   public:
-    Follower(State<2> state, const RunOptions& options) : state_(std::move(state)), options_(options) {}
+    Follower(State<2> state, const RunOptions& options, NearestArcs* arcs)
+        : state_(std::move(state)), options_(options), collector_(path.equilibria, arcs) {}
 
     void run(const std::vector<double>& loads) {
         Segment start;
@@ -122,7 +132,7 @@ class Follower {
 
     State<2> state_;
     const RunOptions& options_;
-    Collector collector_{path.equilibria};
+    Collector collector_;
     RunCounters counters_;
     std::vector<int> directions_;
     int direction_ = 1, number_ = 0;
@@ -131,13 +141,14 @@ class Follower {
 } // namespace
 
 Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options) {
-    Follower follower(std::move(state), options);
+    Follower follower(std::move(state), options, nullptr);
     follower.run(loads);
     return std::move(follower.path);
 }
 
-Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness) {
-    Follower follower(std::move(state), options);
+Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
+                   NearestArcs* arcs) {
+    Follower follower(std::move(state), options, arcs);
     follower.run(loads);
     follower.run_on();
     follower.predict_limits(stiffness);

@@ -2,6 +2,8 @@
 /// \file
 /// The exact run beside a series.
 
+#include "compare/nearest_arc.hpp"
+
 #include <isostat/compare/compare.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
@@ -18,8 +20,10 @@ struct Path {
 
 /// From `state` to each of the loads in turn.
 Path follow(State<2> state, const std::vector<double>& loads, const RunOptions& options);
-/// The same, then three equilibria on in the last direction; soft limits are added when `stiffness` > 0.
-Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness);
+/// The same, then three equilibria on in the last direction; soft limits are added when `stiffness` > 0. \p arcs: null,
+/// or told of all arcs.
+Path follow_beyond(State<2> state, const std::vector<double>& loads, const RunOptions& options, double stiffness,
+                   NearestArcs* arcs);
 
 /// The contacts that carry a force in the equilibrium at the loaded stress `sigma` that a run from `state` finds: on
 /// the way, or with `jump` after the whole change at once.

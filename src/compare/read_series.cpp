@@ -2,7 +2,7 @@
 #include "compare/manifest.hpp"
 #include "compare/pair_images.hpp"
 #include "io/files.hpp"
-#include "io/lammps_dump.hpp"
+#include "io/frame_file.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -19,13 +19,20 @@ namespace isostat::compare {
 namespace {
 
 using foreign::Boundary;
-using foreign::DumpFile;
-using foreign::DumpFrame;
+using foreign::FileFrame;
+using foreign::FrameFile;
 using foreign::Line;
 using foreign::Lines;
 
-/// Ids of walls in a file of contacts: -1 left, -2 bottom, -3 right, -4 top.
-constexpr long last_wall = -4;
+/// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top.
+std::optional<std::size_t> wall_of(std::string_view field) {
+    for (std::size_t w = 0; w < wall_names.size(); ++w) {
+        if (field == wall_names[w] || field == fmt::format("-{}", w + 1)) {
+            return w;
+        }
+    }
+    return std::nullopt;
+}
 
 /// The table of frames.
 class FrameTable {
@@ -138,7 +145,7 @@ class Disks {
     explicit Disks(const Manifest& manifest) : manifest_(manifest), dump_(manifest.disks, "ATOMS") {}
 
     void read(Frame& frame, std::array<double, 4> walls) {
-        const DumpFrame rows = dump_.at(frame.timestep);
+        const FileFrame rows = dump_.at(frame.timestep);
         check_boundaries(rows);
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
         const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
@@ -198,26 +205,31 @@ class Disks {
 
   private:
     /// The bounds of the dump are the cell.
-    std::array<double, 4> bounds_of_cell(const DumpFrame& rows, Packing<2>& packing) const {
+    std::array<double, 4> bounds_of_cell(const FileFrame& rows, Packing<2>& packing) const {
         packing.walls = Walls<2>::none();
         packing.cell.periodic.fill(true);
         packing.cell.period_moves.fill(true);
         packing.cell.tilt_moves.fill(manifest_.tilted);
         const double f = manifest_.length_factor;
-        const auto& box = rows.header.box;
+        const std::array<double, 4> box = rows.header.box.value();
         return {box[0] * f, box[2] * f, box[1] * f, box[3] * f};
     }
 
     /// Walls, or both axes periodic: as the manifest says.
-    void check_boundaries(const DumpFrame& rows) const {
+    void check_boundaries(const FileFrame& rows) const {
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
-            if ((rows.header.boundary[axis] == Boundary::periodic) != manifest_.periodic) {
-                throw Error(ErrorKind::bad_input,
-                            fmt::format("{}: the box is {}periodic along {}: expected {}",
-                                        dump_.where(rows.header.line), manifest_.periodic ? "not " : "",
-                                        axis == 0 ? 'x' : 'y',
-                                        manifest_.periodic ? "periodic boundaries, the manifest has a [cell]"
-                                                           : "walls, or a [cell] in the manifest"));
+            const bool periodic = rows.header.boundary[axis] == Boundary::periodic &&
+                                  (rows.header.box.has_value() || !manifest_.periodic);
+            if (periodic != manifest_.periodic) {
+                throw Error(
+                    ErrorKind::bad_input,
+                    fmt::format(
+                        "{}: the box is {}periodic along {}: expected {}", dump_.where(rows.header.line),
+                        manifest_.periodic ? "not " : "", axis == 0 ? 'x' : 'y',
+                        manifest_.periodic
+                            ? "periodic boundaries with bounds (a dump with pp, XYZ with Lattice; a "
+                              "table has none), the manifest has a [cell]"
+                            : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)"));
             }
         }
     }
@@ -238,7 +250,7 @@ class Disks {
     }
 
     /// Forces of walls that are not 0, positive when they press the disk inwards.
-    void add_walls(Frame& frame, const Line& row, const DumpFrame& rows, int disk) {
+    void add_walls(Frame& frame, const Line& row, const FileFrame& rows, int disk) {
         if (!manifest_.series.wall_forces) {
             return;
         }
@@ -252,36 +264,39 @@ class Disks {
     }
 
     const Manifest& manifest_;
-    DumpFile dump_;
+    FrameFile dump_;
     std::vector<long> ids_;
     Packing<2> first_, last_;
 };
 
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
-void read_contacts(const Manifest& manifest, DumpFile& dump, Frame& frame) {
-    const DumpFrame rows = dump.at(frame.timestep);
+void read_contacts(const Manifest& manifest, FrameFile& dump, Frame& frame) {
+    const FileFrame rows = dump.at(frame.timestep);
     const std::size_t first = dump.column(rows, manifest.contact_i), second = dump.column(rows, manifest.contact_j),
                       force = dump.column(rows, manifest.contact_force);
+    const char* expected = manifest.periodic ? "the id of a disk" : "the id of a disk, or left, bottom, right, top";
     const auto disk = [&](const Line& row, std::size_t at, const std::string& name) {
+        if (row.field(at).find_first_not_of("0123456789") != std::string_view::npos) {
+            row.fail(row.field(at), name, expected);
+        }
         const long id = row.integer(at, name, 0, 1L << 62);
         const auto found = std::lower_bound(frame.ids.begin(), frame.ids.end(), id);
         if (found == frame.ids.end() || *found != id) {
-            row.fail(row.field(at), name, "the id of a disk");
+            row.fail(row.field(at), name, expected);
         }
         return static_cast<int>(found - frame.ids.begin());
     };
     PairImages images(frame.packing);
     for (const Line& row : rows.rows) {
-        const int i = disk(row, first, manifest.contact_i);
-        const std::string_view other = row.field(second);
         FileContact contact;
-        if (other.starts_with('-') && !manifest.periodic) {
-            const long wall = row.integer(second, manifest.contact_j, last_wall, -1);
-            contact.contact = with_wall(i, static_cast<std::size_t>(-1 - wall));
+        const auto one = wall_of(row.field(first)), other = wall_of(row.field(second));
+        if (one.has_value() != other.has_value() && !manifest.periodic) {
+            contact.contact = one ? with_wall(disk(row, second, manifest.contact_j), *one)
+                                  : with_wall(disk(row, first, manifest.contact_i), *other);
         } else {
-            const int j = disk(row, second, manifest.contact_j);
+            const int i = disk(row, first, manifest.contact_i), j = disk(row, second, manifest.contact_j);
             if (i == j) {
-                row.fail(other, manifest.contact_j, "another disk than the first");
+                row.fail(row.field(second), manifest.contact_j, "another disk than the first");
             }
             contact.contact = images.next(i, j);
         }
@@ -297,13 +312,13 @@ struct SeriesReader::Files {
     explicit Files(const std::filesystem::path& path)
         : manifest(read_manifest(path)), table(manifest), disks(manifest) {
         if (manifest.series.listed) {
-            contacts = std::make_unique<DumpFile>(manifest.contacts, "ENTRIES");
+            contacts = std::make_unique<FrameFile>(manifest.contacts, "ENTRIES");
         }
     }
     Manifest manifest;
     FrameTable table;
     Disks disks;
-    std::unique_ptr<DumpFile> contacts;
+    std::unique_ptr<FrameFile> contacts;
     bool any = false;
 };
 

@@ -22,10 +22,14 @@ constexpr double deepest = 0.1;
 constexpr double a_few = 10;
 /// Of what is left on a wall, a disk has less than this: the wall is not what moves.
 constexpr double wall_alone = 1e-3;
+/// The same of two disks and the others.
+constexpr double disk_alone = 1e-3;
 
 class Reader {
   public:
     Reader(const Series& series, const Frame& frame) : series_(series), frame_(frame) {
+        walls_listed_ = series.wall_forces || std::any_of(frame.contacts.begin(), frame.contacts.end(),
+                                                          [](const FileContact& c) { return is_wall(c.contact); });
         rounding_ = 0x1p-48 * std::max({frame.packing.length(0), frame.packing.length(1), frame.packing.max_radius()});
         for (const Contact& c : find_candidates(frame.packing, 0.5).contacts) {
             if (gap(frame.packing, c) < 0) {
@@ -69,7 +73,7 @@ class Reader {
         const std::string where = row == row_.end() ? frame_.row : row->second;
         return c.kind == ContactKind::disk_disk || where == frame_.row ? where : where + ", " + frame_.row;
     }
-    [[nodiscard]] bool is_wall(const Contact& c) const { return c.kind != ContactKind::disk_disk; }
+    [[nodiscard]] static bool is_wall(const Contact& c) { return c.kind != ContactKind::disk_disk; }
 
     void take_rows() {
         for (const FileContact& c : frame_.contacts) {
@@ -86,7 +90,7 @@ class Reader {
     /// Those that the files do not list, because they list no contacts of that kind.
     void add_overlaps() {
         for (const Contact& c : overlaps_) {
-            if (is_wall(c) ? !series_.wall_forces : !series_.listed) {
+            if (is_wall(c) ? !walls_listed_ : !series_.listed) {
                 if (row_.emplace(c, frame_.row).second) {
                     force_.emplace(c, expected(c));
                 }
@@ -178,6 +182,7 @@ class Reader {
     /// The largest forces that are left on a disk, and on the right and the top wall.
     struct Left {
         double disks = 0;
+        std::vector<double> disk; ///< each
         std::array<double, 2> walls{};
         double tilt = 0; ///< of a cell whose tilt moves
         [[nodiscard]] double largest() const { return std::max({disks, walls[0], walls[1], tilt}); }
@@ -192,12 +197,13 @@ class Reader {
             }
         }
         const std::size_t n = frame_.packing.radius.size();
-        Left out{0, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}, 0};
+        Left out{0, {}, {std::abs(left[2 * n]), std::abs(left[2 * n + 1])}, 0};
         if (const Cell<2>& cell = frame_.packing.cell; cell.any() && cell.tilt_moves[0]) {
             out.tilt = std::abs(left[frame_.packing.tilt_at(0, 1)]);
         }
         for (std::size_t i = 0; i < n; ++i) {
-            out.disks = std::max(out.disks, std::hypot(left[2 * i], left[2 * i + 1]));
+            out.disk.push_back(std::hypot(left[2 * i], left[2 * i + 1]));
+            out.disks = std::max(out.disks, out.disk.back());
         }
         return out;
     }
@@ -217,11 +223,33 @@ class Reader {
         }
     }
 
+    /// What moves takes its neighbours along, too.
+    void check_disks(const Left& left) {
+        std::string names;
+        int off = 0;
+        double others = 0;
+        for (std::size_t i = 0; i < left.disk.size(); ++i) {
+            if (left.disk[i] < disk_alone * left.disks) {
+                others = std::max(others, left.disk[i]);
+            } else if (++off <= 2) {
+                names += fmt::format("{}{}", off > 1 ? " and " : "", frame_.ids[i]);
+            }
+        }
+        if (off <= 2 && left.disks > series_.rest * out_.mean) {
+            out_.few = fmt::format("; all disks but {} balance to {:.2g}: is a contact of theirs missing, or its force "
+                                   "wrong?",
+                                   names, others);
+        }
+    }
+
     void balance() {
         const bool law = series_.law != ForceLaw::none;
-        if (law || (series_.listed && series_.wall_forces)) {
+        if (law || (series_.listed && walls_listed_)) {
             const Left left = left_by(force_);
             check_load(left);
+            if (!law) {
+                check_disks(left);
+            }
             left_ = left.largest();
             out_.unbalanced = out_.mean > 0 ? left_ / out_.mean : HUGE_VAL;
             noise_ = out_.other_load.empty() ? left_ : left.disks;
@@ -239,6 +267,9 @@ class Reader {
             if (force > noise_ || force == 0) {
                 strong.push_back(c);
             }
+            if (force > 0) {
+                out_.pressed.push_back(c);
+            }
         }
         out_.contacts = able_to_carry(frame_.packing, std::move(strong));
         for (const Contact& c : out_.contacts) {
@@ -249,6 +280,7 @@ class Reader {
     const Series& series_;
     const Frame& frame_;
     Reading out_;
+    bool walls_listed_ = false;         ///< else they are those that a disk overlaps
     double rounding_ = 0;               ///< of an overlap, as a length
     double left_ = 0, left_by_law_ = 0; ///< largest force left, by the files and by the overlaps
     double noise_ = 0;                  ///< smaller forces count for none

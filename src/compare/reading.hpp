@@ -14,6 +14,9 @@ struct Reading {
     /// Empty, or words: all disks balance, a wall or period does not. At rest that is the load of another frame; where
     /// the list has mechanisms, motion.
     std::string other_load;
+    /// Without a law, nothing else speaks of a contact that is missing or of a wrong force. Empty, or words: one or two
+    /// disks do not balance and all others do.
+    std::string few;
     int listed = 0;             ///< contacts of the files with a force
     int overlapping = 0;        ///< pairs that overlap, walls included
     int twice = 0, missing = 0; ///< rows of a contact that has one; overlaps without a row
@@ -25,6 +28,7 @@ struct Reading {
     /// normals), sorted, and their forces.
     std::vector<Contact> contacts;
     std::vector<double> forces;
+    std::vector<Contact> pressed; ///< all contacts with a positive force, sorted
 };
 
 /// Compared in doubles, beyond the rounding of an overlap and the allowance of the series: a diagnosis of numbers that

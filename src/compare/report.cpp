@@ -71,6 +71,7 @@ const std::vector<Column<FrameResult>>& of_frames() {
                                                 {"true_eps1", [](const F& f) { return or_null(f.true_eps1); }},
                                                 {"true_eps2", [](const F& f) { return or_null(f.true_eps2); }},
                                                 {"local", [](const F& f) { return f.local; }},
+                                                {"nearest_arc", [](const F& f) { return f.nearest_arc; }},
                                                 {"reason", [](const F& f) { return f.reason; }}};
     return columns;
 }

@@ -1,5 +1,5 @@
-// LAMMPS dumps of style local: rows of pairs.
-#include "io/lammps_dump.hpp"
+// Rows of pairs: LAMMPS dumps of style local, tables.
+#include "io/frame_file.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -17,7 +17,7 @@ using foreign::Line;
 /// The pairs of one frame.
 class Pairs {
   public:
-    Pairs(const foreign::DumpFile& file, const foreign::DumpFrame& frame, const PairColumns& columns,
+    Pairs(const foreign::FrameFile& file, const foreign::FileFrame& frame, const PairColumns& columns,
           const std::vector<long>& ids)
         : names_(frame.header.names), first_(file.column(frame, columns.first)),
           second_(file.column(frame, columns.second)), force_(file.column(frame, columns.force)) {
@@ -32,7 +32,7 @@ class Pairs {
             line.fail(line.field(second_), "second id", "another disk than the first");
         }
         if (const double force = line.number(force_, names_[force_]); force > 0) {
-            pairs_.push_back({std::min(i, j), std::max(i, j), force});
+            pairs_.push_back({std::min(i, j), std::max(i, j), force, line.number()});
         }
     }
 
@@ -57,8 +57,8 @@ class Pairs {
 
 std::vector<PairForce> read_local_dump(const std::filesystem::path& path, const PairColumns& columns,
                                        const std::vector<long>& ids, std::optional<long> frame) {
-    foreign::DumpFile file(path.string(), "ENTRIES");
-    std::optional<foreign::DumpFrame> found;
+    foreign::FrameFile file(path.string(), "ENTRIES");
+    std::optional<foreign::FileFrame> found;
     long number = 0;
     for (auto next = file.next(); next && number <= frame.value_or(number); next = file.next(), ++number) {
         found = std::move(next);

@@ -1,5 +1,5 @@
 // LAMMPS: data files (atom_style sphere) and text dumps.
-#include "io/lammps_dump.hpp"
+#include "io/foreign_source.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -264,7 +264,7 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
             lines.fail(fmt::format("the file ends after {} frames: expected frame {} (from 0)", number,
                                    options.frame.value_or(number)));
         }
-        const DumpHeader frame = read_dump_header(lines, "ATOMS");
+        const FrameHeader frame = read_dump_header(lines, "ATOMS");
         Lines atoms = lines;
         for (long k = 0; k < frame.rows; ++k) {
             const std::string_view row =
@@ -300,9 +300,10 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         raw.boundary = frame.boundary;
         raw.loose = frame.loose;
         if (coordinates.scaled) {
+            const std::array<double, 4> box = frame.box.value();
             for (std::size_t i = 0; i < raw.x.size(); ++i) {
-                raw.x[i] = frame.box[0] + raw.x[i] * (frame.box[1] - frame.box[0]) + raw.y[i] * frame.tilt;
-                raw.y[i] = frame.box[2] + raw.y[i] * (frame.box[3] - frame.box[2]);
+                raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * frame.tilt;
+                raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);
             }
             raw.notes.emplace_back("scaled coordinates were multiplied out in double: rounded at 2^-52 of the box");
         }

@@ -73,6 +73,25 @@ constexpr long most_disks = 100'000'000;
 
 enum class Boundary { open, periodic, unknown };
 
+/// What stands before the rows of a frame.
+struct FrameHeader {
+    long timestep = 0;
+    long rows = -1;
+    int line = 0; ///< of the names
+    std::vector<std::string> names;
+    std::optional<std::array<double, 4>> box; ///< xlo, xhi, ylo, yhi
+    double tilt = 0;                          ///< x component of the second period
+    std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
+    std::array<bool, 2> loose{}; ///< the bounds only follow the disks
+};
+
+/// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
+FrameHeader read_dump_header(Lines& lines, const std::string& item);
+/// Of extended XYZ: `comment` is the line of key=value. Vectors are named name.0, name.1, ...
+FrameHeader read_xyz_header(const Line& comment, long rows);
+/// Its key Timestep, if it has one.
+std::optional<long> xyz_timestep(const Line& comment, const std::string& source);
+
 /// What a reader found, before walls and checks.
 struct Raw {
     std::vector<double> x, y, size;
@@ -126,6 +145,16 @@ class Rows {
     std::map<std::string, int, std::less<>> types_;
     long seen_ = 0; ///< rows
 };
+
+/// Blank, or a comment that begins with #.
+bool is_no_row(std::string_view line);
+/// Names of the columns of a table: from the comments at its start, or the row of names; reads up to the first row.
+struct TableNames {
+    std::vector<std::string> names;
+    int line = 0; ///< 0: no line names them
+    char separator = ' ';
+};
+TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& raw);
 
 Raw read_lammps_data(const std::string& text, const std::string& source, const ForeignOptions& options);
 Raw read_lammps_dump(const std::string& text, const std::string& source, const ForeignOptions& options);

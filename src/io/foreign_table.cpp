@@ -44,14 +44,6 @@ std::vector<std::string> names_in_comment(std::string_view line, int number, con
     return has("x") && has("y") ? names : std::vector<std::string>();
 }
 
-bool is_blank(std::string_view line) {
-    return line.find_first_not_of(" \t\r") == std::string_view::npos;
-}
-bool is_comment(std::string_view line) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    return first != std::string_view::npos && line[first] == '#';
-}
-
 /// A number, or what stands for one that is missing or that other programs write: not a name of a column.
 bool is_value(std::string_view field) {
     std::string word(field.substr(field.find_first_not_of("+-") == 1 ? 1 : 0));
@@ -72,54 +64,58 @@ bool is_row_of_names(const Line& line) {
     return line.size() > 0;
 }
 
-/// Names of columns, and the line they stand in; 0: no line of the file names them.
-struct Header {
-    std::vector<std::string> names;
-    int line = 0;
-};
-
-/// From the comments before the first row, a row of names, or the options; reads up to the first row of numbers.
-Header read_header(Lines& lines, const std::string& source, const ForeignOptions& options, char separator_of_rows,
-                   Raw& raw, Header header) {
-    const Line first(lines.peek(), lines.number() + 1, &source, separator_of_rows);
-    if (is_row_of_names(first)) {
-        header.names = names_of(first);
-        (void)lines.take("names");
-        header.line = lines.number();
-    }
-    if (!options.columns.empty()) {
-        if (!header.names.empty()) {
-            raw.notes.push_back(fmt::format("line {} ({}) is taken for names of columns; those stated are used",
-                                            header.line, fmt::join(header.names, " ")));
-        }
-        header.names = options.columns;
-    }
-    if (header.names.empty()) {
-        first.fail(first.text(), "first row",
-                   "names of the columns before it ('# x y r' or a row of names), or --columns x,y,r: nothing says "
-                   "which column is what");
-    }
-    for (std::string& name : header.names) {
-        name = name == "-" ? "" : name;
-    }
-    return header;
-}
-
 /// The last comment before the first row that names columns.
-Header header_in_comments(Lines& lines, const std::string& source) {
-    Header header;
-    while (!lines.at_end() && (is_blank(lines.peek()) || is_comment(lines.peek()))) {
+TableNames names_in_comments(Lines& lines) {
+    TableNames out;
+    while (!lines.at_end() && is_no_row(lines.peek())) {
         const std::string_view line = lines.take("a row");
-        if (is_comment(line)) {
-            if (auto found = names_in_comment(line, lines.number(), source); !found.empty()) {
-                header = {std::move(found), lines.number()};
+        if (line.find('#') != std::string_view::npos) {
+            if (auto found = names_in_comment(line, lines.number(), lines.source()); !found.empty()) {
+                out.names = std::move(found);
+                out.line = lines.number();
             }
         }
     }
-    return header;
+    return out;
 }
 
 } // namespace
+
+bool is_no_row(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t\r\n");
+    return first == std::string_view::npos || line[first] == '#';
+}
+
+TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& raw) {
+    TableNames out = names_in_comments(lines);
+    if (lines.at_end()) {
+        lines.fail("the file ends here: expected rows of numbers");
+    }
+    out.separator = separator_of(lines.peek());
+    const Line first(lines.peek(), lines.number() + 1, &lines.source(), out.separator);
+    if (is_row_of_names(first)) {
+        out.names = names_of(first);
+        (void)lines.take("names");
+        out.line = lines.number();
+    }
+    if (!options.columns.empty()) {
+        if (!out.names.empty()) {
+            raw.notes.push_back(fmt::format("line {} ({}) is taken for names of columns; those stated are used",
+                                            out.line, fmt::join(out.names, " ")));
+        }
+        out.names = options.columns;
+    }
+    if (out.names.empty()) {
+        first.fail(
+            first.text(), "first row",
+            "names of the columns before it (a row of names, or '# x y r'; where one table is read, --columns x,y,r): "
+            "nothing says which column is what");
+    }
+    for (std::string& name : out.names) {
+        name = name == "-" ? "" : name;
+    }
+    return out;
+}
 
 Raw read_table(const std::string& text, const std::string& source, const ForeignOptions& options) {
     if (options.frame.value_or(0) != 0) {
@@ -127,13 +123,8 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
                                                       source, *options.frame));
     }
     Lines lines(text, source);
-    Header header = header_in_comments(lines, source);
-    if (lines.at_end()) {
-        lines.fail("the file ends here: expected rows of numbers");
-    }
-    const char separator = separator_of(lines.peek());
     Raw raw;
-    header = read_header(lines, source, options, separator, raw, std::move(header));
+    const TableNames header = read_table_names(lines, options, raw);
     const std::string where = header.line == 0 ? source : fmt::format("{}:{}", source, header.line);
     Columns columns;
     columns.x = find_column(header.names, "x", where);
@@ -147,11 +138,11 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     find_selection(columns, header.names, options, where);
     Rows rows(columns, source);
     while (!lines.at_end()) {
-        if (is_blank(lines.peek()) || is_comment(lines.peek())) {
+        if (is_no_row(lines.peek())) {
             (void)lines.take("a row");
             continue;
         }
-        const Line line = lines.next("a row", separator);
+        const Line line = lines.next("a row", header.separator);
         line.require_size(header.names.size(), "one value per column");
         rows.add(line, raw);
     }

@@ -104,7 +104,7 @@ std::vector<double> numbers_of(const Line& line, const std::string& key, const s
     return out;
 }
 
-void read_box(const Line& line, const std::map<std::string, std::string>& keys, Raw& raw) {
+void read_box(const Line& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
         const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9);
@@ -119,15 +119,12 @@ void read_box(const Line& line, const std::map<std::string, std::string>& keys, 
                           "a first vector along x, a second one in the plane: only these are read");
             }
         }
-        raw.tilt = v[3];
+        out.tilt = v[3];
         if (!(v[0] > 0 && v[4] > 0)) {
             line.fail(lattice->second, "Lattice", "positive lengths");
         }
-        raw.box = {origin[0], origin[0] + v[0], origin[1], origin[1] + v[4]};
-        raw.boundary = {Boundary::periodic, Boundary::periodic}; // unless pbc says otherwise
-        if (origin[0] != 0 || origin[1] != 0) {
-            raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
-        }
+        out.box = {origin[0], origin[0] + v[0], origin[1], origin[1] + v[4]};
+        out.boundary = {Boundary::periodic, Boundary::periodic}; // unless pbc says otherwise
     }
     if (const auto pbc = keys.find("pbc"); pbc != keys.end()) {
         const std::string source;
@@ -143,12 +140,34 @@ void read_box(const Line& line, const std::map<std::string, std::string>& keys, 
             if (!yes && word != "f" && word != "false" && word != "0") {
                 line.fail(fields.field(a), "pbc", "T or F");
             }
-            raw.boundary[a] = yes ? Boundary::periodic : Boundary::open;
+            out.boundary[a] = yes ? Boundary::periodic : Boundary::open;
         }
     }
 }
 
 } // namespace
+
+std::optional<long> xyz_timestep(const Line& comment, const std::string& source) {
+    const auto keys = key_values(comment);
+    const auto step = keys.find("timestep");
+    if (step == keys.end()) {
+        return std::nullopt;
+    }
+    const Line value(step->second, comment.number(), &source);
+    value.require_size(1, "the time step");
+    return value.integer(0, "Timestep", 0, 1L << 62);
+}
+
+FrameHeader read_xyz_header(const Line& comment, long rows) {
+    FrameHeader out;
+    out.rows = rows;
+    out.line = comment.number();
+    const auto keys = key_values(comment);
+    const auto properties = keys.find("properties");
+    out.names = property_columns(comment, properties == keys.end() ? "species:S:1:pos:R:3" : properties->second);
+    read_box(comment, keys, out);
+    return out;
+}
 
 Raw read_xyz(const std::string& text, const std::string& source, const ForeignOptions& options) {
     Lines lines(text, source);
@@ -169,10 +188,8 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
             continue;
         }
         Raw raw;
-        const auto keys = key_values(comment);
-        const auto properties = keys.find("properties");
-        const std::vector<std::string> names =
-            property_columns(comment, properties == keys.end() ? "species:S:1:pos:R:3" : properties->second);
+        const FrameHeader header = read_xyz_header(comment, rows);
+        const std::vector<std::string>& names = header.names;
         const std::string where = fmt::format("{}:{}", source, comment.number());
         Columns columns;
         columns.x = find_column(names, "pos.0", where);
@@ -185,7 +202,12 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
         }
         find_size(columns, names, options, where, raw);
         find_selection(columns, names, options, where);
-        read_box(comment, keys, raw);
+        raw.box = header.box;
+        raw.tilt = header.tilt;
+        raw.boundary = header.boundary;
+        if (header.box && ((*header.box)[0] != 0 || (*header.box)[2] != 0)) {
+            raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");
+        }
         Rows reader(columns, source);
         for (long k = 0; k < rows; ++k) {
             const Line line = body.next("a row");

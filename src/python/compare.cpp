@@ -78,11 +78,12 @@ void bind_snap(py::module_& module) {
 
 /// The tables of `isostat compare`, as the text of comparison.json.
 std::string compared(const std::filesystem::path& series, const std::optional<PyState>& reference, int bundle,
-                     bool local, const std::optional<std::filesystem::path>& output) {
+                     bool local, bool nearest_arc, const std::optional<std::filesystem::path>& output) {
     std::atomic<bool> stop{false};
     compare::CompareOptions options;
     options.bundle = bundle;
     options.local = local;
+    options.nearest_arc = nearest_arc;
     options.stop = &stop;
     if (reference) {
         options.start = reference->state;
@@ -113,7 +114,7 @@ std::string compared(const std::filesystem::path& series, const std::optional<Py
 void bind_compare(py::module_& module) {
     bind_snap(module);
     module.def("_compare", &compared, py::arg("series"), py::arg("reference"), py::arg("bundle"), py::arg("local"),
-               py::arg("output"), "The text of comparison.json.");
+               py::arg("nearest_arc"), py::arg("output"), "The text of comparison.json.");
 }
 
 } // namespace isostat::python

@@ -53,6 +53,63 @@ BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
            {"--stiffness", "is -1: expected a positive number"});
 }
 
+BOOST_AUTO_TEST_CASE(a_wall_whose_digits_are_rounded_is_named) {
+    const scratch::Folder folder;
+    const fs::path state = folder / "state.json";
+    const Outcome made = snap(0, "0:15.45903,0:14.8856200965158", "1,1", state);
+    expect(made, 1);
+    BOOST_TEST(contains(made.out, "none with the right wall, which is "), made.out);
+    BOOST_TEST(contains(made.out, "are digits of its position rounded?"), made.out);
+    BOOST_TEST(!fs::exists(state));
+}
+
+BOOST_AUTO_TEST_CASE(contacts_are_a_dump_or_a_table_and_each_pair_stands_there_once) {
+    const scratch::Folder folder;
+    const std::string dump = scratch::read(scratch::data("series/contacts.dump"));
+    const std::size_t names = dump.find("ITEM: ENTRIES"), first = dump.find('\n', names) + 1;
+    const std::string rows = dump.substr(first, dump.find("ITEM:", first) - first), header = "i j force\n";
+    const auto made = [&](const std::string& text) {
+        scratch::write(folder / "pairs.txt", text);
+        return run({"snap", scratch::data("series/disks.dump"), "--frame", "0", "--box", first_box, "--contacts",
+                    (folder / "pairs.txt").string(), "--contact-columns", "i,j,force", "-o",
+                    (folder / "state.json").string()});
+    };
+    const Outcome table = made(header + rows);
+    expect(table, 0);
+    BOOST_TEST(contains(table.out, "156 pairs with a force"), table.out);
+    fs::remove(folder / "state.json");
+    expect(made(header + rows + rows.substr(0, rows.find('\n') + 1)), 65,
+           {"pairs.txt:158", "disks 58 and 87 come twice"});
+    BOOST_TEST(!fs::exists(folder / "state.json"));
+}
+
+BOOST_AUTO_TEST_CASE(soft_limits_of_a_run_in_a_cell_go_to_the_exact_ones_as_1_over_the_stiffness) {
+    const scratch::Folder folder;
+    scratch::write(folder / "cell.toml", "[packing]\ndisks = 30\nseed = 3\n[cell]\n[[programme]]\ndo = \"up\"\n"
+                                         "equilibria = 2\n[output]\npictures = false\nstates_every = 1\n");
+    const std::string out = (folder / "out").string();
+    expect(run({"run", (folder / "cell.toml").string(), "-o", out, "--quiet"}), 0);
+    std::array<std::vector<double>, 2> off; // soft - exact, where soft grains of both have a limit
+    for (const std::size_t k : {0U, 1U}) {
+        expect(run({"report", out, "--stiffness", k == 0 ? "1e6" : "1e7"}), 0);
+        std::istringstream table(scratch::read(folder / "out" / "figures" / "soft_limits.csv"));
+        std::string line;
+        for (std::getline(table, line); std::getline(table, line);) {
+            int number = 0;
+            std::array<char, 8> end{};
+            double exact = 0, soft = 0;
+            BOOST_TEST_REQUIRE(std::sscanf(line.c_str(), "%d,%4[a-z],%lf,%lf", &number, end.data(), &exact, &soft) ==
+                               4);
+            off[k].push_back(soft - exact);
+        }
+    }
+    BOOST_TEST_REQUIRE(off[0].size() >= 4U);
+    BOOST_TEST_REQUIRE(off[1].size() == off[0].size());
+    for (std::size_t k = 0; k < off[0].size(); ++k) {
+        BOOST_TEST(off[0][k] / off[1][k] == 10, boost::test_tools::tolerance(0.02));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(some_frames_of_a_series_are_compared_alone) {
     const std::string series = scratch::data("series/series.toml");
     const Outcome some = run({"compare", series, "--frames", "5:6", "--bundle", "4", "--local"});

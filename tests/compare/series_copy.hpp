@@ -6,6 +6,7 @@
 #include <isostat/compare/compare.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -53,13 +54,13 @@ class Copy {
 
     [[nodiscard]] std::string write() const {
         const auto put = [&](const char* name, const Lines& lines) {
-            scratch::write(folder_ / name, joined(lines, '\n') + "\n");
+            scratch::write(*folder_ / name, joined(lines, '\n') + "\n");
         };
         put("disks.dump", disks);
         put("contacts.dump", contacts);
         put("frames.csv", table);
-        scratch::write(folder_ / "series.toml", manifest);
-        return (folder_ / "series.toml").string();
+        scratch::write(*folder_ / "series.toml", manifest);
+        return (*folder_ / "series.toml").string();
     }
     [[nodiscard]] isostat::compare::Comparison compare(const isostat::compare::CompareOptions& options = {}) const {
         isostat::compare::SeriesReader reader(write());
@@ -94,7 +95,7 @@ class Copy {
             }
         }
     }
-    scratch::Folder folder_;
+    std::shared_ptr<scratch::Folder> folder_ = std::make_shared<scratch::Folder>(); // copies write to the same
 };
 
 } // namespace series

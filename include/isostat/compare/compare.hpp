@@ -122,6 +122,9 @@ struct FrameResult {
     /// frame ("same"), another one ("other"), or ended before ("undecided" and why). Empty: not asked, or no vertex
     /// there.
     std::string local;
+    /// With `nearest_arc`, of a frame in motion: the arc of the exact run whose kept contacts differ least from those
+    /// of the frame, and by which. Diagnosis.
+    std::string nearest_arc;
 };
 
 /// One equilibrium of the exact run: a list of contacts, the interval of sigma_2 in which it is supported, and what
@@ -170,8 +173,9 @@ struct Departure {
 struct CompareOptions {
     std::optional<State<2>> start; ///< of the exact run; none: the vertex of the first frame that has one
     OpeningRule rule = OpeningRule::most_negative;
-    int bundle = 16;    ///< members of the bundle; 0: none
-    bool local = false; ///< besides, the exact run from every frame to the next
+    int bundle = 16;          ///< members of the bundle; 0: none
+    bool local = false;       ///< besides, the exact run from every frame to the next
+    bool nearest_arc = false; ///< besides, the arc of the exact run that each frame in motion is on
     /// The first and the last frame to look at, by their numbers.
     std::array<int, 2> frames{0, std::numeric_limits<int>::max()};
     const std::atomic<bool>* stop = nullptr;
@@ -183,7 +187,7 @@ struct Comparison {
     std::string path_end; ///< empty, or why the exact run ends before the last frame
     Bundle bundle;
     std::optional<Departure> departure;
-    /// 0 every frame at rest is `same`; 1 one departs; 2 none departs, one is undecided.
+    /// 0 every frame at rest is `same`; 1 one departs; 2 none departs, and one is undecided or all are in motion.
     int status = 0;
 };
 

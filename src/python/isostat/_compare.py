@@ -40,7 +40,7 @@ class Comparison:
     departure : dict or None
         The first frame that leaves the exact run: ``from``, ``to``, ``reason``, ``words``, ``opened``, ``closed``.
     status : int
-        0: every frame at rest is the exact equilibrium of its load; 1: one departs; 2: one is undecided.
+        0: every frame at rest is the exact equilibrium of its load; 1: one departs; 2: one is undecided, or none is at rest.
     """
 
     def __init__(self, content: Mapping[str, Any]) -> None:
@@ -65,6 +65,7 @@ def compare(
     reference: State | None = None,
     bundle: int = 16,
     local: bool = False,
+    nearest_arc: bool = False,
     output: str | os.PathLike[str] | None = None,
 ) -> Comparison:
     """Frames of another program against the exact trajectory, as ``isostat compare``.
@@ -78,9 +79,11 @@ def compare(
         Exact runs from the start; 0: none.
     local : bool
         Besides, the exact run from every frame to the next one.
+    nearest_arc : bool
+        Besides, the arc of the exact run that each frame in motion is on.
     output : path, optional
         Folder for tables and figure.
 
     Raises BadInput with file and row; Ctrl-C ends it after what is going on.
     """
-    return Comparison(json.loads(_compare(series, reference, bundle, local, output)))
+    return Comparison(json.loads(_compare(series, reference, bundle, local, nearest_arc, output)))

@@ -83,12 +83,4 @@ Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, 
     return {};
 }
 
-bool comes_first(const Place& place, std::size_t chosen, std::size_t other, const ChoiceRule& rule) {
-    const Range mine = rule.load(chosen);
-    const Range its = rule.load(other);
-    const bool told = mine.upper < its.lower || its.upper < mine.lower;
-    const auto& contacts = place.state->contacts;
-    return told ? mine.upper < its.lower : contacts[chosen] < contacts[other];
-}
-
 } // namespace isostat::checker

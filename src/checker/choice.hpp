@@ -24,10 +24,6 @@ const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::
 Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, std::size_t chosen,
                         const ChoiceRule& rule);
 
-/// By the rule alone, where there is no record: the infinitesimal loads put `chosen` before `other`, or do not tell,
-/// and the names do.
-bool comes_first(const Place& place, std::size_t chosen, std::size_t other, const ChoiceRule& rule);
-
 /// An exchange of the list where a pair that touches would overlap at second order when `opened` opens (C3; K23):
 /// `place` has the list before it.
 Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened);

@@ -75,9 +75,8 @@ struct Limit {
     const Place& place;
     std::size_t opened;
     const std::vector<TieRecord>* said; ///< of ties, by a record; null: there is none
-    ChoiceRule choice;
-    std::vector<Range> there; ///< the forces
-    std::vector<Range> first; ///< their first-order terms
+    std::vector<Range> there;           ///< the forces
+    std::vector<Range> first;           ///< their first-order terms
     ExactLoad load;
     int direction;
 
@@ -85,14 +84,52 @@ struct Limit {
     [[nodiscard]] Objections before(std::size_t l, bool& together) const;
     /// Whether, of forces that vanish together, the infinitesimal loads take the one that opens.
     [[nodiscard]] Objections among(const std::vector<int>& together) const;
+    /// Ties are chosen, and this one is not told from the one that opens: a row may name any of them (C1 b); an arc
+    /// must have been chosen against this one, or against one of its class.
+    [[nodiscard]] bool chosen_against(std::size_t l) const;
+    /// Not told from 0 at the limit, and positive before; without the one that opens.
+    [[nodiscard]] std::vector<int> vanishing() const;
+    /// Counting says that these forces vanish together.
+    [[nodiscard]] bool is_class(const std::vector<int>& together) const;
 };
+
+std::vector<int> Limit::vanishing() const {
+    std::vector<int> found;
+    for (std::size_t l = 0; l < there.size(); ++l) {
+        const Range& slope = place.evidence->slopes()[l];
+        if (l != opened && there[l].has_zero() && (direction > 0 ? slope.negative() : slope.positive())) {
+            found.push_back(static_cast<int>(l));
+        }
+    }
+    return found;
+}
+
+bool Limit::is_class(const std::vector<int>& together) const {
+    const Evidence& e = *place.evidence;
+    Forces loaded = e.finite_load;
+    for (std::size_t j = 0; j < loaded.size(); ++j) {
+        loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
+    }
+    return vary_together(e.problem, together, loaded);
+}
+
+bool Limit::chosen_against(std::size_t l) const {
+    const auto recorded = [&](std::size_t k) {
+        return recorded_choice(*said, "limit", place.evidence->name(opened), place.evidence->name(k)) != nullptr;
+    };
+    if (!place.chooses || said == nullptr || recorded(l)) {
+        return place.chooses;
+    }
+    const std::vector<int> all = vanishing();
+    return std::any_of(all.begin(), all.end(), [&](int k) { return recorded(static_cast<std::size_t>(k)); }) &&
+           is_class(all);
+}
 
 Objections Limit::before(std::size_t l, bool& together) const {
     const Evidence& e = *place.evidence;
     const Range& slope = e.slopes()[l];
     together = false;
-    if (contains(place.zeros, l) || place.is_held(l) || there[l].positive() ||
-        (said != nullptr && recorded_choice(*said, "limit", e.name(opened), e.name(l)) != nullptr)) {
+    if (contains(place.zeros, l) || place.is_held(l) || there[l].positive()) {
         return {};
     }
     if (there[l].negative()) {
@@ -109,22 +146,21 @@ Objections Limit::before(std::size_t l, bool& together) const {
     if ((direction > 0) == slope.positive()) {
         return {}; // it grows from a force that is not negative
     }
+    if (chosen_against(l)) {
+        return {};
+    }
     const Range later = (limit_rate(first[l], slope) - load.rate) * Range(Rational(direction));
     if (later.negative()) { // a run has more digits to tell the two loads apart
         return Objection{false, fmt::format("the forces of {} and {} vanish at one load as far as is seen, and that of "
                                             "{} first: by {} at first order",
                                             e.name(l), e.name(opened), e.name(l), shown(later))};
     }
-    together = !later.positive() && !(place.chooses && said == nullptr && comes_first(place, opened, l, choice));
+    together = !later.positive();
     return {};
 }
 
 Objections Limit::among(const std::vector<int>& together) const {
     const Evidence& e = *place.evidence;
-    Forces loaded = e.finite_load;
-    for (std::size_t j = 0; j < loaded.size(); ++j) {
-        loaded[j] = Range(abs(loaded[j].lower) + abs(e.unit_load[j].lower));
-    }
     const Range mine = soon(place, opened);
     for (const int l : together) {
         const auto other = static_cast<std::size_t>(l);
@@ -136,7 +172,7 @@ Objections Limit::among(const std::vector<int>& together) const {
         if (place.chooses && this_one) {
             continue; // any of them may open, and the rule takes this one (C1)
         }
-        const bool comparable = vary_together(e.problem, together, loaded);
+        const bool comparable = is_class(together);
         if (!comparable || !this_one) {
             const bool earlier = comparable && its.upper < mine.lower;
             return Objection{earlier,
@@ -169,14 +205,15 @@ Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t
     const std::vector<Range> there = forces_after(place, step);
     const std::vector<Range> first = place.first->forces(there);
     at_limit = {found - Range(Rational(stress.value)), limit_rate(first[opened], slope)};
-    const ChoiceRule choice{"limit", [&](std::size_t l) { return there[l].has_zero() && !e.slopes()[l].has_zero(); },
-                            [&](std::size_t l) { return soon(place, l); }};
     if (said != nullptr) {
+        const ChoiceRule choice{"limit",
+                                [&](std::size_t l) { return there[l].has_zero() && !e.slopes()[l].has_zero(); },
+                                [&](std::size_t l) { return soon(place, l); }};
         if (Objections wrong = check_choice(place, *said, opened, choice)) {
             return wrong;
         }
     }
-    const Limit limit{place, opened, said, choice, there, first, at_limit, direction};
+    const Limit limit{place, opened, said, there, first, at_limit, direction};
     std::vector<int> together{static_cast<int>(opened)};
     for (std::size_t l = 0; l < there.size(); ++l) {
         bool with_it = false;

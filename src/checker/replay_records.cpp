@@ -309,6 +309,14 @@ Objections check_counts(const Place& place, const EquilibriumLine& line) {
             return wrong;
         }
     }
+    if (line.value.count("touching") !=
+        0) { // a run may tell from 0, with more digits, what is 0 as far as is seen here
+        const auto found = static_cast<int>(place.touching.size());
+        if (Objections other = compare("touching", line.integer("touching"), found)) {
+            other->wrong = line.integer("touching") > found;
+            return other;
+        }
+    }
     return {};
 }
 

@@ -3,6 +3,7 @@
 #include "io/descriptor.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/record_text.hpp"
 #include "report/statistics.hpp"
 
 #include <isostat/core/error.hpp>
@@ -35,10 +36,9 @@ template <class Use> void for_each_row(const std::string& text, const Use& use) 
     }
 }
 
-std::string equilibria_header(bool tilted) {
-    std::vector<std::string> columns = equilibria_columns(tilted);
-    columns.pop_back(); // the time
-    return fmt::format("# seed,{}\n", fmt::join(columns, ","));
+/// That of a run without its last column, the time.
+std::string with_seeds(const std::string& header) {
+    return "# seed," + header.substr(2, header.rfind(',') - 2) + "\n";
 }
 
 void append_equilibria(std::string& table, std::uint64_t seed, const std::string& text) {
@@ -174,14 +174,14 @@ std::vector<Sample> EnsembleDirectory::merge() const {
             const fs::path file = samples_.folder(number) / "equilibria.csv";
             const std::string text = read_text(file);
             if (equilibria.empty()) { // one scene, one kind of cell
-                equilibria = equilibria_header(text.substr(0, text.find('\n')).ends_with(",L3_bound,seconds"));
+                equilibria = with_seeds(text.substr(0, text.find('\n')));
             }
             append_equilibria(equilibria, one.seed, text);
             append_increments(increments, one.seed, read_equilibria(file));
         }
     }
     const fs::path& path = samples_.path();
-    write_atomically(path / "equilibria.csv", equilibria.empty() ? equilibria_header(false) : equilibria);
+    write_atomically(path / "equilibria.csv", equilibria.empty() ? with_seeds(equilibria_header()) : equilibria);
     write_atomically(path / "increments.csv", increments);
     write_atomically(path / "samples.csv", table);
     const bool all = std::all_of(samples.begin(), samples.end(), [](const Sample& s) { return s.finished(); });

@@ -92,7 +92,9 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
     const std::string content_of_file = read_text(path);
     const std::string_view text = without_byte_order_mark(content_of_file);
     std::vector<EquilibriumRow> rows;
-    const bool tilted = text.starts_with(equilibria_header(true));
+    const auto all = {MoreColumns::none, MoreColumns::tilt, MoreColumns::touching};
+    const auto more =
+        std::find_if(all.begin(), all.end(), [&](MoreColumns m) { return text.starts_with(equilibria_header(m)); });
     std::size_t begin = 0;
     for (int line = 1; begin < text.size(); ++line) {
         const std::size_t end = text.find('\n', begin);
@@ -103,8 +105,8 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
         begin = end + 1;
         if (line > 1) {
             rows.push_back(
-                row_of(Fields(content, fmt::format("{}:{}", path.string(), line), equilibria_columns(tilted))));
-        } else if (std::string(content) + "\n" != equilibria_header(tilted)) {
+                row_of(Fields(content, fmt::format("{}:{}", path.string(), line), equilibria_columns(*more))));
+        } else if (more == all.end()) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}:{}: the names of the columns are not those of this program: expected {}",
                                     path.string(), line, equilibria_header()));

@@ -125,7 +125,7 @@ std::string witness_line(const ArcRecord<2>& arc) {
     return json::dumped(line) + "\n";
 }
 
-const std::vector<std::string>& equilibria_columns(bool tilted) {
+const std::vector<std::string>& equilibria_columns(MoreColumns more) {
     static const std::vector<std::string> columns{"number",
                                                   "previous",
                                                   "segment",
@@ -176,16 +176,18 @@ const std::vector<std::string>& equilibria_columns(bool tilted) {
                                                   "potential_bound",
                                                   "min_gap_bound",
                                                   "seconds"};
-    static const std::vector<std::string> with_third = [] {
-        std::vector<std::string> more = columns;
-        more.insert(more.end() - 1, {"eps3", "L3", "eps3_bound", "L3_bound"});
-        return more;
-    }();
-    return tilted ? with_third : columns;
+    const auto with = [](const std::vector<std::string>& names) {
+        std::vector<std::string> all = columns;
+        all.insert(all.end() - 1, names.begin(), names.end());
+        return all;
+    };
+    static const std::vector<std::string> with_third = with({"eps3", "L3", "eps3_bound", "L3_bound"});
+    static const std::vector<std::string> with_touching = with({"touching"});
+    return more == MoreColumns::tilt ? with_third : more == MoreColumns::touching ? with_touching : columns;
 }
 
-std::string equilibria_header(bool tilted) {
-    return fmt::format("# {}\n", fmt::join(equilibria_columns(tilted), ","));
+std::string equilibria_header(MoreColumns more) {
+    return fmt::format("# {}\n", fmt::join(equilibria_columns(more), ","));
 }
 
 std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous) {
@@ -209,7 +211,10 @@ std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& 
     row += fmt::format(",{},{},{},{},{},{},{},{}", record.strain_bound[other], record.strain_bound[loaded],
                        record.length_bound[other], record.length_bound[loaded], record.stress_low_bound,
                        record.stress_high_bound, record.potential_bound, record.min_gap_bound);
-    if (is_tilted(record)) {
+    const MoreColumns more = columns_of(record);
+    if (more == MoreColumns::touching) {
+        row += fmt::format(",{}", *record.touching);
+    } else if (more == MoreColumns::tilt) {
         const std::size_t third = 3 - other - loaded;
         row += fmt::format(",{},{},{},{}", record.strain[third], record.length[third], record.strain_bound[third],
                            record.length_bound[third]);

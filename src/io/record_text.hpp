@@ -4,7 +4,7 @@
 
 #include "io/json.hpp"
 
-#include <isostat/trajectory/trajectory.hpp>
+#include <isostat/io/run_directory.hpp>
 
 #include <string>
 
@@ -18,10 +18,10 @@ std::string event_line(const ArcRecord<2>& arc);
 /// order.
 std::string witness_line(const ArcRecord<2>& arc);
 
-/// The header line of equilibria.csv. `tilted`: as in `equilibria_columns`.
-std::string equilibria_header(bool tilted = false);
-inline bool is_tilted(const EquilibriumRecord<2>& record) {
-    return record.length.size() > 2;
+/// The header line of equilibria.csv.
+std::string equilibria_header(MoreColumns more = MoreColumns::none);
+inline MoreColumns columns_of(const EquilibriumRecord<2>& record) {
+    return record.length.size() > 2 ? MoreColumns::tilt : record.touching ? MoreColumns::touching : MoreColumns::none;
 }
 /// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start.
 std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous);

@@ -202,7 +202,9 @@ void RunDirectory::keep_digest(const std::string& name) {
 void RunDirectory::store_start(const State<2>& state) {
     write_state<2>(directory_ / "start.json", state);
     keep_digest("start.json");
-    name_columns(state.packing.cell.any() && state.packing.cell.tilt_moves[0]);
+    if (state.packing.cell.any() && state.packing.cell.tilt_moves[0]) {
+        name_columns(MoreColumns::tilt);
+    }
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {
@@ -227,9 +229,9 @@ void RunDirectory::on_arc(const ArcRecord<2>& arc) {
     }
 }
 
-void RunDirectory::name_columns(bool tilted) {
+void RunDirectory::name_columns(MoreColumns more) {
     if (equilibria_digest_.empty()) {
-        const std::string header = equilibria_header(tilted);
+        const std::string header = equilibria_header(more);
         files_->equilibria.write(header);
         equilibria_digest_ = chained("", header);
     }
@@ -238,7 +240,7 @@ void RunDirectory::name_columns(bool tilted) {
 void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
-    name_columns(is_tilted(record));
+    name_columns(columns_of(record));
     const std::string row = equilibrium_row(record, state, first ? -1 : previous_);
     files_->equilibria.write(row);
     equilibria_digest_ = chained(equilibria_digest_, row);
@@ -320,7 +322,7 @@ void RunDirectory::sync() {
 
 void RunDirectory::finish(RunStatus status, const std::string& reason) {
     const std::string words = reason.empty() ? to_string(status) : fmt::format("{}: {}", to_string(status), reason);
-    name_columns(false); // of a run without a start
+    name_columns(MoreColumns::none); // of a run without a start
     write_checkpoint();
     if (!last_.packing.radius.empty()) {
         write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);

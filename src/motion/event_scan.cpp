@@ -216,17 +216,19 @@ template <int Dim> std::optional<GapEvent> EventScan<Dim>::first_violation(const
 }
 
 template <int Dim>
-std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std::vector<double>& tangent) const {
+std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std::vector<double>& tangent,
+                                                     double noise) const {
     std::optional<double> where;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         if (!(rate_[c] < 0) || active_[c] == step.closing) {
             continue;
         }
         const double rate = gap_rate(step.to, active_[c], tangent);
-        if (!(rate > 0)) {
+        const double gap = quick_gap(step.to, active_[c]);
+        if (!(rate > 0) || (step.closing.i >= 0 && std::abs(gap) <= noise)) {
             continue;
         }
-        const auto dip = Cubic{gap_[c], rate_[c], quick_gap(step.to, active_[c]), rate, step.s}.dip();
+        const auto dip = Cubic{gap_[c], rate_[c], gap, rate, step.s}.dip();
         if (dip && (!where || *dip < *where)) {
             where = dip;
         }

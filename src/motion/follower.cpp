@@ -122,16 +122,12 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
         return Ending(std::nullopt);
     }
     Reached& there = *attempt.value();
-    if (there.s > noise_) {
-        if (const auto dip =
-                scan_.suspicious_dip({here_.at, there.point.at, there.s, there.closing}, there.point.tangent)) {
-            if (*dip < 1e-9 * step_limit_) {
-                return Failure{FailureKind::undecided,
-                               "a gap touches zero inside an arc and cannot be told from a contact"};
-            }
-            pace_.for_dip = std::max(*dip, 0.05 * there.s);
-            return Ending(std::nullopt);
-        }
+    const Result<bool> dips = dips_within(there);
+    if (!dips.ok()) {
+        return dips.failure();
+    }
+    if (dips.value()) {
+        return Ending(std::nullopt);
     }
     const PowerSign sign = judge_power(there);
     if (sign == PowerSign::shorten) {
@@ -164,6 +160,24 @@ template <int Dim> typename Follower<Dim>::Ending Follower<Dim>::step() {
         return *failure;
     }
     return Ending(std::nullopt);
+}
+
+/// A gap seems to dip within the step: it is to be tried again as far as that, and no further.
+template <int Dim> Result<bool> Follower<Dim>::dips_within(const Reached& there) {
+    const auto dip = there.s > noise_ ? scan_.suspicious_dip({here_.at, there.point.at, there.s, there.closing},
+                                                             there.point.tangent, noise_)
+                                      : std::nullopt;
+    if (!dip) {
+        return false;
+    }
+    if (*dip < 1e-9 * step_limit_) {
+        return Failure{FailureKind::undecided, "a gap touches zero inside an arc and cannot be told from a contact"};
+    }
+    pace_.for_dip = std::max(*dip, 0.05 * there.s);
+    if (there.closing != nothing && !(pace_.for_dip < event_.s)) {
+        pace_.for_dip = 0.5 * event_.s; // else the same event would be met again, and again
+    }
+    return true;
 }
 
 /// The event, if it is predicted within this length or seen to lie within it; else the end of a step of this length.
@@ -275,7 +289,7 @@ std::optional<CurvePoint<Dim>> Follower<Dim>::tangent_at_event(Packing<Dim> at, 
     if (options_.extrapolate_tangent) {
         Vector t = here_.extrapolated_tangent(at, s, 1e-5 * step_limit_);
         const double power = power_(here_.at, here_.tangent);
-        if (power_(at, t) > 0.1 * std::abs(power) && !scan_.suspicious_dip({here_.at, at, s, closing}, t)) {
+        if (power_(at, t) > 0.1 * std::abs(power) && !scan_.suspicious_dip({here_.at, at, s, closing}, t, noise_)) {
             return CurvePoint<Dim>{std::move(at), std::move(t)};
         }
     }

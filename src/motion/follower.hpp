@@ -59,6 +59,7 @@ template <int Dim> class Follower {
     bool converge_to(Packing<Dim>& at, const Contact& closing);
     std::optional<CurvePoint<Dim>> tangent_at_event(Packing<Dim> at, double s, const Contact& closing);
     double power_at_start();
+    Result<bool> dips_within(const Reached& there);
     PowerSign judge_power(Reached& there);
     Result<Arc<Dim>> power_turn(double s, double power);
     std::optional<Failure> go_on(Reached there);

@@ -24,6 +24,16 @@ template <int Dim> LimitLoad<Dim> zero_load(Statics<Dim>& statics, ContactId at_
     return at;
 }
 
+/// At the stored load and at the exact one, with as many digits as it takes.
+template <int Dim> bool is_positive(Statics<Dim>& statics, ContactId l, const LimitLoad<Dim>& limit) {
+    statics.set_shift(nullptr, 0); // exact numbers do not know the exact load
+    ForceExpression force = statics.force_expression(l, limit.stress());
+    const Order stored = statics.sign(force);
+    force.shift = limit.shift.get();
+    const Order exact = statics.sign(force);
+    return stored.decided && stored.sign > 0 && exact.decided && exact.sign > 0;
+}
+
 } // namespace
 
 template <int Dim>
@@ -90,7 +100,7 @@ std::optional<Failure> FirstOrderSide<Dim>::settle_load(Vertex<Dim>& vertex, con
         const Enclosure slope = statics.slope(id);
         Enclosure f = statics.force(id, limit.stress());
         f.radius += limit.error * (std::abs(slope.value) + slope.radius) * (1 + 1e-10);
-        if (!f.positive()) {
+        if (!f.positive() && !is_positive(statics, id, limit)) {
             return failed(FailureKind::undecided,
                           "the force in {} is so small, {:.3g}, that the limit load must be known better "
                           "than it is stored",

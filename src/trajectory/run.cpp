@@ -299,6 +299,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     record.arcs = arcs;
     record.verdict = Verdict::proved;
     record.seconds = elapsed();
+    if (perturbs()) {
+        record.touching = static_cast<int>(vertex_->perturbed->touching.size());
+    }
     record_ = record;
     state_.equilibrium = counters_.equilibria;
     if (perturbs()) {

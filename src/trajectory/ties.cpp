@@ -216,15 +216,16 @@ template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& 
         bool touched = way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end();
         if (!touched) {
             // Simple roots (P3): going back opens both.
-            const Enclosure back =
-                closed.kind == ContactKind::held ? Enclosure{0, 0} : terms.rate(way.slot, +1, contact);
-            touched = chooses && !back.positive() && terms.bend(back, way.slot, +1, contact).positive(); // it grazes
-            if (!back.positive() && !touched) {
+            const Enclosure back = terms.rate(way.slot, +1, contact);
+            const Enclosure bend = terms.bend(back, way.slot, +1, contact);
+            touched = chooses && vanishes(back) && !bend.negative(); // it grazes, as far as the end tells (C1 f)
+            if (!touched && (closed.kind == ContactKind::held || !back.positive())) {
                 return failed(FailureKind::undecided,
                               "{} touch where {} closes, but are not proved to close there: the rate of "
-                              "their gap is {} times that of the other; grazing is not followed at first "
+                              "their gap is {} times that of the other{}; grazing is not followed at first "
                               "order",
-                              named<Dim>(contact), named<Dim>(closed), shown(back));
+                              named<Dim>(contact), named<Dim>(closed), shown(back),
+                              vanishes(back) ? words(", the second derivative {}", shown(bend)) : Words());
             }
         }
         const bool may_overlap = chooses && (way.stays ? way.overlapped : touched);

@@ -95,6 +95,19 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     BOOST_TEST(forged.wrong.find("infinitesimal loads take") != std::string::npos, forged.wrong);
 }
 
+/// No record says how an end of the interval was chosen, and each of them ends it (C1 b).
+BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::mirror_forces(), -1, 1, folder);
+    BOOST_TEST((verify_run(folder).verdict == Verdict::proved));
+    const std::string rows = scratch::read(folder / "equilibria.csv");
+    const bool one = rows.find(",1,-2,") < rows.find(",2,-2,");
+    const RunVerification other =
+        altered(folder, "equilibria.csv", one ? ",1,-2," : ",2,-2,", one ? ",2,-2," : ",1,-2,");
+    BOOST_TEST((other.verdict == Verdict::proved), (other.undecided.empty() ? other.wrong : other.undecided[0]));
+}
+
 BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
@@ -123,6 +136,19 @@ BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_
         altered(folder, "events.jsonl", "\"decision\":\"gap\"", "\"choice\":\"watched\",\"decision\":\"gap\"");
     BOOST_TEST((forged.verdict == Verdict::refuted));
     BOOST_TEST(forged.wrong.find("does not overlap at first order") != std::string::npos, forged.wrong);
+    // Pairs that touch besides the contacts: the last column but one.
+    const std::string rows = scratch::read(folder / "equilibria.csv");
+    const std::size_t time = rows.rfind(',');
+    const std::size_t column = rows.rfind(',', time - 1) + 1;
+    const int touching = std::stoi(rows.substr(column));
+    BOOST_TEST(touching > 0);
+    const std::string last = rows.substr(rows.rfind('\n', time));
+    for (const int said : {touching - 1, touching + 1}) {
+        const std::string by = rows.substr(rows.rfind('\n', time), column - rows.rfind('\n', time));
+        const RunVerification wrong =
+            altered(folder, "equilibria.csv", last, by + std::to_string(said) + rows.substr(time));
+        BOOST_TEST((wrong.verdict == (said > touching ? Verdict::refuted : Verdict::undecided)), wrong.wrong);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {

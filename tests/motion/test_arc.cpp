@@ -150,6 +150,21 @@ BOOST_AUTO_TEST_CASE(an_exactly_grazing_gap_is_never_followed_by_a_guess_beyond_
     }
 }
 
+/// Its rate there is 0 to rounding, on either side: the proof of the end judges it, and the arc is followed to its end.
+BOOST_AUTO_TEST_CASE(a_gap_that_grazes_where_an_arc_ends_does_not_keep_it_from_its_end) {
+    for (int k = 0; k < 100; ++k) {
+        Rolling rolling;
+        const double angle = 1.5 + 0.01 * k;
+        rolling.obstacle(angle, 0.25, 0);
+        rolling.stop(angle);
+        rolling.push(-1, 0.1);
+        const auto arc = rolling.roll(0.1);
+        BOOST_TEST_REQUIRE(arc.ok(), angle << ": " << (arc.ok() ? "" : arc.failure().message()));
+        BOOST_TEST(Rolling::angle(arc.value()) == angle, boost::test_tools::tolerance(1e-7));
+        BOOST_TEST(arc.value().steps < 1000);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(the_power_of_the_load_turns_before_the_next_contact) {
     Rolling rolling;
     rolling.stop(2.0);

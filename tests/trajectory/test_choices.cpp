@@ -4,6 +4,7 @@
 #include "support/mirror.hpp"
 
 #include <isostat/core/machine.hpp>
+#include <isostat/preparation/preparation.hpp>
 
 #include <boost/test/unit_test.hpp>
 
@@ -49,6 +50,18 @@ std::vector<TieDecision> choices(const Course& course) {
         }
     }
     return list;
+}
+
+/// Loaded over some equilibria.
+Course equal_disks(int disks, std::uint64_t seed, int equilibria) {
+    PreparationOptions options;
+    options.disks = disks;
+    options.diameters.kind = RadiiLaw::equal;
+    options.seed = seed;
+    PreparationReport<2> report;
+    const auto result = prepare<2>(options, report);
+    BOOST_TEST_REQUIRE((result.ok() || report.candidate));
+    return follow_load(result.ok() ? result.value() : *report.candidate, +1, equilibria, TiePolicy::choose);
 }
 
 std::string why(const Course& course) {
@@ -150,6 +163,21 @@ BOOST_AUTO_TEST_CASE(a_square_of_disks_supports_every_load_and_pairs_that_only_b
     BOOST_TEST_REQUIRE(!course.equilibria.empty());
     const std::vector<double>& length = course.equilibria.back().length;
     BOOST_TEST(std::abs(length[1] - 4) < 1e-12); // the columns are straight still
+}
+
+/// In the first one a gap falls like s^4 to 0 where an arc ends; in the other one its dip is met at the end itself.
+BOOST_AUTO_TEST_CASE(patches_of_equal_disks_are_followed_past_gaps_that_graze_until_they_support_every_load) {
+    for (const auto& [disks, seed] : {std::pair(36, 17), std::pair(20, 15)}) {
+        const Course course = equal_disks(disks, static_cast<std::uint64_t>(seed), 30);
+        BOOST_TEST(mentions(course, "supports every load"), disks << " disks, seed " << seed << ": " << why(course));
+        BOOST_TEST(!course.equilibria.empty());
+    }
+}
+
+/// At the twelfth equilibrium the load is known in double to less than what tells the smallest force from 0.
+BOOST_AUTO_TEST_CASE(a_small_force_at_a_limit_is_told_from_0_with_more_digits, *boost::unit_test::label("slow")) {
+    const Course course = equal_disks(100, 4, 12);
+    BOOST_TEST(course.end() == "completed", why(course));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

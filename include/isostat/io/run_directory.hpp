@@ -43,6 +43,10 @@ enum class RunStatus { completed, failed, undecided, interrupted };
 /// The word used in files and messages.
 const char* to_string(RunStatus status);
 
+/// What the rows of some runs have besides: those of a cell whose tilt moves its third length; of a run that settles
+/// ties at first order the pairs that touch without being contacts.
+enum class MoreColumns : unsigned char { none, tilt, touching };
+
 /// Receives the records of a run and writes them as they come. Files (all of them JSON but equilibria.csv):
 /// - run.json: what was asked, by which program, and the status ("running" until `finish`);
 /// - events.jsonl: one object per arc, handed to the system line by line;
@@ -105,7 +109,7 @@ class RunDirectory final : public RunObserver<2> {
     struct Files;
     void write_header(const std::string& status) const;
     /// The first line of equilibria.csv, once.
-    void name_columns(bool tilted);
+    void name_columns(MoreColumns more);
     /// Of the last equilibrium, unless it was written already.
     void write_checkpoint();
     void sync();
@@ -151,9 +155,8 @@ class RunDirectory final : public RunObserver<2> {
 /// bottom, -3 right, -4 top wall; -9 none. `decided_by`: 0 combinatorial, 1 double, 2 double-double, 3 mpfr, 4 exact.
 /// `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was asked for. An
 /// unbounded interval ends at inf or -inf. `x_bound`: of the error of `x` at the true vertex, rounding included.
-/// `previous` is the equilibrium that this one follows on its path (-1: the start). `tilted`: of a cell whose tilt
-/// moves, with its third length.
-const std::vector<std::string>& equilibria_columns(bool tilted = false);
+/// `previous` is the equilibrium that this one follows on its path (-1: the start).
+const std::vector<std::string>& equilibria_columns(MoreColumns more = MoreColumns::none);
 
 /// One equilibrium as equilibria.csv gives it back.
 struct EquilibriumRow {

@@ -87,8 +87,10 @@ template <int Dim> struct EquilibriumRecord {
     int hyperstaticity = 0; ///< h = N - rank
     int mechanisms = 0;     ///< k = N_f - rank
     int rattlers = 0;
-    int backbone = 0;     ///< contacts whose force is not a structural zero
-    int held = 0;         ///< held coordinates (0 in an ordinary equilibrium)
+    int backbone = 0; ///< contacts whose force is not a structural zero
+    int held = 0;     ///< held coordinates (0 in an ordinary equilibrium)
+    /// Pairs that touch besides the contacts, where ties are settled at first order: as many self-stresses more.
+    std::optional<int> touching;
     double min_force = 0; ///< smallest backbone force
     Contact min_force_contact;
     /// Smallest gap of all pairs that are not contacts and can move relative to each other, at the true vertex;

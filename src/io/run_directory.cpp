@@ -202,9 +202,11 @@ void RunDirectory::keep_digest(const std::string& name) {
 void RunDirectory::store_start(const State<2>& state) {
     write_state<2>(directory_ / "start.json", state);
     keep_digest("start.json");
-    if (state.packing.cell.any() && state.packing.cell.tilt_moves[0]) {
-        name_columns(MoreColumns::tilt);
-    }
+    const Json settings = Json::parse(header_.settings);
+    const std::string ties = settings.contains("run") ? settings["run"].value("ties", "stop") : "stop";
+    const bool tilts = state.packing.cell.any() && state.packing.cell.tilt_moves[0];
+    const bool settles = ties == "perturb" || ties == "choose";
+    name_columns(tilts ? MoreColumns::tilt : settles ? MoreColumns::touching : MoreColumns::none);
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {

@@ -112,6 +112,15 @@ BOOST_AUTO_TEST_CASE(columns_are_named_before_the_first_equilibrium) {
         BOOST_TEST((text.find(",eps3,") != std::string::npos) == tilted);
         BOOST_TEST(read_equilibria(folder / "run/equilibria.csv").empty());
     }
+    for (const std::string ties : {"stop", "choose"}) {
+        const scratch::Folder folder;
+        RunHeader with = header();
+        with.settings = R"({"run":{"ties":")" + ties + "\"}}";
+        RunDirectory directory(folder / "run", with, RunDirectory::Mode::fresh, RunCounters());
+        directory.store_start(read_state<2>(scratch::data("vertex100.txt")).state);
+        const std::string text = scratch::read(folder / "run/equilibria.csv");
+        BOOST_TEST((text.find(",touching,") != std::string::npos) == (ties == "choose"));
+    }
 }
 
 BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {

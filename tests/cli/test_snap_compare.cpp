@@ -56,7 +56,7 @@ BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
 BOOST_AUTO_TEST_CASE(a_wall_whose_digits_are_rounded_is_named) {
     const scratch::Folder folder;
     const fs::path state = folder / "state.json";
-    const Outcome made = snap(0, "0:15.45903,0:14.8856200965158", "1,1", state);
+    const Outcome made = snap(0, "0:15.46,0:14.8856200965158", "1,1", state);
     expect(made, 1);
     BOOST_TEST(contains(made.out, "none with the right wall, which is "), made.out);
     BOOST_TEST(contains(made.out, "are digits of its position rounded?"), made.out);

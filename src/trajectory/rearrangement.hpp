@@ -83,7 +83,7 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> set_aside(const ArcRecord<Dim>& record);
     [[nodiscard]] SteeredEnd<Dim> at_here() const;
     EndProof<Dim> prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end);
-    std::optional<Failure> judge(const EndProof<Dim>& end) const;
+    [[nodiscard]] std::optional<Failure> judge(const EndProof<Dim>& end) const;
     [[nodiscard]] std::string where(int arc) const;
     [[nodiscard]] std::string at_equilibrium() const;
 

@@ -225,10 +225,13 @@ std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std
         }
         const double rate = gap_rate(step.to, active_[c], tangent);
         const double gap = quick_gap(step.to, active_[c]);
-        if (!(rate > 0) || (step.closing.i >= 0 && std::abs(gap) <= noise)) {
+        const Cubic course{gap_[c], rate_[c], gap, rate, step.s};
+        const bool grazes_at_event =
+            step.closing.i >= 0 && std::abs(gap) <= noise && rate > 0 && course.lowest().value >= -noise;
+        if (!(rate > 0) || grazes_at_event) {
             continue;
         }
-        const auto dip = Cubic{gap_[c], rate_[c], gap, rate, step.s}.dip();
+        const auto dip = course.dip();
         if (dip && (!where || *dip < *where)) {
             where = dip;
         }

@@ -51,8 +51,8 @@ template <int Dim> class EventScan {
     /// The gap below -noise at the end of a step that reached 0 first, with an estimate of where.
     [[nodiscard]] std::optional<GapEvent> first_violation(const Step& step, double noise) const;
     /// First place where a gap seems to dip to or below 0 inside a step without being negative at its end, where the
-    /// tangent is `tangent`. One that is 0 to `noise` where the step ends with an event is left to the proof of that
-    /// end.
+    /// tangent is `tangent`. One that falls to 0 where the step ends with an event, and not below before, as far as
+    /// `noise` and a cubic tell, is left to the proof of that end.
     [[nodiscard]] std::optional<double> suspicious_dip(const Step& step, const std::vector<double>& tangent,
                                                        double noise) const;
 

@@ -150,6 +150,24 @@ BOOST_AUTO_TEST_CASE(an_exactly_grazing_gap_is_never_followed_by_a_guess_beyond_
     }
 }
 
+/// It overlaps the obstacle on the last part of the way, and leaves it where the arc would end.
+BOOST_AUTO_TEST_CASE(a_gap_that_dips_and_comes_back_to_0_where_an_arc_would_end_closes_before) {
+    for (const double half : {0.02, 0.005, 0.001}) {
+        for (const double fraction : {0.5, 0.1}) {
+            Rolling rolling;
+            const double nearest =
+                2 * std::cos(half) + std::sqrt(4 * std::cos(half) * std::cos(half) - 4 + 1.25 * 1.25);
+            rolling.obstacle(2.0 - half, 0.25, nearest - 3.25);
+            rolling.stop(2.0);
+            rolling.push(-1, 0.1);
+            const auto arc = rolling.roll(fraction);
+            BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
+            BOOST_TEST((arc.value().closed == pair(2, 3)), half << ", steps of " << fraction);
+            BOOST_TEST(Rolling::angle(arc.value()) == 2.0 - 2 * half, boost::test_tools::tolerance(1e-12));
+        }
+    }
+}
+
 /// Its rate there is 0 to rounding, on either side: the proof of the end judges it, and the arc is followed to its end.
 BOOST_AUTO_TEST_CASE(a_gap_that_grazes_where_an_arc_ends_does_not_keep_it_from_its_end) {
     for (int k = 0; k < 100; ++k) {

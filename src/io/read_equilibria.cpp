@@ -92,9 +92,7 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
     const std::string content_of_file = read_text(path);
     const std::string_view text = without_byte_order_mark(content_of_file);
     std::vector<EquilibriumRow> rows;
-    const auto all = {MoreColumns::none, MoreColumns::tilt, MoreColumns::touching};
-    const auto more =
-        std::find_if(all.begin(), all.end(), [&](MoreColumns m) { return text.starts_with(equilibria_header(m)); });
+    std::vector<std::string> columns;
     std::size_t begin = 0;
     for (int line = 1; begin < text.size(); ++line) {
         const std::size_t end = text.find('\n', begin);
@@ -104,12 +102,9 @@ std::vector<EquilibriumRow> read_equilibria(const std::filesystem::path& path) {
         const std::string_view content = text.substr(begin, end - begin);
         begin = end + 1;
         if (line > 1) {
-            rows.push_back(
-                row_of(Fields(content, fmt::format("{}:{}", path.string(), line), equilibria_columns(*more))));
-        } else if (more == all.end()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}:{}: the names of the columns are not those of this program: expected {}",
-                                    path.string(), line, equilibria_header()));
+            rows.push_back(row_of(Fields(content, fmt::format("{}:{}", path.string(), line), columns)));
+        } else {
+            columns = equilibria_columns(named_columns(text, path.string()));
         }
     }
     return rows;

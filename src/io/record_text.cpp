@@ -2,6 +2,7 @@
 
 #include "io/perturbation_json.hpp"
 
+#include <isostat/core/error.hpp>
 #include <isostat/io/run_directory.hpp>
 
 #include <fmt/format.h>
@@ -125,7 +126,7 @@ std::string witness_line(const ArcRecord<2>& arc) {
     return json::dumped(line) + "\n";
 }
 
-const std::vector<std::string>& equilibria_columns(MoreColumns more) {
+std::vector<std::string> equilibria_columns(MoreColumns more) {
     static const std::vector<std::string> columns{"number",
                                                   "previous",
                                                   "segment",
@@ -176,21 +177,37 @@ const std::vector<std::string>& equilibria_columns(MoreColumns more) {
                                                   "potential_bound",
                                                   "min_gap_bound",
                                                   "seconds"};
-    const auto with = [](const std::vector<std::string>& names) {
-        std::vector<std::string> all = columns;
-        all.insert(all.end() - 1, names.begin(), names.end());
-        return all;
+    std::vector<std::string> all = columns;
+    const auto add = [&all](std::initializer_list<const char*> names) {
+        all.insert(all.end() - 1, names.begin(), names.end()); // the time is last
     };
-    static const std::vector<std::string> with_third = with({"eps3", "L3", "eps3_bound", "L3_bound"});
-    static const std::vector<std::string> with_touching = with({"touching"});
-    return more == MoreColumns::tilt ? with_third : more == MoreColumns::touching ? with_touching : columns;
+    if (more.tilt) {
+        add({"eps3", "L3", "eps3_bound", "L3_bound"});
+    }
+    if (more.touching) {
+        add({"touching"});
+    }
+    return all;
 }
 
 std::string equilibria_header(MoreColumns more) {
     return fmt::format("# {}\n", fmt::join(equilibria_columns(more), ","));
 }
 
-std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous) {
+MoreColumns named_columns(std::string_view text, const std::string& source) {
+    for (const bool tilt : {false, true}) {
+        for (const bool touching : {false, true}) {
+            if (text.starts_with(equilibria_header({tilt, touching}))) {
+                return {tilt, touching};
+            }
+        }
+    }
+    throw Error(ErrorKind::bad_input, fmt::format("{}:1: the names of the columns are not those of this program: "
+                                                  "expected {}",
+                                                  source, equilibria_header()));
+}
+
+std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous, MoreColumns more) {
     const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
     const auto other = static_cast<std::size_t>(state.load.other_axis());
     std::string row = fmt::format("{},{},{},{},{}", record.number, previous, record.segment, record.stress,
@@ -211,13 +228,13 @@ std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& 
     row += fmt::format(",{},{},{},{},{},{},{},{}", record.strain_bound[other], record.strain_bound[loaded],
                        record.length_bound[other], record.length_bound[loaded], record.stress_low_bound,
                        record.stress_high_bound, record.potential_bound, record.min_gap_bound);
-    const MoreColumns more = columns_of(record);
-    if (more == MoreColumns::touching) {
-        row += fmt::format(",{}", *record.touching);
-    } else if (more == MoreColumns::tilt) {
+    if (more.tilt) {
         const std::size_t third = 3 - other - loaded;
         row += fmt::format(",{},{},{},{}", record.strain[third], record.length[third], record.strain_bound[third],
                            record.length_bound[third]);
+    }
+    if (more.touching) {
+        row += fmt::format(",{}", record.touching.value());
     }
     row += fmt::format(",{:.3f}\n", record.seconds); // last: runs are compared without it
     return row;

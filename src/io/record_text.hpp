@@ -19,12 +19,13 @@ std::string event_line(const ArcRecord<2>& arc);
 std::string witness_line(const ArcRecord<2>& arc);
 
 /// The header line of equilibria.csv.
-std::string equilibria_header(MoreColumns more = MoreColumns::none);
-inline MoreColumns columns_of(const EquilibriumRecord<2>& record) {
-    return record.length.size() > 2 ? MoreColumns::tilt : record.touching ? MoreColumns::touching : MoreColumns::none;
-}
-/// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start.
-std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous);
+std::string equilibria_header(MoreColumns more = {});
+/// The columns that the first line of a file names. Throws `Error(bad_input)`, starting with `source`, where this
+/// program writes no such line.
+MoreColumns named_columns(std::string_view text, const std::string& source);
+/// One row and a newline. `previous`: the equilibrium that this one follows, -1 for the start. \pre the record has what
+/// `more` asks for.
+std::string equilibrium_row(const EquilibriumRecord<2>& record, const State<2>& state, int previous, MoreColumns more);
 
 json::Json tally_json(const Tally& tally);
 json::Json counters_json(const RunCounters& counters);

@@ -174,6 +174,8 @@ void RunDirectory::open_for_resume() {
     last_ = std::move(state.state);
     last_forces_ = std::move(state.forces);
     digests_ = checked->files;
+    const fs::path equilibria = directory_ / "equilibria.csv";
+    columns_ = named_columns(read_text(equilibria), equilibria.string());
     // Everything is checked before anything is cut.
     std::vector<std::pair<Descriptor, long>> cut;
     for (const auto& [name, lines] : checked->lines) {
@@ -202,11 +204,7 @@ void RunDirectory::keep_digest(const std::string& name) {
 void RunDirectory::store_start(const State<2>& state) {
     write_state<2>(directory_ / "start.json", state);
     keep_digest("start.json");
-    const Json settings = Json::parse(header_.settings);
-    const std::string ties = settings.contains("run") ? settings["run"].value("ties", "stop") : "stop";
-    const bool tilts = state.packing.cell.any() && state.packing.cell.tilt_moves[0];
-    const bool settles = ties == "perturb" || ties == "choose";
-    name_columns(tilts ? MoreColumns::tilt : settles ? MoreColumns::touching : MoreColumns::none);
+    name_columns({state.packing.cell.any() && state.packing.cell.tilt_moves[0], header_.touching});
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {
@@ -233,6 +231,7 @@ void RunDirectory::on_arc(const ArcRecord<2>& arc) {
 
 void RunDirectory::name_columns(MoreColumns more) {
     if (equilibria_digest_.empty()) {
+        columns_ = more;
         const std::string header = equilibria_header(more);
         files_->equilibria.write(header);
         equilibria_digest_ = chained("", header);
@@ -242,8 +241,8 @@ void RunDirectory::name_columns(MoreColumns more) {
 void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>& state,
                                   const std::vector<double>& forces) {
     const bool first = record.number == 0;
-    name_columns(columns_of(record));
-    const std::string row = equilibrium_row(record, state, first ? -1 : previous_);
+    name_columns({record.length.size() > 2, record.touching.has_value()});
+    const std::string row = equilibrium_row(record, state, first ? -1 : previous_, columns_);
     files_->equilibria.write(row);
     equilibria_digest_ = chained(equilibria_digest_, row);
     previous_ = record.number;
@@ -324,7 +323,7 @@ void RunDirectory::sync() {
 
 void RunDirectory::finish(RunStatus status, const std::string& reason) {
     const std::string words = reason.empty() ? to_string(status) : fmt::format("{}: {}", to_string(status), reason);
-    name_columns(MoreColumns::none); // of a run without a start
+    name_columns({}); // of a run without a start
     write_checkpoint();
     if (!last_.packing.radius.empty()) {
         write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);

@@ -116,6 +116,7 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
     header.keep = needed_equilibria(scene);
     header.states_every = scene.states_every;
     header.witnesses = scene.run.certify == CertifyLevel::arcs;
+    header.touching = at_first_order(scene.run.ties);
     header.checkpoint_seconds = scene.checkpoint_seconds;
     return header;
 }

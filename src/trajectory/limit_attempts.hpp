@@ -4,7 +4,10 @@
 
 #include "trajectory/rearrangement.hpp"
 
+#include <array>
 #include <functional>
+#include <optional>
+#include <vector>
 
 namespace isostat {
 

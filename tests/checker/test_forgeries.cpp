@@ -264,7 +264,7 @@ void set_field(const fs::path& run, std::size_t row, std::size_t column, const s
 
 void rows(const fs::path& run, std::vector<Forgery>& list) {
     const std::vector<std::string> lines = lines_of(run / "equilibria.csv");
-    const std::vector<std::string>& names = equilibria_columns();
+    const std::vector<std::string> names = equilibria_columns();
     for (std::size_t row = 1; row < lines.size(); ++row) {
         for (std::size_t c = 0; c < names.size(); ++c) {
             const bool listed = std::find(unchecked_columns().begin(), unchecked_columns().end(), names[c]) !=
@@ -426,7 +426,7 @@ BOOST_AUTO_TEST_CASE(forged_records_are_refused_or_undecided_and_whatever_is_not
 BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
     const scratch::Folder folder;
     play(prepared(8, 3), {one(1, 2)}, folder / "eight");
-    const std::vector<std::string>& names = equilibria_columns();
+    const std::vector<std::string> names = equilibria_columns();
     const auto column = [&names](const std::string& name) {
         return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
     };
@@ -483,7 +483,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_passes_through_another_one_is_not_proved) {
             Certifying::write(run, name[8] - '0', file.state);
         }
     }
-    const std::vector<std::string>& names = equilibria_columns();
+    const std::vector<std::string> names = equilibria_columns();
     const auto column = [&names](const char* name) {
         return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
     };

@@ -119,8 +119,8 @@ void finds(const std::filesystem::path& folder, const Alteration& alteration) {
 
 /// The fields of a row of equilibria.csv, with one replaced.
 Alteration in_row(const std::string& csv, int line, const std::string& column, const std::string& value) {
-    const std::vector<std::string>& names =
-        equilibria_columns(line_of(csv, 1).find("L3") != std::string::npos ? MoreColumns::tilt : MoreColumns::none);
+    const std::vector<std::string> names = equilibria_columns(
+        {line_of(csv, 1).find(",L3,") != std::string::npos, line_of(csv, 1).find(",touching,") != std::string::npos});
     const auto index = std::find(names.begin(), names.end(), column) - names.begin();
     const std::string text = line_of(csv, line);
     std::size_t begin = 0;

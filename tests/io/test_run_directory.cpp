@@ -1,4 +1,5 @@
 #include "io/bad_input.hpp"
+#include "io/record_text.hpp"
 #include "support/cells.hpp"
 #include "support/scratch.hpp"
 
@@ -112,14 +113,32 @@ BOOST_AUTO_TEST_CASE(columns_are_named_before_the_first_equilibrium) {
         BOOST_TEST((text.find(",eps3,") != std::string::npos) == tilted);
         BOOST_TEST(read_equilibria(folder / "run/equilibria.csv").empty());
     }
-    for (const std::string ties : {"stop", "choose"}) {
-        const scratch::Folder folder;
-        RunHeader with = header();
-        with.settings = R"({"run":{"ties":")" + ties + "\"}}";
-        RunDirectory directory(folder / "run", with, RunDirectory::Mode::fresh, RunCounters());
-        directory.store_start(read_state<2>(scratch::data("vertex100.txt")).state);
-        const std::string text = scratch::read(folder / "run/equilibria.csv");
-        BOOST_TEST((text.find(",touching,") != std::string::npos) == (ties == "choose"));
+}
+
+BOOST_AUTO_TEST_CASE(every_row_has_the_columns_that_the_first_line_names_whatever_its_record_has_besides) {
+    const State<2> state = cells::one_tilted_disk(2, 1, 0.25);
+    EquilibriumRecord<2> record;
+    for (auto* three : {&record.strain, &record.length, &record.strain_bound, &record.length_bound}) {
+        three->assign(3, 0.5);
+    }
+    record.touching = 7;
+    const auto commas = [](const std::string& line) { return std::count(line.begin(), line.end(), ','); };
+    for (const bool tilt : {false, true}) {
+        for (const bool touching : {false, true}) {
+            const std::string header = equilibria_header({tilt, touching});
+            const std::string row = equilibrium_row(record, state, -1, {tilt, touching});
+            BOOST_TEST(commas(row) == commas(header));
+            BOOST_TEST((row.find(",7,0.000\n") != std::string::npos) == touching);
+            const MoreColumns named = named_columns(header + row, "table");
+            BOOST_TEST((named.tilt == tilt && named.touching == touching));
+            const scratch::Folder folder;
+            RunHeader with = ::header();
+            with.touching = touching;
+            const RunCounters counters;
+            RunDirectory directory(folder / "run", with, RunDirectory::Mode::fresh, counters);
+            directory.store_start(tilt ? state : read_state<2>(scratch::data("vertex100.txt")).state);
+            BOOST_TEST(scratch::read(folder / "run/equilibria.csv") == header);
+        }
     }
 }
 

@@ -25,6 +25,7 @@ struct RunHeader {
     std::vector<int> keep;              ///< equilibria that later segments start from: their states are stored
     double checkpoint_seconds = 1;      ///< shortest time between two checkpoints; 0: one after every equilibrium
     bool witnesses = false;             ///< level `arcs`: certificates/arcs.jsonl is written
+    bool touching = false;              ///< rows have this column: see `MoreColumns`
     int states_every = 0;               ///< also store every k-th equilibrium; 0: none but those needed
 };
 
@@ -43,9 +44,11 @@ enum class RunStatus { completed, failed, undecided, interrupted };
 /// The word used in files and messages.
 const char* to_string(RunStatus status);
 
-/// What the rows of some runs have besides: those of a cell whose tilt moves its third length; of a run that settles
-/// ties at first order the pairs that touch without being contacts.
-enum class MoreColumns : unsigned char { none, tilt, touching };
+/// What the rows of some runs have besides.
+struct MoreColumns {
+    bool tilt = false;     ///< of a cell whose tilt moves: its third length, `eps3` to `L3_bound`
+    bool touching = false; ///< where ties are settled at first order: pairs that touch without being contacts
+};
 
 /// Receives the records of a run and writes them as they come. Files (all of them JSON but equilibria.csv):
 /// - run.json: what was asked, by which program, and the status ("running" until `finish`);
@@ -108,7 +111,7 @@ class RunDirectory final : public RunObserver<2> {
   private:
     struct Files;
     void write_header(const std::string& status) const;
-    /// The first line of equilibria.csv, once.
+    /// The first line of equilibria.csv, once: later rows have these columns, in a resumed run too.
     void name_columns(MoreColumns more);
     /// Of the last equilibrium, unless it was written already.
     void write_checkpoint();
@@ -139,6 +142,7 @@ class RunDirectory final : public RunObserver<2> {
     };
     std::optional<Point> pending_; ///< none: checkpoint.json is up to date
     std::optional<std::chrono::steady_clock::time_point> last_checkpoint_;
+    MoreColumns columns_; ///< of equilibria.csv
     Segment goal_;
     int segment_ = 0;
     int made_ = 0;
@@ -156,7 +160,7 @@ class RunDirectory final : public RunObserver<2> {
 /// `proved`: 1 or 0; `certified`: 1 its certificate proves everything, 0 it does not, -1 none was asked for. An
 /// unbounded interval ends at inf or -inf. `x_bound`: of the error of `x` at the true vertex, rounding included.
 /// `previous` is the equilibrium that this one follows on its path (-1: the start).
-const std::vector<std::string>& equilibria_columns(MoreColumns more = MoreColumns::none);
+std::vector<std::string> equilibria_columns(MoreColumns more = {});
 
 /// One equilibrium as equilibria.csv gives it back.
 struct EquilibriumRow {

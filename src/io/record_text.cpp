@@ -7,11 +7,65 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 namespace isostat {
 
 namespace {
 
 using json::Json;
+
+/// Of every row.
+constexpr std::array common_columns{"number",
+                                    "previous",
+                                    "segment",
+                                    "sigma2",
+                                    "ratio",
+                                    "eps1",
+                                    "eps2",
+                                    "L1",
+                                    "L2",
+                                    "solid_fraction",
+                                    "arcs",
+                                    "rattlers",
+                                    "backbone",
+                                    "dofs",
+                                    "contacts",
+                                    "rank",
+                                    "h",
+                                    "k",
+                                    "held",
+                                    "sigma2_low",
+                                    "sigma2_high",
+                                    "opens_low_i",
+                                    "opens_low_j",
+                                    "opens_high_i",
+                                    "opens_high_j",
+                                    "potential",
+                                    "min_force",
+                                    "min_force_i",
+                                    "min_force_j",
+                                    "min_gap",
+                                    "min_gap_i",
+                                    "min_gap_j",
+                                    "force_bound",
+                                    "sigma_min_bound",
+                                    "balance",
+                                    "virtual_power",
+                                    "gap_residual",
+                                    "margin",
+                                    "decided_by",
+                                    "proved",
+                                    "certified",
+                                    "eps1_bound",
+                                    "eps2_bound",
+                                    "L1_bound",
+                                    "L2_bound",
+                                    "sigma2_low_bound",
+                                    "sigma2_high_bound",
+                                    "potential_bound",
+                                    "min_gap_bound",
+                                    "seconds"};
 
 /// Columns i and j of a contact: see `equilibria_columns`.
 std::string two_columns(const Contact& contact) {
@@ -127,57 +181,7 @@ std::string witness_line(const ArcRecord<2>& arc) {
 }
 
 std::vector<std::string> equilibria_columns(MoreColumns more) {
-    static const std::vector<std::string> columns{"number",
-                                                  "previous",
-                                                  "segment",
-                                                  "sigma2",
-                                                  "ratio",
-                                                  "eps1",
-                                                  "eps2",
-                                                  "L1",
-                                                  "L2",
-                                                  "solid_fraction",
-                                                  "arcs",
-                                                  "rattlers",
-                                                  "backbone",
-                                                  "dofs",
-                                                  "contacts",
-                                                  "rank",
-                                                  "h",
-                                                  "k",
-                                                  "held",
-                                                  "sigma2_low",
-                                                  "sigma2_high",
-                                                  "opens_low_i",
-                                                  "opens_low_j",
-                                                  "opens_high_i",
-                                                  "opens_high_j",
-                                                  "potential",
-                                                  "min_force",
-                                                  "min_force_i",
-                                                  "min_force_j",
-                                                  "min_gap",
-                                                  "min_gap_i",
-                                                  "min_gap_j",
-                                                  "force_bound",
-                                                  "sigma_min_bound",
-                                                  "balance",
-                                                  "virtual_power",
-                                                  "gap_residual",
-                                                  "margin",
-                                                  "decided_by",
-                                                  "proved",
-                                                  "certified",
-                                                  "eps1_bound",
-                                                  "eps2_bound",
-                                                  "L1_bound",
-                                                  "L2_bound",
-                                                  "sigma2_low_bound",
-                                                  "sigma2_high_bound",
-                                                  "potential_bound",
-                                                  "min_gap_bound",
-                                                  "seconds"};
-    std::vector<std::string> all = columns;
+    std::vector<std::string> all(common_columns.begin(), common_columns.end());
     const auto add = [&all](std::initializer_list<const char*> names) {
         all.insert(all.end() - 1, names.begin(), names.end()); // the time is last
     };

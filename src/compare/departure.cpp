@@ -67,9 +67,26 @@ class Diagnosis {
         return false;
     }
 
+    /// The exact run ends, or what it decided depends on less than the way of the grains to a rigid vertex: every
+    /// contact that the frame has besides is open there by less.
     bool tie() {
-        return after_->result.expected < 0 && !path_.end.empty() &&
-               is("tie", "the exact run ends before this load: " + path_.end);
+        const FrameResult& r = after_->result;
+        if (r.expected < 0) {
+            return !path_.end.empty() && is("tie", "the exact run ends before this load: " + path_.end);
+        }
+        if (r.counting.hyperstaticity > 0 || r.extra.empty()) {
+            return false;
+        }
+        const PathEquilibrium& e = path_.equilibria[static_cast<std::size_t>(r.expected)];
+        double widest = 0;
+        for (const Contact& contact : r.extra) {
+            widest = std::max(widest, gap(e.state.packing, contact));
+        }
+        return widest < r.distance &&
+               is("tie",
+                  fmt::format("in equilibrium {} the gaps of{} are {:.3g} at most, less than the way of the grains "
+                              "to a rigid vertex, {:.3g}: which contact closes is not told at this stiffness",
+                              e.number, names_of(r.extra), widest, r.distance));
     }
 
     /// The equilibrium that both have before; null: there is none.

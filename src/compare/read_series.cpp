@@ -21,6 +21,7 @@ namespace {
 using foreign::Boundary;
 using foreign::FileFrame;
 using foreign::FrameFile;
+using foreign::FrameHeader;
 using foreign::Line;
 using foreign::Lines;
 
@@ -34,6 +35,12 @@ std::optional<std::size_t> wall_of(std::string_view field) {
     return std::nullopt;
 }
 
+/// Where the walls of a frame are, or the sides of its cell; none: the file of disks says so.
+struct Sides {
+    std::optional<std::array<double, 4>> at; ///< left, bottom, right, top
+    double tilt = 0;                         ///< of a cell: the way along x from its lower to its upper side
+};
+
 /// The table of frames.
 class FrameTable {
   public:
@@ -45,9 +52,13 @@ class FrameTable {
         }
         where_ = fmt::format("{}:{}", manifest.frames, names.number());
         (void)required("timestep");
+        sides_ = !manifest.periodic || find("tilt") >= 0; // the bounds of a dump are not the walls
         for (const char* name : wall_names) {
-            if (!manifest.periodic) {
-                (void)required(name); // the bounds of a dump are not the walls
+            sides_ = sides_ || find(name) >= 0;
+        }
+        for (const char* name : wall_names) {
+            if (sides_) {
+                (void)required(name);
             }
         }
         if (find("sigma2") < 0 && (manifest.load == LoadKind::true_stress || find("force_top") < 0)) {
@@ -57,8 +68,8 @@ class FrameTable {
         }
     }
 
-    /// The next frame without its disks: walls and load. Nothing at the end.
-    std::optional<Frame> next(std::array<double, 4>& walls) {
+    /// The next frame without its disks: sides and load. Nothing at the end.
+    std::optional<Frame> next(Sides& sides) {
         if (lines_.only_blanks()) {
             return std::nullopt;
         }
@@ -73,8 +84,8 @@ class FrameTable {
             line.fail(line.field(step), "timestep", fmt::format("a number above {}, that of the frame before", last_));
         }
         last_ = frame.timestep;
-        for (std::size_t w = 0; w < 4 && !manifest_.periodic; ++w) {
-            walls[w] = line.number(required(wall_names[w]), wall_names[w]) * manifest_.length_factor;
+        if (sides_) {
+            sides = sides_of(line);
         }
         frame.load = load_of(line);
         return frame;
@@ -91,6 +102,17 @@ class FrameTable {
                                     where_, name));
         }
         return static_cast<std::size_t>(at);
+    }
+
+    [[nodiscard]] Sides sides_of(const Line& line) const {
+        Sides sides{std::array<double, 4>{}, 0};
+        for (std::size_t w = 0; w < 4; ++w) {
+            (*sides.at)[w] = line.number(required(wall_names[w]), wall_names[w]) * manifest_.length_factor;
+        }
+        if (const int tilt = find("tilt"); tilt >= 0 && manifest_.periodic) {
+            sides.tilt = line.number(static_cast<std::size_t>(tilt), "tilt") * manifest_.length_factor;
+        }
+        return sides;
     }
 
     [[nodiscard]] Load<2> load_of(const Line& line) const {
@@ -135,6 +157,7 @@ class FrameTable {
     Lines lines_;
     std::vector<std::string> names_;
     std::string where_;
+    bool sides_ = true; ///< it has them
     int count_ = 0;
     long last_ = -1; ///< time step
 };
@@ -144,9 +167,9 @@ class Disks {
   public:
     explicit Disks(const Manifest& manifest) : manifest_(manifest), dump_(manifest.disks, "ATOMS") {}
 
-    void read(Frame& frame, std::array<double, 4> walls) {
+    void read(Frame& frame, Sides sides) {
         const FileFrame rows = dump_.at(frame.timestep);
-        check_boundaries(rows);
+        check_boundaries(rows, sides);
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
         const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
         std::map<long, const Line*> by_id;
@@ -164,8 +187,10 @@ class Disks {
         }
         const double f = manifest_.length_factor;
         if (manifest_.periodic) {
-            walls = bounds_of_cell(rows, frame.packing);
+            make_periodic(frame.packing);
+            sides = sides.at ? sides : sides_of(rows.header);
         }
+        const std::array<double, 4> walls = sides.at.value();
         for (const auto& [number, row] : by_id) {
             const auto disk = frame.ids.size();
             if (frame.number > 0 && (disk >= ids_.size() || number != ids_[disk])) {
@@ -187,7 +212,7 @@ class Disks {
         }
         frame.packing.q.insert(frame.packing.q.end(), {walls[2] - walls[0], walls[3] - walls[1]});
         if (manifest_.periodic) {
-            frame.packing.q.push_back(rows.header.tilt * f);
+            frame.packing.q.push_back(sides.tilt);
         }
         if (frame.ids.size() < ids_.size()) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: no disk {}: expected the disks of the first frame",
@@ -204,31 +229,41 @@ class Disks {
     }
 
   private:
-    /// The bounds of the dump are the cell.
-    std::array<double, 4> bounds_of_cell(const FileFrame& rows, Packing<2>& packing) const {
+    void make_periodic(Packing<2>& packing) const {
         packing.walls = Walls<2>::none();
         packing.cell.periodic.fill(true);
         packing.cell.period_moves.fill(true);
         packing.cell.tilt_moves.fill(manifest_.tilted);
+    }
+    /// The bounds of a dump are the cell.
+    [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
         const double f = manifest_.length_factor;
-        const std::array<double, 4> box = rows.header.box.value();
-        return {box[0] * f, box[2] * f, box[1] * f, box[3] * f};
+        const std::array<double, 4> box = header.box.value();
+        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f};
     }
 
-    /// Walls, or both axes periodic: as the manifest says.
-    void check_boundaries(const FileFrame& rows) const {
+    /// Walls, or both axes periodic: as the manifest says. A cell is stated once.
+    void check_boundaries(const FileFrame& rows, const Sides& sides) const {
+        const FrameHeader& header = rows.header;
+        if (manifest_.periodic && sides.at && header.box) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: bounds of the cell here, and columns left, bottom, right, top in {}: expected "
+                                    "one of them",
+                                    dump_.where(header.line), manifest_.frames));
+        }
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
-            const bool periodic = rows.header.boundary[axis] == Boundary::periodic &&
-                                  (rows.header.box.has_value() || !manifest_.periodic);
-            if (periodic != manifest_.periodic) {
+            const Boundary boundary = header.boundary[axis];
+            const bool periodic = boundary == Boundary::periodic || (sides.at && boundary == Boundary::unknown);
+            if (manifest_.periodic ? !periodic || !(sides.at || header.box) : boundary == Boundary::periodic) {
                 throw Error(
                     ErrorKind::bad_input,
                     fmt::format(
-                        "{}: the box is {}periodic along {}: expected {}", dump_.where(rows.header.line),
+                        "{}: the box is {}periodic along {}: expected {}", dump_.where(header.line),
                         manifest_.periodic ? "not " : "", axis == 0 ? 'x' : 'y',
                         manifest_.periodic
-                            ? "periodic boundaries with bounds (a dump with pp, XYZ with Lattice; a "
-                              "table has none), the manifest has a [cell]"
+                            ? "periodic boundaries with bounds (a dump with pp, XYZ with Lattice, columns left, "
+                              "bottom, "
+                              "right, top of the frames), the manifest has a [cell]"
                             : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)"));
             }
         }
@@ -330,8 +365,8 @@ const Series& SeriesReader::series() const {
 }
 
 std::optional<Frame> SeriesReader::next() {
-    std::array<double, 4> walls{};
-    auto frame = files_->table.next(walls);
+    Sides sides;
+    auto frame = files_->table.next(sides);
     if (!frame) {
         if (!files_->any) {
             throw Error(ErrorKind::bad_input, files_->manifest.frames + ": no frames: expected at least one row");
@@ -339,7 +374,7 @@ std::optional<Frame> SeriesReader::next() {
         return std::nullopt;
     }
     files_->any = true;
-    files_->disks.read(*frame, walls);
+    files_->disks.read(*frame, sides);
     if (files_->contacts) {
         read_contacts(files_->manifest, *files_->contacts, *frame);
     }

@@ -3,11 +3,13 @@
 #include "compare/series_copy.hpp"
 
 #include <isostat/core/error.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>
 #include <fmt/format.h>
 
 #include <functional>
+#include <tuple>
 
 using namespace isostat;
 using compare::Comparison;
@@ -104,6 +106,24 @@ BOOST_AUTO_TEST_CASE(frames_of_a_loading_have_their_statuses_and_the_departure_i
     BOOST_TEST(left.stiffness_needed < 6e6);
     for (const compare::PathEquilibrium& e : result.path) {
         BOOST_TEST(e.proved);
+    }
+}
+
+/// Frames of LAMMPS, 40 disks at kn / P = 1e4, that came to rest beside the start: both have one contact for another.
+BOOST_AUTO_TEST_CASE(a_contact_that_nearly_closes_for_rigid_grains_is_a_tie_and_others_are_dynamics) {
+    for (const auto& [name, reason, words] :
+         {std::tuple("tied", "tie", "the gaps of 5-20 are 0.0018 at most"), std::tuple("moved_on", "dynamics", "")}) {
+        const std::string folder = scratch::data("departures/" + std::string(name));
+        compare::SeriesReader reader(folder + "/series.toml");
+        compare::CompareOptions options;
+        options.bundle = 0;
+        options.start = read_any_state<2>(folder + "/start.json").state;
+        const Comparison result = compare::compare(reader, options);
+        BOOST_TEST_REQUIRE(result.departure.has_value());
+        BOOST_TEST(result.departure->opened.size() == 1U);
+        BOOST_TEST(result.departure->closed.size() == 1U);
+        BOOST_TEST(result.departure->reason == reason, result.departure->words);
+        BOOST_TEST(contains(result.departure->words, words), result.departure->words);
     }
 }
 

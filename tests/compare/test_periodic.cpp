@@ -1,4 +1,5 @@
 // Series of frames of a periodic cell, made from the exact run by softening: every frame is the exact equilibrium.
+#include "compare/report.hpp"
 #include "compare/series_copy.hpp"
 
 #include <isostat/compare/compare.hpp>
@@ -11,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 using namespace isostat;
 using compare::Comparison;
@@ -46,18 +49,27 @@ class PeriodicSeries {
 
     std::string disks, contacts, frames = "timestep,sigma2\n", cell = "[cell]\n";
 
+    /// The same as tables: the frames say where the sides of the cell are.
+    [[nodiscard]] PeriodicSeries as_tables() const {
+        PeriodicSeries out = *this;
+        out.disks = disk_table_;
+        out.contacts = contact_table_;
+        out.frames = frame_table_;
+        return out;
+    }
+
     [[nodiscard]] Comparison compare() const {
-        scratch::write(folder_ / "disks.dump", disks);
-        scratch::write(folder_ / "contacts.dump", contacts);
-        scratch::write(folder_ / "frames.csv", frames);
-        scratch::write(folder_ / "series.toml",
+        scratch::write(*folder_ / "disks.dump", disks);
+        scratch::write(*folder_ / "contacts.dump", contacts);
+        scratch::write(*folder_ / "frames.csv", frames);
+        scratch::write(*folder_ / "series.toml",
                        fmt::format("format = \"isostat-series 1\"\n[files]\ndisks = \"disks.dump\"\ncontacts = "
                                    "\"contacts.dump\"\nframes = \"frames.csv\"\n[columns]\ncontact_i = "
                                    "\"i\"\ncontact_j = \"j\"\ncontact_force = \"f\"\n{}{}[law]\nkind = "
                                    "\"linear\"\nstiffness = {}\n[load]\nsigma1 = 1.0\nreference_length = [{}, {}]\n",
                                    cell, tilted_ && !cell.empty() ? "kind = \"tilted\"\n" : "", stiffness,
                                    reference_[0], reference_[1]));
-        compare::SeriesReader reader(folder_ / "series.toml");
+        compare::SeriesReader reader(*folder_ / "series.toml");
         compare::CompareOptions options;
         options.bundle = 2;
         return compare::compare(reader, options);
@@ -92,12 +104,16 @@ class PeriodicSeries {
             double x = packing.q[2 * i] - up * tilt;
             x -= std::floor((x - y / packing.length(1) * tilt) / packing.length(0)) * packing.length(0);
             disks += fmt::format("{} {} {} {}\n", i + 1, x + low_, y + low_, packing.radius[i]);
+            disk_table_ += fmt::format("{},{},{},{},{}\n", step_, i + 1, x + low_, y + low_, packing.radius[i]);
         }
         contacts += head("ENTRIES", list.size()) + "ITEM: ENTRIES i j f\n";
         for (std::size_t l = 0; l < list.size(); ++l) {
             contacts += fmt::format("{} {} {}\n", list[l].j + 1, list[l].i + 1, soft->forces[l]);
+            contact_table_ += fmt::format("{},{},{},{}\n", step_, list[l].j + 1, list[l].i + 1, soft->forces[l]);
         }
         frames += fmt::format("{},{}\n", step_, state.load.stress[1]);
+        frame_table_ += fmt::format("{},{},{},{},{},{},{}\n", step_, state.load.stress[1], low_, low_,
+                                    low_ + packing.length(0), low_ + packing.length(1), tilt);
         step_ += 100;
     }
 
@@ -105,12 +121,34 @@ class PeriodicSeries {
     long step_ = 0;
     bool tilted_ = false;
     std::array<double, 2> reference_{};
-    scratch::Folder folder_;
+    std::string disk_table_ = "timestep,id,x,y,radius\n", contact_table_ = "timestep,i,j,f\n",
+                frame_table_ = "timestep,sigma2,left,bottom,right,top,tilt\n";
+    std::shared_ptr<scratch::Folder> folder_ = std::make_shared<scratch::Folder>(); // copies write to the same
 };
 
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(compare_periodic)
+
+BOOST_AUTO_TEST_CASE(tables_of_a_periodic_cell_are_the_same_frames_as_dumps) {
+    for (const char* name : {"rect_16", "tilt_16"}) {
+        const PeriodicSeries series(name, {1, 1.3});
+        const PeriodicSeries tables = series.as_tables();
+        BOOST_TEST(compare::frames_csv(series.compare()) == compare::frames_csv(tables.compare()));
+        for (const auto& [wrong, words] :
+             {std::pair("timestep,sigma2,left,bottom,right,top,tilt", "bounds of the cell here, and columns left"),
+              std::pair("timestep,sigma2,left,bottom,right,up,tilt", "no column 'top'"),
+              std::pair("timestep,sigma2,west,south,east,north,tilt", "no column 'left'"),
+              std::pair("timestep,sigma2,west,south,east,north,lean", "expected periodic boundaries with bounds")}) {
+            PeriodicSeries bad = std::string(words).starts_with("bounds") ? series : tables;
+            bad.frames = scratch::replaced(tables.frames, "timestep,sigma2,left,bottom,right,top,tilt", wrong);
+            const auto says = [expected = words](const Error& error) {
+                return std::string(error.what()).find(expected) != std::string::npos;
+            };
+            BOOST_CHECK_EXCEPTION((void)bad.compare(), Error, says);
+        }
+    }
+}
 
 BOOST_AUTO_TEST_CASE(frames_of_the_exact_run_in_a_cell_are_the_same_and_their_forces_are_split) {
     for (const char* name : {"rect_16", "tilt_16"}) {
@@ -168,6 +206,7 @@ BOOST_AUTO_TEST_CASE(a_cell_and_its_manifest_must_agree) {
     series.cell = "[cell]\nkind = \"cubic\"\n";
     refuses("cubic");
     series.cell = "[cell]\n";
+    series.frames = "timestep,sigma2\n0,1\n";
     series.disks = scratch::replaced(series.disks, "pp pp pp", "pp ff pp");
     refuses("the box is not periodic along y");
 }

@@ -70,8 +70,11 @@ void part(Packing<2>& packing, const std::vector<Contact>& pairs, const std::vec
     }
 }
 
-/// Lower bound of the gap when every coordinate may be off by `radius`: rounding as in the centre of a certificate.
-double lower_gap(const Packing<2>& packing, const Contact& pair, double radius) {
+/// Bounds of the gap when every coordinate may be off by `radius`: rounding as in the centre of a certificate.
+struct GapBounds {
+    double lower, upper;
+};
+GapBounds gap_bounds(const Packing<2>& packing, const Contact& pair, double radius) {
     using roundoff::u;
     const double h = gap(packing, pair);
     double length = std::abs(h) + touching_distance(packing.radius, pair);
@@ -82,7 +85,8 @@ double lower_gap(const Packing<2>& packing, const Contact& pair, double radius) 
         const auto [low, high] = std::minmax_element(packing.q.begin(), packing.q.end());
         length += (2 + 2 * periods) * std::max(std::abs(*low), std::abs(*high));
     }
-    return h - (off + 16 * u * length) * (1 + 0x1p-49);
+    const double error = (off + 16 * u * length) * (1 + 0x1p-49);
+    return {h - error, h + error};
 }
 
 /// The least of these bounds, and where.
@@ -93,22 +97,93 @@ struct Least {
 Least least_gap(const Packing<2>& packing, const std::vector<Contact>& pairs, double radius) {
     Least out;
     for (const Contact& pair : pairs) {
-        const double h = lower_gap(packing, pair, radius);
+        const double h = gap_bounds(packing, pair, radius).lower;
         out = h < out.gap ? Least{h, pair} : out;
     }
     return out;
 }
 
+/// Whether a rattler overlaps grains of the list wherever it is put in a square: its square is divided until each part
+/// is within one of them. The gap to a grain changes by no more than the rattler moves.
+class Covering {
+  public:
+    /// `pairs`: of the rattler and grains of the list; `radius`: by which their coordinates may be off.
+    Covering(Packing<2> packing, std::vector<Contact> pairs, std::size_t rattler, double radius)
+        : packing_(std::move(packing)), pairs_(std::move(pairs)), rattler_(2 * rattler), radius_(radius) {}
+
+    /// False: not shown.
+    bool holds(double half_side) { return covered(packing_.q[rattler_], packing_.q[rattler_ + 1], half_side); }
+
+  private:
+    bool covered(double x, double y, double half) {
+        constexpr int most = 100'000; // parts
+        if (++parts_ > most) {
+            return false;
+        }
+        packing_.q[rattler_] = x;
+        packing_.q[rattler_ + 1] = y;
+        // To a corner; centres are rounded at most 25 times on the way here.
+        const double way = 1.4143 * half + 64 * roundoff::u * (std::abs(x) + std::abs(y));
+        if (std::any_of(pairs_.begin(), pairs_.end(),
+                        [&](const Contact& pair) { return gap_bounds(packing_, pair, radius_).upper + way < 0; })) {
+            return true;
+        }
+        const double next = half / 2;
+        if (!(next > 1e-8 * packing_.min_radius())) {
+            return false;
+        }
+        return covered(x - next, y - next, next) && covered(x + next, y - next, next) &&
+               covered(x - next, y + next, next) && covered(x + next, y + next, next);
+    }
+
+    Packing<2> packing_;
+    std::vector<Contact> pairs_;
+    std::size_t rattler_;
+    double radius_;
+    int parts_ = 0;
+};
+
+std::vector<unsigned char> marked(const Snap& snap) {
+    std::vector<unsigned char> rattles(snap.packing.radius.size(), 0);
+    for (const int i : snap.rattlers) {
+        rattles[static_cast<std::size_t>(i)] = 1;
+    }
+    return rattles;
+}
+
 } // namespace
+
+std::string without_room(const Snap& snap) {
+    const std::vector<unsigned char> rattles = marked(snap);
+    const std::vector<Contact> near = RattlerPairs(rattles).found_at(snap.packing);
+    const double half_side = snap.packing.min_radius() / 4;
+    for (const int rattler : snap.rattlers) {
+        std::vector<Contact> pairs;
+        for (const Contact& pair : near) {
+            const bool disks = pair.kind == ContactKind::disk_disk;
+            const int other = disks ? (pair.i == rattler ? pair.j : pair.i) : -1;
+            if ((pair.i == rattler || (disks && pair.j == rattler)) &&
+                (!disks || rattles[static_cast<std::size_t>(other)] == 0)) {
+                pairs.push_back(pair);
+            }
+        }
+        Covering covering(snap.packing, std::move(pairs), static_cast<std::size_t>(rattler),
+                          snap.truth.claims.vertex->radius);
+        if (covering.holds(half_side)) {
+            return fmt::format(
+                "rattler {} has no room at the vertex of the list: it overlaps wherever it is put within "
+                "{:.3g} of its place",
+                rattler, half_side);
+        }
+    }
+    return "";
+}
 
 std::string make_room(Snap& snap) {
     if (snap.rattlers.empty()) {
         return "";
     }
-    std::vector<unsigned char> rattles(snap.packing.radius.size(), 0);
-    for (const int i : snap.rattlers) {
-        rattles[static_cast<std::size_t>(i)] = 1;
-    }
+    const std::vector<unsigned char> rattles = marked(snap);
     constexpr int rounds = 20, sweeps = 25; // whether the list of pairs is complete is asked in each round
     const double radius = snap.truth.claims.vertex->radius;
     RattlerPairs pairs(rattles);

@@ -146,6 +146,15 @@ void judge(Snap& out) {
     }
 }
 
+/// Of a vertex with rattlers.
+void judge_room(Snap& out) {
+    if (const std::string failed = make_room(out); !failed.empty()) {
+        const std::string none = without_room(out);
+        out.outcome = none.empty() ? SnapOutcome::undecided : SnapOutcome::refuted;
+        out.reason = none.empty() ? failed : none;
+    }
+}
+
 } // namespace
 
 Packing<2> of_disks(const Packing<2>& packing, const std::vector<int>& disks) {
@@ -216,8 +225,7 @@ Snap snap(const SoftState& soft) {
         measure_moves(soft, out);
     }
     if (out.outcome == SnapOutcome::vertex) {
-        out.reason = make_room(out);
-        out.outcome = out.reason.empty() ? SnapOutcome::vertex : SnapOutcome::undecided;
+        judge_room(out);
     }
     return out;
 }

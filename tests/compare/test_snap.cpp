@@ -1,6 +1,7 @@
 // The vertex of a list of contacts: proved near the soft place, or refused with the reason.
 #include "compare/backbone.hpp"
 #include "compare/force_split.hpp"
+#include "compare/room.hpp"
 #include "compare/series_copy.hpp"
 #include "compare/surplus_split.hpp"
 #include "rigidity/isostatic.hpp"
@@ -231,10 +232,24 @@ BOOST_AUTO_TEST_CASE(a_rattler_without_room_is_no_vertex) {
     const Snap before = compare::snap(soft);
     BOOST_TEST_REQUIRE(!before.rattlers.empty());
     BOOST_TEST(before.cage > 0.0);
-    soft.packing.radius[static_cast<std::size_t>(before.rattlers.front())] *= 1.5;
-    const Snap after = compare::snap(soft);
-    BOOST_TEST((after.outcome == SnapOutcome::undecided));
-    BOOST_TEST(after.reason.find("no room") != std::string::npos, after.reason);
+    double& radius = soft.packing.radius[static_cast<std::size_t>(before.rattlers.front())];
+    const double fits = radius;
+    std::vector<SnapOutcome> outcomes;
+    for (double factor = 1; factor < 1.5; factor += 1.0 / 64) {
+        radius = factor * fits;
+        const Snap after = compare::snap(soft);
+        outcomes.push_back(after.outcome);
+        if (after.outcome == SnapOutcome::refuted) {
+            BOOST_TEST(after.reason.find("has no room") != std::string::npos, after.reason);
+        } else if (after.outcome == SnapOutcome::vertex) {
+            BOOST_TEST(compare::without_room(after) == "");
+        }
+    }
+    BOOST_TEST((outcomes.front() == SnapOutcome::vertex));
+    BOOST_TEST((outcomes.back() == SnapOutcome::refuted));
+    BOOST_TEST(std::is_sorted(outcomes.begin(), outcomes.end(), [](SnapOutcome a, SnapOutcome b) {
+        return a == SnapOutcome::vertex && b == SnapOutcome::refuted; // once there is no room, there is none for more
+    }));
 }
 
 BOOST_AUTO_TEST_CASE(soft_limits_approach_the_exact_one_as_one_over_the_stiffness) {

@@ -73,7 +73,7 @@ template <int Dim> bool Follower<Dim>::predict() {
     scan_.list(here_.at, chord_.contacts());
     here_.curvature =
         chord_.velocity([&](const Contact& c) { return quick_curvature(here_.at, c, here_.tangent); }, here_.fastest);
-    event_ = scan_.first_event(here_, step_limit_, !moved_);
+    event_ = scan_.first_event(here_, step_limit_, noise_, !moved_);
     return true;
 }
 

@@ -1,5 +1,6 @@
 // Arcs with known ends: a free disk rolls over a fixed one past obstacles.
 #include "motion/arc.hpp"
+#include "motion/event_scan.hpp"
 #include "motion/precise_end.hpp"
 #include "support/crafted.hpp"
 
@@ -180,6 +181,47 @@ BOOST_AUTO_TEST_CASE(a_gap_that_grazes_where_an_arc_ends_does_not_keep_it_from_i
         BOOST_TEST_REQUIRE(arc.ok(), angle << ": " << (arc.ok() ? "" : arc.failure().message()));
         BOOST_TEST(Rolling::angle(arc.value()) == angle, boost::test_tools::tolerance(1e-7));
         BOOST_TEST(arc.value().steps < 1000);
+    }
+}
+
+/// Equal disks that rest in a corner of fixed ones: to doubles their third gap is 0. That it is positive the vertex
+/// says.
+BOOST_AUTO_TEST_CASE(a_gap_of_0_to_rounding_that_an_arc_does_not_move_is_no_event) {
+    Rolling rolling;
+    rolling.stop(2.0);
+    auto& q = rolling.state.packing.q;
+    q.insert(q.end() - 2, {20, 20, 22, 20, 21, 20 + std::sqrt(3), 23, 20 + std::sqrt(3)});
+    rolling.state.packing.radius.insert(rolling.state.packing.radius.end(), 4, 1.0);
+    rolling.state.packing.fixed.insert(rolling.state.packing.fixed.end(), {1, 1, 0, 1});
+    rolling.state.load.disk_force.insert(rolling.state.load.disk_force.end(), 8, 0.0);
+    rolling.state.contacts.insert(rolling.state.contacts.end(), {pair(4, 6), pair(5, 6)});
+    rolling.push(-1, 0.1);
+    const auto arc = rolling.roll(0.1);
+    BOOST_TEST(gap(rolling.state.packing, pair(6, 7)) <= 0);
+    BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
+    BOOST_TEST((arc.value().closed == pair(2, 3)));
+    BOOST_TEST(Rolling::angle(arc.value()) == 2.0, boost::test_tools::tolerance(1e-14));
+}
+
+/// Rates of rounding, first together and then apart, make no dip; rates that are none do.
+BOOST_AUTO_TEST_CASE(a_gap_that_stays_0_to_rounding_within_a_step_does_not_dip) {
+    Packing<2> at;
+    at.walls = Walls<2>::none();
+    at.radius = {1, 1, 1};
+    at.q = {0, 0, 2, 0, 0, 5, 0, 0};
+    at.fixed = {1, 0, 0};
+    CandidateList<2> candidates = find_candidates(at, candidate_fraction);
+    const Contact opened = pair(0, 2);
+    const Contact nothing{ContactKind::held, -1, 0}; // closes
+    constexpr double step = 0.05;
+    constexpr double noise = 1e-13;
+    for (const double rate : {1e-14, 1e-4}) {
+        EventScan<2> scan(opened, ArcOptions(), candidates, {pair(0, 1)});
+        const CurveCourse<2> course{at, {0, 0, -rate, 0, 0, 1, 0, 0}, std::vector<double>(8, 0.0), 5};
+        const GapEvent event = scan.first_event(course, step, noise, true);
+        BOOST_TEST((event.contact == pair(0, 1) && event.s == 0) == (rate > noise), rate);
+        const auto dip = scan.suspicious_dip({at, at, step, nothing}, {0, 0, rate, 0, 0, 1, 0, 0}, noise);
+        BOOST_TEST(dip.has_value() == (rate > noise), rate);
     }
 }
 

@@ -35,10 +35,15 @@ Follower<Dim>::Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& powe
     for (double& c : here_.tangent) {
         c *= -origin.direction;
     }
+    if (options.precisely) {
+        chord_.be_precise();
+    }
 }
 
 template <int Dim> void Follower<Dim>::begin() {
-    if (!chord_.is_fresh()) { // the mechanism is that of a neighbouring matrix
+    if (chord_.is_precise()) {
+        failure_ = sharpen();
+    } else if (!chord_.is_fresh()) { // the mechanism is that of a neighbouring matrix
         here_.choose_fastest();
         if (auto t = chord_.tangent(here_.tangent, here_.fastest, end_tangent_accuracy)) {
             here_.tangent = std::move(*t);
@@ -428,6 +433,17 @@ template <int Dim> std::optional<Failure> Follower<Dim>::renew() {
     for (double& c : here_.tangent) {
         c *= scale;
     }
+    return chord_.is_precise() ? sharpen() : std::nullopt;
+}
+
+/// The tangent here, which double knows no better than rounding of the coordinates allows.
+template <int Dim> std::optional<Failure> Follower<Dim>::sharpen() {
+    here_.choose_fastest();
+    auto t = chord_.tangent(here_.at, here_.tangent, here_.fastest, tangent_accuracy);
+    if (!t) {
+        return Failure{FailureKind::not_converged, "the mechanism was not found in double-double"};
+    }
+    here_.tangent = std::move(*t);
     return std::nullopt;
 }
 

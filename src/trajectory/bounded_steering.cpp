@@ -83,6 +83,10 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
         fresh_.emplace(from_.structure);
         arc = attempt();
     }
+    if (!arc.ok() && arc.failure().kind == FailureKind::not_converged && !arc_options_.precisely) {
+        arc_options_.precisely = true;
+        arc = attempt();
+    }
     if (!arc.ok()) {
         return arc.failure();
     }

@@ -8,7 +8,8 @@
 
 namespace isostat {
 
-/// The arc from a vertex, with its factors or fresh ones where these serve badly. A proof that finds another contact
+/// The arc from a vertex, with its factors or fresh ones where these serve badly, and with residuals in double-double
+/// where it does not converge otherwise. A proof that finds another contact
 /// closed before, a power that is negative at the end, or nothing at all with old factors, is answered by another
 /// proposal; no vertex with fresh factors by an end in more digits; where ties are chosen also one that finds no
 /// regular vertex with fresh factors: the pair that seemed to close may only graze, and is passed by. Failures besides

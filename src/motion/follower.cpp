@@ -379,7 +379,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
     for (const Contact& pair : options_.taken_to_rest) {
         constexpr double seen = 1e-10; // of a radius: far above the rounding of a length
         if (quick_gap(here_.at, pair) < -seen * here_.at.min_radius()) {
-            return failed(FailureKind::undecided, "{} touch where the arc begins, and overlap on the way",
+            return failed(FailureKind::undecided, "{} touch and were taken not to close, but overlap on the way",
                           named<Dim>(pair));
         }
     }

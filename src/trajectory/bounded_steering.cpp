@@ -88,7 +88,11 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
         arc = attempt();
     }
     if (!arc.ok()) {
-        return arc.failure();
+        Failure failure = arc.failure();
+        if (passed_by_) { // that they graze was a guess: nothing is known of what lies beyond
+            failure.kind = FailureKind::undecided;
+        }
+        return failure;
     }
     proposed_ = true;
     if (precisely_) {
@@ -154,7 +158,8 @@ template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refuse
     } else if (!refused.vertex && !precisely_ && !next_to_ && refused.record.closed.kind != ContactKind::held) {
         precisely_ = true; // before what double takes for the end the contacts are another matrix
     } else if (may_graze(refused)) {
-        arc_options_.resting.push_back(refused.record.closed); // the gaps at the end tell whether it did
+        arc_options_.taken_to_rest.push_back(refused.record.closed); // the gaps at the end tell whether it did
+        passed_by_ = true;
     } else {
         return false;
     }

@@ -95,7 +95,7 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
         return failure;
     }
     proposed_ = true;
-    if (precisely_) {
+    if (precisely_ && !arc_options_.precisely) {
         improve_end(arc.value());
     }
     return proposal(std::move(arc.value()));
@@ -157,6 +157,8 @@ template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refuse
         arc_options_.sharp_power = true;
     } else if (!refused.vertex && !precisely_ && !next_to_ && refused.record.closed.kind != ContactKind::held) {
         precisely_ = true; // before what double takes for the end the contacts are another matrix
+    } else if (!refused.vertex && !arc_options_.precisely && !next_to_) {
+        arc_options_.precisely = true; // contacts that are nearly singular leave no end in double
     } else if (may_graze(refused)) {
         arc_options_.taken_to_rest.push_back(refused.record.closed); // the gaps at the end tell whether it did
         passed_by_ = true;

@@ -3,7 +3,6 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 #include "support/threads.hpp"
-#include "trajectory/prover.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -21,16 +20,6 @@ RunOptions with_arcs() {
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(trajectory)
-
-/// Exit status 2, not 1: nothing is refuted.
-BOOST_AUTO_TEST_CASE(what_an_iteration_or_a_rank_did_not_show_of_an_arc_is_undecided) {
-    for (const FailureKind kind : {FailureKind::not_converged, FailureKind::not_isostatic}) {
-        BOOST_TEST((not_proved(Failure{kind, "why"}).kind == FailureKind::undecided));
-    }
-    for (const FailureKind kind : {FailureKind::unbounded, FailureKind::flows, FailureKind::overlap}) {
-        BOOST_TEST((not_proved(Failure{kind, "why"}).kind == kind));
-    }
-}
 
 BOOST_AUTO_TEST_CASE(every_arc_of_a_run_is_certified_with_its_power) {
     for (const std::uint64_t seed : {2U, 5U, 7U}) {

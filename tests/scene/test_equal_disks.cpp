@@ -20,8 +20,8 @@ Failure end_of(const std::string& packing, const std::string& ties) {
     BOOST_TEST_REQUIRE(state.ok());
     RunCounters counters;
     RunObserver<2> nobody;
-    const auto outcome =
-        run_segment<2>(state.value(), segment_of(scene.programme[0], state.value().load, "s.toml"), 0, scene.run, counters, nobody);
+    const auto outcome = run_segment<2>(state.value(), segment_of(scene.programme[0], state.value().load, "s.toml"), 0,
+                                        scene.run, counters, nobody);
     return outcome.failure.value_or(Failure{FailureKind::interrupted, "completed"});
 }
 

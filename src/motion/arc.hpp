@@ -25,10 +25,12 @@ struct ArcOptions {
     /// The sign of the power at an event is read off a tangent that is solved for to the last digits: for callers who
     /// proved it negative where it was taken for positive.
     bool sharp_power = false;
+    /// Points and tangents are found with residuals in double-double: for callers to whom an arc in double failed.
+    bool precisely = false;
     std::optional<Contact> closes; ///< proved by the caller to close before the contact found otherwise: end there
     /// Pairs that touch at the start besides the contacts: those proved to separate at once (as the opened contact
-    /// does), those proved to keep their distance all along (both at rest), and those only taken to: where a step ends
-    /// they are looked at.
+    /// does), those proved to keep their distance all along (both at rest), and those only taken to, or to graze on the
+    /// way: where a step ends they are looked at.
     std::vector<Contact> leaving;
     std::vector<Contact> resting;
     std::vector<Contact> taken_to_rest;

@@ -3,6 +3,7 @@
 #include "core/dot.hpp"
 #include "core/roundoff.hpp"
 #include "motion/geometry.hpp"
+#include "verified/corrected_configuration.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,27 @@ namespace isostat {
 namespace {
 
 using roundoff::infinity;
+
+/// Rate of a gap along v (on coordinates).
+template <int Dim>
+double precise_rate(const CorrectedConfiguration<Dim, dd_real>& place, const Contact& contact,
+                    const std::vector<double>& v) {
+    std::array<dd_real, static_cast<std::size_t>(Dim)> normal;
+    normal.fill(1.0); // walls, and coordinates
+    if (contact.kind == ContactKind::disk_disk) {
+        normal = place.separation(contact);
+        const dd_real length = place.gap(contact) + place.length(contact);
+        for (dd_real& component : normal) {
+            component /= length;
+        }
+    }
+    dd_real rate = 0.0;
+    Separation<Dim>(contact, place.packing().disk_count())
+        .for_each_coordinate([&](std::size_t coordinate, std::size_t component, int multiple) {
+            rate += multiple * normal[component] * v[coordinate];
+        });
+    return rate.x[0];
+}
 
 } // namespace
 
@@ -37,6 +59,9 @@ template <int Dim> void Chord<Dim>::to_coordinates(const Vector& on_dofs, Vector
 }
 
 template <int Dim> bool Chord<Dim>::converge(Packing<Dim>& at, const Contact& row) {
+    if (precise_) {
+        return iterate_precisely(at, row);
+    }
     const Packing<Dim> guess = at;
     if (iterate(at, row, true)) {
         return true;
@@ -78,6 +103,38 @@ template <int Dim> bool Chord<Dim>::iterate(Packing<Dim>& at, const Contact& row
         // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
         if (k > 3 && size > (is_fresh() ? 0.5 : 0.9) * previous) {
             return size <= (accelerated ? 64 * rounding : 1e-9 * at.min_radius());
+        }
+        previous = size;
+    }
+    return false;
+}
+
+/// With factors of a place on the curve: of two places that a nearly singular list allows it goes to the one that is
+/// there already, or nowhere.
+template <int Dim> bool Chord<Dim>::iterate_precisely(Packing<Dim>& at, const Contact& row) {
+    constexpr double converged = 1e-19; // of a radius: coordinates are rounded to doubles afterwards
+    CorrectedConfiguration<Dim, dd_real> place(Arithmetic<dd_real>(), at);
+    double previous = infinity;
+    for (iterations_ = 1; iterations_ <= 60; ++iterations_) {
+        for (std::size_t l = 0; l < size_; ++l) {
+            approach_[l] = l == slot_ ? 0.0 : place.gap(contacts()[l]).x[0];
+        }
+        solve([&](const Vector& v) { return gap_rate(at, row, v); }, -place.gap(row).x[0]);
+        const double size = largest(y_);
+        if (!(size < infinity) || (iterations_ > 3 && size > 0.5 * previous)) {
+            return false;
+        }
+        for (std::size_t i = 0; i < y_.size(); ++i) {
+            place.correction(static_cast<int>(i)) += y_[i];
+        }
+        if (size <= converged * at.min_radius()) {
+            rest_ = place.correction();
+            for (std::size_t i = 0; i < y_.size(); ++i) {
+                const dd_real sum = dd_real(at.q[i]) + rest_[i];
+                at.q[i] = sum.x[0];
+                rest_[i] = sum.x[1];
+            }
+            return true;
         }
         previous = size;
     }
@@ -140,7 +197,20 @@ std::optional<std::vector<double>> Chord<Dim>::refined_tangent(const Vector& gue
 template <int Dim>
 std::optional<std::vector<double>> Chord<Dim>::tangent(const Packing<Dim>& at, const Vector& guess, std::size_t fastest,
                                                        double accuracy) {
-    return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_at(at, t); });
+    if (!precise_) {
+        return refined_tangent(guess, fastest, accuracy, [&](const Vector& t) { rates_at(at, t); });
+    }
+    constexpr double sharp = 1e-13; // rounding of the coordinates apart
+    Packing<Dim> there = at;
+    if (!iterate_precisely(there, Contact{ContactKind::held, static_cast<int>(fastest), 0})) {
+        return std::nullopt;
+    }
+    const CorrectedConfiguration<Dim, dd_real> place(Arithmetic<dd_real>(), there, rest_);
+    return refined_tangent(guess, fastest, std::min(accuracy, sharp), [&](const Vector& t) {
+        for (std::size_t l = 0; l < size_; ++l) {
+            approach_[l] = precise_rate(place, contacts()[l], t);
+        }
+    });
 }
 
 template <int Dim>

@@ -5,6 +5,7 @@
 #include "motion/acceleration.hpp"
 #include "motion/factorised_structure.hpp"
 #include "rigidity/isostatic.hpp"
+#include "verified/arithmetic.hpp"
 
 #include <isostat/core/result.hpp>
 
@@ -42,6 +43,11 @@ template <int Dim> class Chord {
         return y_;
     }
 
+    /// From here on points are found, and tangents there, with residuals in double-double: where the kept contacts are
+    /// nearly singular those of doubles are moved about by rounding, and no iteration ends.
+    void be_precise() { precise_ = true; }
+    [[nodiscard]] bool is_precise() const { return precise_; }
+
     /// Moves `at` to where the kept gaps vanish, down to rounding, and so does the gap of `row`; a coordinate (`held`)
     /// stays as it is. False: it did not converge, and `at` is anywhere.
     bool converge(Packing<Dim>& at, const Contact& row);
@@ -69,6 +75,7 @@ template <int Dim> class Chord {
     void to_coordinates(const Vector& on_dofs, Vector& on_coordinates) const;
     template <class Row> void solve(Row row, double target);
     bool iterate(Packing<Dim>& at, const Contact& row, bool accelerated);
+    bool iterate_precisely(Packing<Dim>& at, const Contact& row);
     void rates_at(const Packing<Dim>& at, const Vector& v);
     void rates_from_matrix(const Vector& v);
     template <class Rates>
@@ -84,6 +91,9 @@ template <int Dim> class Chord {
     Vector y_;        ///< on coordinates
     Vector mechanism_;
     Acceleration acceleration_;
+    /// What is to be added to the point that was found last. Empty: in double.
+    std::vector<dd_real> rest_;
+    bool precise_ = false;
     int iterations_ = 0;
     int factorisations_ = 0;
     int passes_ = 0;

@@ -33,9 +33,12 @@ double first_root(double h, double h1, double h2) {
 struct Cubic {
     double h0, d0, h1, d1, s;
 
-    /// Above its control points: nowhere below this.
+    /// Between its control points: nowhere below the first of these, nowhere above the second.
     [[nodiscard]] double floor() const {
         return std::min(std::min(h0, h1), std::min(h0 + d0 * s / 3, h1 - d1 * s / 3));
+    }
+    [[nodiscard]] double ceiling() const {
+        return std::max(std::max(h0, h1), std::max(h0 + d0 * s / 3, h1 - d1 * s / 3));
     }
     struct Point {
         double position, value;
@@ -155,7 +158,8 @@ template <int Dim> void EventScan<Dim>::complete() {
     }
 }
 
-template <int Dim> GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& course, double longest, bool at_start) {
+template <int Dim>
+GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& course, double longest, double noise, bool at_start) {
     gap_.resize(active_.size());
     rate_.resize(active_.size());
     GapEvent first;
@@ -183,6 +187,10 @@ template <int Dim> GapEvent EventScan<Dim>::first_event(const CurveCourse<Dim>& 
         double root = first_root(std::max(gap_[c], 0.0), rate_[c], gap.bend);
         if (gap_[c] <= 0 && !(rate_[c] > 0) && !(parts && gap.bend > 0)) {
             root = 0;
+        }
+        // 0 to rounding, and the step does not take it below: what it does no double tells.
+        if (gap_[c] <= noise && first_root(std::max(gap_[c], 0.0) + noise, rate_[c], gap.bend) > longest) {
+            root = infinity;
         }
         if (root < first.s) {
             first = {active_[c], root};
@@ -228,7 +236,8 @@ std::optional<double> EventScan<Dim>::suspicious_dip(const Step& step, const std
         const Cubic course{gap_[c], rate_[c], gap, rate, step.s};
         const bool grazes_at_event =
             step.closing.i >= 0 && std::abs(gap) <= noise && rate > 0 && course.lowest().value >= -noise;
-        if (!(rate > 0) || grazes_at_event) {
+        const bool still = course.floor() >= -noise && course.ceiling() <= noise; // no double tells that it dips
+        if (!(rate > 0) || grazes_at_event || still) {
             continue;
         }
         const auto dip = course.dip();

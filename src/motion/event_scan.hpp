@@ -38,8 +38,9 @@ template <int Dim> class EventScan {
     [[nodiscard]] double longest_step() const { return longest_; }
 
     /// The first gap that the course brings to 0 within `longest`; from here on the step begins there. At the start of
-    /// the arc those that leave are 0.
-    GapEvent first_event(const CurveCourse<Dim>& course, double longest, bool at_start);
+    /// the arc those that leave are 0. One that is 0 to `noise` and stays so within `longest` is no event: the proof of
+    /// the end judges it.
+    GapEvent first_event(const CurveCourse<Dim>& course, double longest, double noise, bool at_start);
 
     /// Where a step went and to which place. `closing`: the gap that is 0 there and is not looked at.
     struct Step {

@@ -35,10 +35,15 @@ Follower<Dim>::Follower(const ArcOrigin<Dim>& origin, const PowerLoad<Dim>& powe
     for (double& c : here_.tangent) {
         c *= -origin.direction;
     }
+    if (options.precisely) {
+        chord_.be_precise();
+    }
 }
 
 template <int Dim> void Follower<Dim>::begin() {
-    if (!chord_.is_fresh()) { // the mechanism is that of a neighbouring matrix
+    if (chord_.is_precise()) {
+        failure_ = sharpen();
+    } else if (!chord_.is_fresh()) { // the mechanism is that of a neighbouring matrix
         here_.choose_fastest();
         if (auto t = chord_.tangent(here_.tangent, here_.fastest, end_tangent_accuracy)) {
             here_.tangent = std::move(*t);
@@ -73,7 +78,7 @@ template <int Dim> bool Follower<Dim>::predict() {
     scan_.list(here_.at, chord_.contacts());
     here_.curvature =
         chord_.velocity([&](const Contact& c) { return quick_curvature(here_.at, c, here_.tangent); }, here_.fastest);
-    event_ = scan_.first_event(here_, step_limit_, !moved_);
+    event_ = scan_.first_event(here_, step_limit_, noise_, !moved_);
     return true;
 }
 
@@ -374,7 +379,7 @@ template <int Dim> std::optional<Failure> Follower<Dim>::go_on(Reached there) {
     for (const Contact& pair : options_.taken_to_rest) {
         constexpr double seen = 1e-10; // of a radius: far above the rounding of a length
         if (quick_gap(here_.at, pair) < -seen * here_.at.min_radius()) {
-            return failed(FailureKind::undecided, "{} touch where the arc begins, and overlap on the way",
+            return failed(FailureKind::undecided, "{} touch and were taken not to close, but overlap on the way",
                           named<Dim>(pair));
         }
     }
@@ -428,6 +433,17 @@ template <int Dim> std::optional<Failure> Follower<Dim>::renew() {
     for (double& c : here_.tangent) {
         c *= scale;
     }
+    return chord_.is_precise() ? sharpen() : std::nullopt;
+}
+
+/// The tangent here, which double knows no better than rounding of the coordinates allows.
+template <int Dim> std::optional<Failure> Follower<Dim>::sharpen() {
+    here_.choose_fastest();
+    auto t = chord_.tangent(here_.at, here_.tangent, here_.fastest, tangent_accuracy);
+    if (!t) {
+        return Failure{FailureKind::not_converged, "the mechanism was not found in double-double"};
+    }
+    here_.tangent = std::move(*t);
     return std::nullopt;
 }
 

@@ -65,6 +65,7 @@ template <int Dim> class Follower {
     std::optional<Failure> go_on(Reached there);
     std::optional<Failure> narrow();
     std::optional<Failure> renew();
+    std::optional<Failure> sharpen();
     Arc<Dim> finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& closed, double power);
 
     const Packing<Dim>& start_;

@@ -83,11 +83,19 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
         fresh_.emplace(from_.structure);
         arc = attempt();
     }
+    if (!arc.ok() && arc.failure().kind == FailureKind::not_converged && !arc_options_.precisely) {
+        arc_options_.precisely = true;
+        arc = attempt();
+    }
     if (!arc.ok()) {
-        return arc.failure();
+        Failure failure = arc.failure();
+        if (passed_by_) { // that they graze was a guess: nothing is known of what lies beyond
+            failure.kind = FailureKind::undecided;
+        }
+        return failure;
     }
     proposed_ = true;
-    if (precisely_) {
+    if (precisely_ && !arc_options_.precisely) {
         improve_end(arc.value());
     }
     return proposal(std::move(arc.value()));
@@ -149,8 +157,11 @@ template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refuse
         arc_options_.sharp_power = true;
     } else if (!refused.vertex && !precisely_ && !next_to_ && refused.record.closed.kind != ContactKind::held) {
         precisely_ = true; // before what double takes for the end the contacts are another matrix
+    } else if (!refused.vertex && !arc_options_.precisely && !next_to_) {
+        arc_options_.precisely = true; // contacts that are nearly singular leave no end in double
     } else if (may_graze(refused)) {
-        arc_options_.resting.push_back(refused.record.closed); // the gaps at the end tell whether it did
+        arc_options_.taken_to_rest.push_back(refused.record.closed); // the gaps at the end tell whether it did
+        passed_by_ = true;
     } else {
         return false;
     }

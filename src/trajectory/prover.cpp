@@ -1,6 +1,7 @@
 #include "trajectory/prover.hpp"
 
 #include "contact/words.hpp"
+#include "core/dot.hpp"
 #include "motion/arc.hpp"
 #include "motion/certify_arc.hpp"
 #include "trajectory/descent.hpp"
@@ -86,6 +87,26 @@ bool says_too_little(const Statics<Dim>& statics, const Enclosure& f, double str
 template <int Dim> bool overlaps_at_first_order(const Vertex<Dim>& vertex) {
     return vertex.perturbed && std::any_of(vertex.perturbed->touching.begin(), vertex.perturbed->touching.end(),
                                            [](const auto& pair) { return pair.second.negative(); });
+}
+
+/// The end as near its true vertex as the grid allows, where doubles left it farther away: the lists that follow at
+/// these coordinates may be nearly singular.
+template <int Dim> std::optional<Packing<Dim>> nearer(const Vertex<Dim>& vertex) {
+    const double far = 64 * grid_step(vertex.packing);
+    if (vertex.enclosure.distance() <= far) {
+        return std::nullopt;
+    }
+    const VertexEnclosure there =
+        enclose_vertex_double_double(vertex.packing, vertex.structure, vertex.factorisation, vertex.inverse);
+    if (there.verdict != Verdict::proved || !(largest(there.correction) > far)) {
+        return std::nullopt;
+    }
+    Packing<Dim> at = vertex.packing;
+    for (std::size_t k = 0; k < at.q.size(); ++k) {
+        at.q[k] += there.correction[k];
+    }
+    snap_to_grid(at);
+    return at;
 }
 
 /// A grid that became coarser rounds what a held coordinate is counted from, or the coordinate: then it is held
@@ -219,6 +240,13 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
     }
     proof.vertex = std::move(made.value());
     if (first_order_ != nullptr) {
+        if (auto end = arc.stays ? std::nullopt : nearer(*proof.vertex)) {
+            auto again =
+                Vertex<Dim>::make(std::move(*end), proof.vertex->structure.contacts(), at.load, bounds_, options);
+            if (again.ok()) {
+                proof.vertex = std::move(again.value());
+            }
+        }
         first_order_->attach(*proof.vertex, at);
     }
     const auto found = gaps(*proof.vertex, touch_still(from, arc));

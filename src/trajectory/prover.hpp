@@ -54,9 +54,10 @@ template <int Dim> struct EndProof {
     std::optional<Result<Description<Dim>>> description; ///< of an equilibrium only
 };
 
-/// A failure at the end of an arc, where N = N_f: a rank that is not proved full is no proof that it is smaller.
+/// A failure of an arc or at its end, where N = N_f: a rank that is not proved full is no proof that it is smaller, and
+/// an iteration that stopped short none that there is nothing.
 inline Failure not_proved(Failure failure) {
-    if (failure.kind == FailureKind::not_isostatic) {
+    if (failure.kind == FailureKind::not_isostatic || failure.kind == FailureKind::not_converged) {
         failure.kind = FailureKind::undecided;
     }
     return failure;

@@ -282,7 +282,7 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
         } else {
             recorder_.count({DecisionKind::opening, here_.opening.margin, here_.opening.rung, here_.opening.perturbed});
         }
-        return located(*failed, where(arcs_ + 1));
+        return located(not_proved(*failed), where(arcs_ + 1));
     }
     if (!refused) {
         if (!plain()) {

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 namespace isostat {
@@ -196,6 +198,39 @@ TieChoice watched(const Enclosure& gap) {
     return gap.positive() ? TieChoice::none : gap.negative() ? TieChoice::watched : TieChoice::zero;
 }
 
+/// A pair that touches where an arc ends.
+struct TouchingPair {
+    Enclosure gap;  ///< at first order
+    bool touched;   ///< before too
+    Enclosure back; ///< rate of its gap on the way back, where it did not
+};
+
+template <int Dim>
+Result<TouchingPair> touching_pair(Terms<Dim>& terms, bool chooses, const Contact& closed, const Contact& contact,
+                                   const Way& way) {
+    const Enclosure c = terms.gap(contact);
+    if (!c.decided() && !chooses) {
+        return failed(FailureKind::undecided,
+                      "{} touch where {} closes, and their first-order gap is not told from 0: {}", named<Dim>(contact),
+                      named<Dim>(closed), shown(c));
+    }
+    if (way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end()) {
+        return TouchingPair{c, true, {}};
+    }
+    // Simple roots (P3): going back opens both.
+    const Enclosure back = terms.rate(way.slot, +1, contact);
+    const Enclosure bend = terms.bend(back, way.slot, +1, contact);
+    const bool grazes = chooses && vanishes(back) && !bend.negative(); // as far as the end tells (C1 f)
+    if (!grazes && (closed.kind == ContactKind::held || !back.positive())) {
+        return failed(FailureKind::undecided,
+                      "{} touch where {} closes, but are not proved to close there: the rate of their gap is {} times "
+                      "that of the other{}; grazing is not followed at first order",
+                      named<Dim>(contact), named<Dim>(closed), shown(back),
+                      vanishes(back) ? words(", the second derivative {}", shown(bend)) : Words());
+    }
+    return TouchingPair{c, grazes, back};
+}
+
 } // namespace
 
 template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& zero, const Way& way) {
@@ -206,39 +241,34 @@ template <int Dim> Result<Arrival<Dim>> arrive(Vertex<Dim>& to, const ZeroGaps& 
     side.zero = zero;
     const Contact& closed = to.structure.contacts()[way.slot.index()];
     Terms<Dim> terms(to);
+    double first = 0;                // where on the way, of those that closed before; in eps
+    std::optional<Failure> doubtful; // of this end: another may come before
     for (const auto& [contact, order] : zero) {
-        const Enclosure c = terms.gap(contact);
-        if (!c.decided() && !chooses) {
-            return failed(FailureKind::undecided,
-                          "{} touch where {} closes, and their first-order gap is not told from 0: {}",
-                          named<Dim>(contact), named<Dim>(closed), shown(c));
+        const auto pair = touching_pair(terms, chooses, closed, contact, way);
+        if (!pair.ok()) {
+            doubtful = doubtful ? doubtful : pair.failure();
+            continue;
         }
-        bool touched = way.stays || std::find(way.resting.begin(), way.resting.end(), contact) != way.resting.end();
-        if (!touched) {
-            // Simple roots (P3): going back opens both.
-            const Enclosure back = terms.rate(way.slot, +1, contact);
-            const Enclosure bend = terms.bend(back, way.slot, +1, contact);
-            touched = chooses && vanishes(back) && !bend.negative(); // it grazes, as far as the end tells (C1 f)
-            if (!touched && (closed.kind == ContactKind::held || !back.positive())) {
-                return failed(FailureKind::undecided,
-                              "{} touch where {} closes, but are not proved to close there: the rate of "
-                              "their gap is {} times that of the other{}; grazing is not followed at first "
-                              "order",
-                              named<Dim>(contact), named<Dim>(closed), shown(back),
-                              vanishes(back) ? words(", the second derivative {}", shown(bend)) : Words());
-            }
-        }
+        const auto& [c, touched, back] = pair.value();
         const bool may_overlap = chooses && (way.stays ? way.overlapped : touched);
         if (c.negative() && !may_overlap) {
             if (touched && !way.stays) {
-                return failed(FailureKind::undecided, "{} at rest overlap at first order: {}", named<Dim>(contact),
-                              shown(c));
+                doubtful = failed(FailureKind::undecided, "{} at rest overlap at first order: {}", named<Dim>(contact),
+                                  shown(c));
+                continue;
             }
-            arrival.earlier = contact;
-            return arrival;
+            const double where = touched ? c.value : c.value / back.value; // P3
+            if (where < first) {
+                first = where;
+                arrival.earlier = contact;
+            }
+            continue;
         }
         side.touching.emplace_back(contact, c);
         arrival.settled.push_back({"gap", closed, {0, 0}, contact, c, order.exponent, order.bits, watched(c)});
+    }
+    if (doubtful && !arrival.earlier) {
+        return *doubtful;
     }
     return arrival;
 }

@@ -36,7 +36,7 @@ struct Way {
 /// Judges the pairs that touch at the end of a way: `touching` of `to` is set. Those that moved must be proved to close
 /// there, not to graze. Where ties are chosen a pair whose first-order gap is not told from 0 stays watched, and so
 /// does one that grazes, as far as its second derivative is proved positive, or touched all along, whatever its
-/// first-order gap is (C1). Success: nothing, or the pair that closed before the new contact.
+/// first-order gap is (C1). Success: nothing, or the pair that closed first of those that did before the new contact.
 template <int Dim> struct Arrival {
     std::optional<Contact> earlier;
     std::vector<TieDecision> settled;

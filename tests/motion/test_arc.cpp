@@ -1,5 +1,6 @@
 // Arcs with known ends: a free disk rolls over a fixed one past obstacles.
 #include "motion/arc.hpp"
+#include "motion/event_scan.hpp"
 #include "motion/precise_end.hpp"
 #include "support/crafted.hpp"
 
@@ -50,7 +51,7 @@ struct Rolling {
         state.load.disk_force[4] = fx;
         state.load.disk_force[5] = fy;
     }
-    Result<Arc<2>> roll(double step_fraction) {
+    Result<Arc<2>> roll(double step_fraction, bool precisely = false) {
         snap_to_grid(state.packing);
         const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
         BOOST_TEST_REQUIRE(structure.ok());
@@ -58,6 +59,7 @@ struct Rolling {
         CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
         ArcOptions options;
         options.step_fraction = step_fraction;
+        options.precisely = precisely;
         return follow_arc(ArcOrigin<2>{state.packing, structure.value(), factorisation, ContactId(1)},
                           PowerLoad<2>{&state.load, false, false}, candidates, options);
     }
@@ -181,6 +183,100 @@ BOOST_AUTO_TEST_CASE(a_gap_that_grazes_where_an_arc_ends_does_not_keep_it_from_i
         BOOST_TEST(Rolling::angle(arc.value()) == angle, boost::test_tools::tolerance(1e-7));
         BOOST_TEST(arc.value().steps < 1000);
     }
+}
+
+/// Equal disks that rest in a corner of fixed ones: to doubles their third gap is 0. That it is positive the vertex
+/// says.
+BOOST_AUTO_TEST_CASE(a_gap_of_0_to_rounding_that_an_arc_does_not_move_is_no_event) {
+    Rolling rolling;
+    rolling.stop(2.0);
+    auto& q = rolling.state.packing.q;
+    q.insert(q.end() - 2, {20, 20, 22, 20, 21, 20 + std::sqrt(3), 23, 20 + std::sqrt(3)});
+    rolling.state.packing.radius.insert(rolling.state.packing.radius.end(), 4, 1.0);
+    rolling.state.packing.fixed.insert(rolling.state.packing.fixed.end(), {1, 1, 0, 1});
+    rolling.state.load.disk_force.insert(rolling.state.load.disk_force.end(), 8, 0.0);
+    rolling.state.contacts.insert(rolling.state.contacts.end(), {pair(4, 6), pair(5, 6)});
+    rolling.push(-1, 0.1);
+    const auto arc = rolling.roll(0.1);
+    BOOST_TEST(gap(rolling.state.packing, pair(6, 7)) <= 0);
+    BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
+    BOOST_TEST((arc.value().closed == pair(2, 3)));
+    BOOST_TEST(Rolling::angle(arc.value()) == 2.0, boost::test_tools::tolerance(1e-14));
+}
+
+/// Rates of rounding, first together and then apart, make no dip; rates that are none do.
+BOOST_AUTO_TEST_CASE(a_gap_that_stays_0_to_rounding_within_a_step_does_not_dip) {
+    Packing<2> at;
+    at.walls = Walls<2>::none();
+    at.radius = {1, 1, 1};
+    at.q = {0, 0, 2, 0, 0, 5, 0, 0};
+    at.fixed = {1, 0, 0};
+    CandidateList<2> candidates = find_candidates(at, candidate_fraction);
+    const Contact opened = pair(0, 2);
+    const Contact nothing{ContactKind::held, -1, 0}; // closes
+    constexpr double step = 0.05;
+    constexpr double noise = 1e-13;
+    for (const double rate : {1e-14, 1e-4}) {
+        EventScan<2> scan(opened, ArcOptions(), candidates, {pair(0, 1)});
+        const CurveCourse<2> course{at, {0, 0, -rate, 0, 0, 1, 0, 0}, std::vector<double>(8, 0.0), 5};
+        const GapEvent event = scan.first_event(course, step, noise, true);
+        BOOST_TEST((event.contact == pair(0, 1) && event.s == 0) == (rate > noise), rate);
+        const auto dip = scan.suspicious_dip({at, at, step, nothing}, {0, 0, rate, 0, 0, 1, 0, 0}, noise);
+        BOOST_TEST(dip.has_value() == (rate > noise), rate);
+    }
+}
+
+namespace {
+
+/// A disk at rest between two fixed ones that leave it hardly any room: its contacts are parallel to 1e-7.
+struct Squeezed : Rolling {
+    std::size_t first; ///< coordinate of the two
+
+    explicit Squeezed(double slope) {
+        constexpr double apart = 4 - 1e-14;
+        stop(2.0);
+        Packing<2>& packing = state.packing;
+        first = packing.q.size() - 2;
+        packing.q.insert(packing.q.end() - 2,
+                         {-7, -7, -7 + apart * std::cos(slope), -7 + apart * std::sin(slope), 0, 0});
+        packing.radius.insert(packing.radius.end(), 3, 1.0);
+        packing.fixed.insert(packing.fixed.end(), {1, 1, 0});
+        state.load.disk_force.insert(state.load.disk_force.end(), 6, 0.0);
+        state.contacts.insert(state.contacts.end(), {pair(4, 6), pair(5, 6)});
+        push(-1, 0.1);
+        snap_to_grid(packing);
+        double* const q = &packing.q[first];
+        const long double x = static_cast<long double>(q[2]) - q[0];
+        const long double y = static_cast<long double>(q[3]) - q[1];
+        const long double square = x * x + y * y;
+        BOOST_TEST_REQUIRE(static_cast<double>(16 - square) > 1e-14);
+        const long double aside = std::sqrt((16 - square) / square) / 2; // of the line of the two
+        q[4] = static_cast<double>(q[0] + x / 2 - aside * y);
+        q[5] = static_cast<double>(q[1] + y / 2 + aside * x);
+    }
+};
+
+} // namespace
+
+/// Rounding of the gaps in double moves the disk, which is at rest.
+BOOST_AUTO_TEST_CASE(contacts_that_are_nearly_singular_are_followed_with_residuals_in_double_double) {
+    constexpr double at_rest = 1e-11;
+    int astray = 0;
+    for (int k = 0; k < 20; ++k) {
+        Squeezed squeezed(0.3 + 0.05 * k);
+        const auto moved = [&](const Arc<2>& arc) {
+            const auto along = [&](std::size_t c) { return arc.end.q[c] - squeezed.state.packing.q[c]; };
+            return std::hypot(along(squeezed.first + 4), along(squeezed.first + 5));
+        };
+        const auto in_double = squeezed.roll(0.1);
+        astray += in_double.ok() && moved(in_double.value()) < at_rest ? 0 : 1;
+        const auto arc = squeezed.roll(0.1, true);
+        BOOST_TEST_REQUIRE(arc.ok(), (arc.ok() ? "" : arc.failure().message()));
+        BOOST_TEST((arc.value().closed == pair(2, 3)));
+        BOOST_TEST(Rolling::angle(arc.value()) == 2.0, boost::test_tools::tolerance(1e-13));
+        BOOST_TEST(moved(arc.value()) < at_rest);
+    }
+    BOOST_TEST(astray > 0, "in double");
 }
 
 BOOST_AUTO_TEST_CASE(the_power_of_the_load_turns_before_the_next_contact) {

@@ -115,6 +115,21 @@ BOOST_AUTO_TEST_CASE(rows_on_a_wall_change_their_lists_where_they_are_until_the_
     }
 }
 
+/// Radii that grow from disk to disk, in either direction: each of the gaps that close together may come first.
+BOOST_AUTO_TEST_CASE(many_gaps_that_close_together_are_put_in_order_at_once) {
+    constexpr int columns = 12;
+    const PileLoads loads(columns);
+    for (const double growth : {0x1p-8, -0x1p-8}) {
+        State<2> state = pile(columns, loads.up - 1);
+        state.perturbation.emplace();
+        state.perturbation->rho = tie_direction(state.packing.radius, 1);
+        for (int i = columns; i < 2 * columns - 1; ++i) {
+            state.perturbation->rho[static_cast<std::size_t>(i)] = growth * i;
+        }
+        pile_is(follow_loads(state, loads.programme, TiePolicy::choose), columns, 1e-11);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(rows_with_radii_that_are_really_changed_go_the_same_way) {
     constexpr double eps = 1e-7;
     for (const int columns : {8, 9}) {

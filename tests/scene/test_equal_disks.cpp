@@ -1,0 +1,40 @@
+// Samples of equal disks that ended elsewhere once, numerically: they go on to where their packings end.
+#include <isostat/preparation/preparation.hpp>
+#include <isostat/scene/scene.hpp>
+#include <isostat/trajectory/programme.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+
+namespace {
+
+/// Of a loading over 30 equilibria.
+Failure end_of(const std::string& packing, const std::string& ties) {
+    const Scene scene = parse_scene("[packing]\nlaw = \"equal\"\n" + packing + "[run]\nties = \"" + ties +
+                                        "\"\n[[programme]]\ndo = \"up\"\nequilibria = 30\n",
+                                    "s.toml", "");
+    PreparationReport<2> report;
+    auto state = prepare<2>(scene.preparation, report);
+    BOOST_TEST_REQUIRE(state.ok());
+    RunCounters counters;
+    RunObserver<2> nobody;
+    const auto outcome = run_segment<2>(state.value(), segment_of(scene.programme[0], state.value().load, "s.toml"), 0,
+                                        scene.run, counters, nobody);
+    return outcome.failure.value_or(Failure{FailureKind::interrupted, "completed"});
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(scene)
+
+/// Ends that are nearly singular, to 1e-11: found with residuals in double-double.
+BOOST_AUTO_TEST_CASE(nearly_equal_disks_are_followed_past_ends_that_are_nearly_singular) {
+    for (const char* const seed : {"seed = 5\n", "seed = 17\n"}) {
+        const Failure end = end_of(std::string("disks = 100\njitter = 1e-9\n") + seed, "stop");
+        BOOST_TEST((end.kind == FailureKind::cap_reached), seed << end.message());
+    }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,60 @@
+// What becomes of an arc that was steered badly, or not at all.
+#include "support/prepared.hpp"
+#include "trajectory/bounded_steering.hpp"
+#include "trajectory/prover.hpp"
+
+#include <boost/test/unit_test.hpp>
+
+using namespace isostat;
+
+BOOST_AUTO_TEST_SUITE(trajectory)
+
+/// Exit status 2, not 1: nothing is refuted.
+BOOST_AUTO_TEST_CASE(what_an_iteration_or_a_rank_did_not_show_of_an_arc_is_undecided) {
+    for (const FailureKind kind : {FailureKind::not_converged, FailureKind::not_isostatic}) {
+        BOOST_TEST((not_proved(Failure{kind, "why"}).kind == FailureKind::undecided));
+    }
+    for (const FailureKind kind : {FailureKind::unbounded, FailureKind::flows, FailureKind::overlap}) {
+        BOOST_TEST((not_proved(Failure{kind, "why"}).kind == kind));
+    }
+}
+
+/// Where ties are settled other lists follow at the coordinates of an end, and some are nearly singular.
+BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_where_ties_are_settled) {
+    constexpr double badly = 1e-11;
+    State<2> state = prepared(12, 1);
+    const FirstOrderSide<2> side(state, 1, true);
+    RunOptions options;
+    options.ties = TiePolicy::choose;
+    Prover<2> prover(options, &side);
+    prover.start_at(state.packing);
+    const LimitLoad<2> at{state.load};
+    const auto vertex = prover.vertex(state.packing, state.contacts, at);
+    BOOST_TEST_REQUIRE(vertex.ok());
+    int arcs = 0;
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        Opening opening;
+        opening.contact = ContactId(l);
+        BoundedSteering<2> steering(vertex.value(), {opening, ArcKind::limit, 1, &at.load, {}}, Departure<2>{}, 0.1,
+                                    prover.candidates());
+        auto arc = steering.propose();
+        if (!arc.ok() || arc.value().record.power_turn) {
+            continue;
+        }
+        ArcProposal<2>& proposal = arc.value();
+        const Packing<2> end = proposal.end;
+        proposal.end.q[0] += badly;
+        snap_to_grid(proposal.end);
+        proposal.contacts = IsostaticStructure<2>::exchange(vertex.value()->structure, proposal.end, opening.contact,
+                                                            proposal.record.closed);
+        const ArcProof<2> proof = prover.prove(*vertex.value(), std::move(proposal), opening, at);
+        BOOST_TEST_REQUIRE((proof.vertex != nullptr));
+        for (std::size_t k = 0; k < end.q.size(); ++k) {
+            BOOST_TEST(std::abs(proof.vertex->packing.q[k] - end.q[k]) < 0.01 * badly);
+        }
+        ++arcs;
+    }
+    BOOST_TEST(arcs > 5);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

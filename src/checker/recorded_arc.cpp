@@ -31,7 +31,7 @@ double multiplier(const State<2>& state, const Solver& solver, std::size_t conta
 } // namespace
 
 bool exchanges_list(const TieRecord& tie) {
-    return tie.what == "second order";
+    return tie.what == "second order" || tie.what == "end";
 }
 
 std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event) {

@@ -304,7 +304,7 @@ class Replay {
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
         const auto list = list_that_opens(*here_.state, event);
-        if (!expect(list.has_value(), event.where, "an exchange of contacts at second order that cannot be")) {
+        if (!expect(list.has_value(), event.where, "an exchange of contacts in the list that cannot be")) {
             return {};
         }
         const std::vector<Contact>& contacts = *list;
@@ -331,7 +331,7 @@ class Replay {
                 continue;
             }
             if (!expect(here_.first != nullptr, event.where,
-                        "an exchange at second order without a direction of radii") ||
+                        "an exchange of contacts in the list without a direction of radii") ||
                 !judged(check_exchange(here_, tie, change.position), event.where)) {
                 return false;
             }

@@ -24,8 +24,8 @@ const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::
 Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, std::size_t chosen,
                         const ChoiceRule& rule);
 
-/// An exchange of the list where a pair that touches would overlap at second order when `opened` opens (C3; K23):
-/// `place` has the list before it.
+/// An exchange of the list before `opened` opens, where a pair that touches would overlap at second order, or rests
+/// (C3, C5; K23): `place` has the list before it.
 Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened);
 
 /// A pair that is taken to keep touching when `opened` opens (C4; K25): neither rate nor second derivative of its gap

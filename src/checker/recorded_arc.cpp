@@ -31,7 +31,7 @@ double multiplier(const State<2>& state, const Solver& solver, std::size_t conta
 } // namespace
 
 bool exchanges_list(const TieRecord& tie) {
-    return tie.what == "second order";
+    return tie.what == "second order" || tie.what == "end";
 }
 
 std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event) {
@@ -90,13 +90,11 @@ Followed follow(const ArcStart& from, const EventRecord& event, const Opening& o
         at.q = q;
         return load_at(load, at, opening.rattles);
     };
+    constexpr int finest = 2; // two branches of the curve may be near each other
+    motion.zooms = slowly ? 3 : 0;
     Followed followed;
-    if (!slowly) {
-        followed = follow(from.state, motion);
-    }
-    if (!followed.end) {
-        motion.step /= 16;
-        motion.zooms = slowly ? 3 : 0;
+    for (int finer = slowly ? 1 : 0; finer <= finest && !followed.end; ++finer) {
+        motion.step = std::ldexp(Motion().step, -4 * finer);
         followed = follow(from.state, motion);
     }
     return followed;

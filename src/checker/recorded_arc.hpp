@@ -22,8 +22,8 @@ struct ArcStart {
     std::vector<Contact> touching{}; ///< pairs that touch there without being contacts
 };
 
-/// Before a contact opens, lists may have been exchanged where they are (C3, proofs/degenerate.md): by entries of this
-/// kind.
+/// Before a contact opens, lists may have been exchanged where they are (C3, C5, proofs/degenerate.md): by entries of
+/// this kind.
 bool exchanges_list(const TieRecord& tie);
 /// The list with which the contact opens; nothing: the record names what cannot be exchanged.
 std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event);
@@ -31,9 +31,9 @@ std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const
 /// How the record says that its arc begins, as far as doubles tell; nothing: something is unusual.
 std::optional<Opening> opening_of(const ArcStart& from, const EventRecord& event);
 
-/// From the opening to the end that the record names; once more with steps a sixteenth as long where that end was not
-/// found. `slowly`: only with those, and shorter ones near the end.
-/// \pre `event.closed` names a contact of the packing.
+/// From the opening to the end that the record names; where that was not found with steps a sixteenth as long, then
+/// with a sixteenth of these. `slowly`: only with those, and shorter ones near the end. \pre `event.closed` names a
+/// contact of the packing.
 Followed follow(const ArcStart& from, const EventRecord& event, const Opening& opening, bool slowly = false);
 
 } // namespace isostat::checker

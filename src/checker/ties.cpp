@@ -128,7 +128,7 @@ struct Arc {
 Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened) {
     const auto wrong = [&](const std::string& what) {
         return Objection{true,
-                         fmt::format("{} enters the list at second order for {}: {}", tie.contact, tie.against, what)};
+                         fmt::format("{} enters the list for {} ('{}'): {}", tie.contact, tie.against, tie.what, what)};
     };
     const auto pair = std::find_if(place.touching.begin(), place.touching.end(),
                                    [&](const Gap& gap) { return to_string<2>(gap.pair) == tie.contact; });
@@ -144,18 +144,21 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
     }
     const Range bend = velocities.bend(pair->pair, opened, motion);
     const Range share = velocities.gap_rate(pair->pair, velocities.opening(*leaves, +1));
-    if (bend.positive() || share.negative()) {
+    const bool overlaps = tie.what == "second order"; // else it rests
+    const Range& first = overlaps ? bend : rate;
+    if (bend.positive() || (bend.negative() && !overlaps) || share.negative()) {
         return wrong(fmt::format("second derivative of its gap in {}, share in {}", shown(bend), shown(share)));
     }
-    if (!bend.negative() || !share.positive()) {
-        return Objection{false, fmt::format("{} enters the list at second order, its second derivative in {}, share in "
-                                            "{}: not told from 0",
-                                            tie.contact, shown(bend), shown(share))};
+    if ((overlaps && !bend.negative()) || !share.positive()) {
+        return Objection{false, fmt::format("{} enters the list ('{}'), its second derivative in {}, share in {}: not "
+                                            "told from 0",
+                                            tie.contact, tie.what, shown(bend), shown(share))};
     }
     if (!is_finite(tie.first, tie.first_bound) || !is_finite(tie.other, tie.other_bound) ||
-        !meets(bend, Rational(tie.first), tie.first_bound) || !meets(share, Rational(tie.other), tie.other_bound)) {
-        return wrong(fmt::format("second derivative {} +- {} found in {}, share {} +- {} found in {}", tie.first,
-                                 tie.first_bound, shown(bend), tie.other, tie.other_bound, shown(share)));
+        !meets(first, Rational(tie.first), tie.first_bound) || !meets(share, Rational(tie.other), tie.other_bound)) {
+        return wrong(fmt::format("{} {} +- {} found in {}, share {} +- {} found in {}",
+                                 overlaps ? "second derivative" : "rate", tie.first, tie.first_bound, shown(first),
+                                 tie.other, tie.other_bound, shown(share)));
     }
     return {};
 }

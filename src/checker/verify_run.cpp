@@ -74,6 +74,10 @@ class Replay {
         }
     }
 
+    /// How ends of arcs are looked for: in steps, in small steps where these find an end, in either, and then proved to
+    /// be on the way.
+    enum class Pace : unsigned char { fast, slow, certain };
+
     /// True: proved. False: left undecided and noted, or wrong and stopped.
     bool judged(const Objections& objection, const std::string& where) {
         if (!objection) {
@@ -116,8 +120,9 @@ class Replay {
         }
     }
 
-    /// What contradicts a row, or an arc towards it, is believed only where every arc from the last stored state on is
-    /// proved to end where it was found to: steps in double may have led to another vertex of the same contacts.
+    /// What contradicts a row, or an arc towards it, is looked at again in small steps: steps in double may have led to
+    /// another vertex of the same contacts. It is believed only where every arc from the last stored state on is proved
+    /// to end where it was found to.
     void again(int number, const RunVerification& before) {
         const std::string seen = std::exchange(result_.wrong, {});
         std::vector<int> rows{number};
@@ -125,15 +130,10 @@ class Replay {
              k = previous_of(k)) {
             rows.push_back(k);
         }
-        certain_ = true;
-        here_number_ = -1; // from the state that is kept
-        for (auto row = rows.rbegin(); row != rows.rend() && !stopped(); ++row) {
-            result_ = before;
-            event_ = reached_[static_cast<std::size_t>(*row)].first_event;
-            arcs_here_ = 0;
-            equilibrium(records_.equilibria[static_cast<std::size_t>(*row)]);
+        if (!replayed({number}, Pace::slow, before)) {
+            result_.wrong.clear();
+            replayed(rows, Pace::certain, before);
         }
-        certain_ = false;
         if (!stopped() && result_.undecided.size() > before.undecided.size()) {
             leave(
                 records_.equilibria[static_cast<std::size_t>(number)].where,
@@ -141,6 +141,21 @@ class Replay {
                     "steps in double ended where the records seem wrong ({}), but not provably at the ends of the arcs",
                     seen));
         }
+    }
+
+    /// Rows once more, the last one first in the list, from the state before them that is kept. True: nothing is wrong
+    /// or undecided.
+    bool replayed(const std::vector<int>& rows, Pace pace, const RunVerification& before) {
+        pace_ = pace;
+        here_number_ = -1;
+        for (auto row = rows.rbegin(); row != rows.rend() && !stopped(); ++row) {
+            result_ = before;
+            event_ = reached_[static_cast<std::size_t>(*row)].first_event;
+            arcs_here_ = 0;
+            equilibrium(records_.equilibria[static_cast<std::size_t>(*row)]);
+        }
+        pace_ = Pace::fast;
+        return !stopped() && result_.undecided.size() == before.undecided.size();
     }
 
     [[nodiscard]] int previous_of(int number) const {
@@ -278,10 +293,11 @@ class Replay {
         const bool stays =
             std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
         const bool proved = !stays && records_.certified_arcs && prove_way_to(next, event, *change);
-        const Objections open = proved     ? Objections()
-                                : stays    ? stay(next, event, *change)
-                                : certain_ ? arrive_certainly(next, event, *change)
-                                           : arrive(next, event, *change, false);
+        const Objections open = proved                   ? Objections()
+                                : stays                  ? stay(next, event, *change)
+                                : pace_ == Pace::certain ? arrive_certainly(next, event, *change)
+                                : pace_ == Pace::slow    ? arrive_slowly(next, event, *change)
+                                                         : arrive(next, event, *change, false);
         if (!check_arrival(base.state ? base : here_, next, event, *change, open)) {
             return false;
         }
@@ -304,7 +320,7 @@ class Replay {
         const std::optional<Contact> opened = contact_named(event.opened, here_.state->packing);
         const std::optional<Contact> closed = contact_named(event.closed, here_.state->packing);
         const auto list = list_that_opens(*here_.state, event);
-        if (!expect(list.has_value(), event.where, "an exchange of contacts at second order that cannot be")) {
+        if (!expect(list.has_value(), event.where, "an exchange of contacts in the list that cannot be")) {
             return {};
         }
         const std::vector<Contact>& contacts = *list;
@@ -331,7 +347,7 @@ class Replay {
                 continue;
             }
             if (!expect(here_.first != nullptr, event.where,
-                        "an exchange at second order without a direction of radii") ||
+                        "an exchange of contacts in the list without a direction of radii") ||
                 !judged(check_exchange(here_, tie, change.position), event.where)) {
                 return false;
             }
@@ -415,6 +431,12 @@ class Replay {
         }
         next = std::move(arrival.place);
         return std::move(arrival.open);
+    }
+
+    /// The same in small steps, if these find an end.
+    Objections arrive_slowly(Place& next, const EventRecord& event, const Change& change) {
+        Objections open = arrive(next, event, change, true);
+        return next.state ? open : arrive(next, event, change, false);
     }
 
     /// The same, at a vertex that is proved to be where the arc ends if it ends with what the record says.
@@ -528,7 +550,7 @@ class Replay {
     };
     std::vector<Reached> reached_; ///< by number
     double coarsest_ = 0;          ///< largest step of the grids of the configurations so far
-    bool certain_ = false;         ///< ends of arcs that steps in double lead to are proved to be on the way
+    Pace pace_ = Pace::fast;
 };
 
 } // namespace

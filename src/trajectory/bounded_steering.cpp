@@ -144,8 +144,9 @@ template <int Dim> bool BoundedSteering<Dim>::went_too_far(const ArcProof<Dim>& 
 
 template <int Dim> bool BoundedSteering<Dim>::may_graze(const ArcProof<Dim>& refused) const {
     const Contact& closed = refused.record.closed;
-    return !refused.vertex && !next_to_ && from_.perturbed && from_.perturbed->statics.chooses() &&
-           closed.kind != ContactKind::held && closed != opened_ && !arc_options_.closes;
+    return !refused.vertex && !refused.list_for_end && !next_to_ && from_.perturbed &&
+           from_.perturbed->statics.chooses() && closed.kind != ContactKind::held && closed != opened_ &&
+           !arc_options_.closes;
 }
 
 template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refused) {

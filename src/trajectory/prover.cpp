@@ -236,6 +236,9 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
     auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, options);
     if (!made.ok()) {
+        if (from.perturbed && from.perturbed->statics.chooses() && !arc.stays) {
+            proof.list_for_end = list_for_the_end(from, arc, at.stress());
+        }
         return at_end(not_proved(made.failure()));
     }
     proof.vertex = std::move(made.value());

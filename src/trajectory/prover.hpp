@@ -6,6 +6,7 @@
 #include "trajectory/first_order_side.hpp"
 #include "trajectory/kept_candidates.hpp"
 #include "trajectory/record.hpp"
+#include "trajectory/second_order.hpp"
 #include "trajectory/steering.hpp"
 #include "trajectory/ties.hpp"
 #include "trajectory/vertex.hpp"
@@ -31,6 +32,7 @@ template <int Dim> struct ArcProof {
     ArcRecord<Dim> record;
     std::vector<Decision> decisions;             ///< that were made
     std::shared_ptr<Vertex<Dim>> vertex;         ///< the end; null: nothing was proved of it
+    std::optional<ListExchange> list_for_end;    ///< its contacts are dependent: with this list before the arc not so
     std::optional<Contact> closed_before;        ///< the arc does not end there: this one closed first
     bool reached = false;                        ///< no gap is closed before
     std::optional<Failure> failure;              ///< what is not proved of the arc

@@ -10,6 +10,12 @@
 
 namespace isostat {
 
+namespace {
+
+constexpr std::size_t most_exchanges = 1000; ///< of lists at one place
+
+} // namespace
+
 template <int Dim> void Standing<Dim>::move_to(std::shared_ptr<Vertex<Dim>> to, const Opening& opens) {
     const ArcKind begins = kind_of(to->structure.contacts()[opens.contact.index()], opens.infinitesimal);
     *this = {std::move(to), opens, begins};
@@ -140,10 +146,10 @@ template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steer
     ahead_ = floats() && !plain();
     if (!floats()) {
         if (arcs_ == 0) {
-            take_log(*here_.vertex, start.settled);
+            take_log(*here_.vertex, here_.settled);
         }
         auto departure = depart();
-        start.settled.insert(start.settled.end(), here_.settled.begin(), here_.settled.end());
+        start.settled = here_.settled;
         return std::make_unique<BoundedSteering<Dim>>(here_.vertex, std::move(start), std::move(departure),
                                                       options().step_fraction, prover_.candidates());
     }
@@ -154,7 +160,6 @@ template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steer
 
 /// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
 template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
-    constexpr std::size_t most_exchanges = 1000;
     if (!here_.vertex->perturbed || here_.vertex->perturbed->touching.empty()) {
         return Departure<Dim>{};
     }
@@ -172,13 +177,21 @@ template <int Dim> Result<Departure<Dim>> Rearrangement<Dim>::depart() {
         if (!exchange.ok()) {
             return exchange.failure();
         }
-        auto next = prover_.exchange(*here_.vertex, exchange.value(), at_);
-        if (!next.ok()) {
-            return next.failure();
+        if (auto failure = relist(exchange.value())) {
+            return *failure;
         }
-        here_.vertex = std::move(next.value());
-        here_.settled.push_back(exchange.value().decision);
     }
+}
+
+/// The same place with another list.
+template <int Dim> std::optional<Failure> Rearrangement<Dim>::relist(const ListExchange& exchange) {
+    auto next = prover_.exchange(*here_.vertex, exchange, at_);
+    if (!next.ok()) {
+        return next.failure();
+    }
+    here_.vertex = std::move(next.value());
+    here_.settled.push_back(exchange.decision);
+    return std::nullopt;
 }
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::propose(Proofs& proofs) {
@@ -292,6 +305,14 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
     }
     if (steering_->revise(*refused)) {
         count_all(refused->work);
+        return std::nullopt;
+    }
+    if (refused->list_for_end && here_.settled.size() < most_exchanges) {
+        count_all(refused->work);
+        steering_.reset();
+        if (auto failure = relist(*refused->list_for_end)) {
+            return located(*failure, where(arcs_ + 1));
+        }
         return std::nullopt;
     }
     if (refused->next) {

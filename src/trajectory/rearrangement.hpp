@@ -72,6 +72,7 @@ template <int Dim> class Rearrangement {
     [[nodiscard]] std::optional<Failure> cap() const;
     std::unique_ptr<Steering<Dim>> make_steering();
     Result<Departure<Dim>> depart();
+    std::optional<Failure> relist(const ListExchange& exchange);
     using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
     std::optional<Failure> propose(Proofs& proofs);
     static std::optional<ArcProof<Dim>> unproved(ArcProposal<Dim>& arc);

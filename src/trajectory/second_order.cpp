@@ -1,7 +1,10 @@
 #include "trajectory/second_order.hpp"
 
+#include "contact/separation.hpp"
 #include "contact/words.hpp"
 #include "statics/rule_key.hpp"
+
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +21,18 @@ struct Sharer {
 };
 
 /// With rattlers that move the infinitesimal loads decide, and the finite ones only among contacts that bear these.
+/// `may_leave`: per contact.
 template <int Dim>
-std::vector<Sharer> sharers(const Vertex<Dim>& from, const Opening& opening, const Contact& pair, double stress) {
+std::vector<Sharer> sharers(const Vertex<Dim>& from, const Opening& opening, const Contact& pair, double stress,
+                            const std::vector<bool>& may_leave) {
     constexpr double seen = 1e-8; // a share that is not: another contact gives way
     const std::vector<double> shares = from.perturbed->first.shares(pair);
     std::vector<Sharer> all;
     bool rattles = false;
     for (std::size_t l = 0; l < shares.size(); ++l) {
         const ContactId id(l);
-        if (id == opening.contact || shares[l] < seen || from.structure.contacts()[l].kind == ContactKind::held) {
+        if (id == opening.contact || shares[l] < seen || !may_leave[l] ||
+            from.structure.contacts()[l].kind == ContactKind::held) {
             continue;
         }
         const Enclosure share = from.perturbed->first.rate(id, +1, pair);
@@ -46,18 +52,10 @@ std::vector<Sharer> sharers(const Vertex<Dim>& from, const Opening& opening, con
     return all;
 }
 
-} // namespace
-
+/// Of those the one that bears least; of quotients that are not told apart the first by name. \pre there is one
 template <int Dim>
-Result<ListExchange> give_way(const Vertex<Dim>& from, const Opening& opening, const BentPair& bent, double stress) {
-    const std::vector<Sharer> all = sharers(from, opening, bent.pair, stress);
+ListExchange exchange_for(const Vertex<Dim>& from, const std::vector<Sharer>& all, TieDecision decision) {
     const auto& contacts = from.structure.contacts();
-    if (all.empty()) {
-        return failed(FailureKind::undecided,
-                      "{} touch without being a contact, and would overlap when {} opens, at second order; no contact "
-                      "is proved to give way",
-                      named<Dim>(bent.pair), named<Dim>(contacts[opening.contact.index()]));
-    }
     const auto unbeaten = [&](const Sharer& a) {
         return std::none_of(all.begin(), all.end(),
                             [&](const Sharer& b) { return (a.bears() - b.bears()).positive(); });
@@ -67,13 +65,99 @@ Result<ListExchange> give_way(const Vertex<Dim>& from, const Opening& opening, c
     const auto first = std::min_element(least.begin(), least.end(), [&](const Sharer& a, const Sharer& b) {
         return contacts[a.contact.index()] < contacts[b.contact.index()];
     });
-    const double zero = std::abs(bent.rate.value) + bent.rate.radius;
-    TieDecision decision{"second order", bent.pair,       bent.bend, contacts[first->contact.index()],
-                         first->share,   std::log2(zero), 0};
+    decision.against = contacts[first->contact.index()];
+    decision.other = first->share;
     decision.choice = least.size() > 1 ? TieChoice::names : TieChoice::none;
-    return ListExchange{first->contact, bent.pair, std::move(decision)};
+    return ListExchange{first->contact, decision.chosen, std::move(decision)};
+}
+
+/// Rates of gaps, a row for each contact; nothing for walls that cannot move.
+template <int Dim>
+Eigen::MatrixXd rates_of(const Packing<Dim>& at, const DofMap<Dim>& dofs, const std::vector<Contact>& contacts) {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(contacts.size()), dofs.dof_count());
+    for (std::size_t l = 0; l < contacts.size(); ++l) {
+        const GapGradient<Dim> g = gap_gradient(at, contacts[l]);
+        for (std::size_t k = 0; k < static_cast<std::size_t>(g.count); ++k) {
+            const int dof = dofs.dof_of(static_cast<std::size_t>(g.coordinate[k]));
+            if (dof >= 0) {
+                rows(static_cast<Eigen::Index>(l), dof) = g.value[k];
+            }
+        }
+    }
+    return rows;
+}
+
+/// x with m x = 0 as far as doubles tell, in columns, the largest entry of each 1.
+Eigen::MatrixXd kernel_of(const Eigen::MatrixXd& m) {
+    constexpr double dependent = 1e-6; // double places an end with dependent contacts no better
+    Eigen::FullPivLU<Eigen::MatrixXd> lu(m);
+    lu.setThreshold(dependent);
+    if (lu.isInvertible()) {
+        return Eigen::MatrixXd(m.rows(), 0);
+    }
+    Eigen::MatrixXd x = lu.kernel();
+    for (Eigen::Index k = 0; k < x.cols(); ++k) {
+        x.col(k) /= x.col(k).cwiseAbs().maxCoeff();
+    }
+    return x;
+}
+
+/// The rows that are not 0.
+std::vector<bool> not_zero(const Eigen::MatrixXd& m) {
+    constexpr double seen = 1e-3; // a guess: another row serves as well
+    std::vector<bool> is;
+    for (Eigen::Index k = 0; k < m.rows(); ++k) {
+        is.push_back(m.row(k).cwiseAbs().maxCoeff() > seen);
+    }
+    return is;
+}
+
+} // namespace
+
+template <int Dim>
+Result<ListExchange> give_way(const Vertex<Dim>& from, const Opening& opening, const BentPair& bent, double stress) {
+    const auto& contacts = from.structure.contacts();
+    const std::vector<Sharer> all = sharers(from, opening, bent.pair, stress, std::vector<bool>(contacts.size(), true));
+    if (all.empty()) {
+        return failed(FailureKind::undecided,
+                      "{} touch without being a contact, and would overlap when {} opens, at second order; no contact "
+                      "is proved to give way",
+                      named<Dim>(bent.pair), named<Dim>(contacts[opening.contact.index()]));
+    }
+    const double zero = std::abs(bent.rate.value) + bent.rate.radius;
+    return exchange_for(from, all, {"second order", bent.pair, bent.bend, {}, {}, std::log2(zero), 0});
+}
+
+template <int Dim>
+std::optional<ListExchange> list_for_the_end(const Vertex<Dim>& from, const ArcProposal<Dim>& arc, double stress) {
+    constexpr std::size_t most_contacts = 1000; // of a dense matrix
+    const ContactId opened = arc.opening.contact;
+    std::vector<Contact> contacts = from.structure.contacts();
+    if (contacts[opened.index()].kind == ContactKind::held || contacts.size() > most_contacts) {
+        return {};
+    }
+    contacts[opened.index()] = arc.record.closed;
+    const Eigen::MatrixXd rates = rates_of(arc.end, from.structure.dofs(), contacts);
+    const Eigen::MatrixXd motions = kernel_of(rates);
+    if (motions.cols() == 0) {
+        return {};
+    }
+    const std::vector<bool> may_leave = not_zero(kernel_of(rates.transpose())); // they bear a self-stress
+    std::vector<Contact> resting = arc.resting;
+    resting.insert(resting.end(), arc.taken_to_rest.begin(), arc.taken_to_rest.end());
+    std::sort(resting.begin(), resting.end());
+    const std::vector<bool> holds = not_zero(rates_of(arc.end, from.structure.dofs(), resting) * motions);
+    for (std::size_t m = 0; m < resting.size(); ++m) {
+        const auto all = holds[m] ? sharers(from, arc.opening, resting[m], stress, may_leave) : std::vector<Sharer>();
+        if (!all.empty()) {
+            const Enclosure rate = from.perturbed->first.rate(opened, +1, resting[m]);
+            return exchange_for(from, all, {"end", resting[m], rate, {}, {}, 0, 0});
+        }
+    }
+    return {};
 }
 
 template Result<ListExchange> give_way<2>(const Vertex<2>&, const Opening&, const BentPair&, double);
+template std::optional<ListExchange> list_for_the_end<2>(const Vertex<2>&, const ArcProposal<2>&, double);
 
 } // namespace isostat

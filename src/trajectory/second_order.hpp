@@ -1,8 +1,9 @@
 #pragma once
 /// \file
-/// Lists exchanged where a pair that touches would overlap at second order (C3, proofs/degenerate.md). Private to the
-/// room.
+/// Lists exchanged before a contact opens: where a pair that touches would overlap at second order, and where contacts
+/// would be dependent at the end of the arc (C3, C5, proofs/degenerate.md). Private to the room.
 
+#include "trajectory/steering.hpp"
 #include "trajectory/vertex.hpp"
 
 namespace isostat {
@@ -29,6 +30,14 @@ struct ListExchange {
 template <int Dim>
 Result<ListExchange> give_way(const Vertex<Dim>& from, const Opening& opening, const BentPair& bent, double stress);
 
+/// Another list for an arc that was followed and whose contacts are dependent where it ends, as far as doubles tell: a
+/// pair that rests, or is taken to, takes the place of a contact that bears a self-stress there. One exchange; the rank
+/// grows by 1. The first pair by name that can; what gives way to it is chosen as in `give_way`. Nothing: no pair does,
+/// a held coordinate opens, or there are more than 1000 contacts. Cost: two dense factorisations, and of `give_way`.
+template <int Dim>
+std::optional<ListExchange> list_for_the_end(const Vertex<Dim>& from, const ArcProposal<Dim>& arc, double stress);
+
+extern template std::optional<ListExchange> list_for_the_end<2>(const Vertex<2>&, const ArcProposal<2>&, double);
 extern template Result<ListExchange> give_way<2>(const Vertex<2>&, const Opening&, const BentPair&, double);
 
 } // namespace isostat

@@ -131,7 +131,7 @@ Result<std::unique_ptr<Vertex<Dim>>> Vertex<Dim>::exchanged(const Vertex& from, 
     std::vector<Contact> contacts = from.structure.contacts();
     contacts[arc.opening.contact.index()] = arc.record.closed;
     options.first_accuracy = 0;
-    return make(std::move(arc.end), std::move(contacts), load, cache, options); // it says what is wrong
+    return make(arc.end, std::move(contacts), load, cache, options); // it says what is wrong
 }
 
 /// Nothing when no bound was proved in doubles.

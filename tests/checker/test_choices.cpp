@@ -33,9 +33,9 @@ void play(State<2> state, int direction, int equilibria, const fs::path& folder)
     directory.finish(RunStatus::completed, "");
 }
 
-/// The entry of a record that names an exchange at second order, with the braces; empty: none does.
-std::string exchange_in(const std::string& events) {
-    const std::size_t at = events.find("\"second order\"");
+/// The entry of a record that names an exchange of the list, with the braces; empty: none does.
+std::string exchange_in(const std::string& events, const std::string& decision) {
+    const std::size_t at = events.find("\"decision\":\"" + decision + '"');
     if (at == std::string::npos) {
         return {};
     }
@@ -43,11 +43,27 @@ std::string exchange_in(const std::string& events) {
     return events.substr(begin, events.find('}', at) + 1 - begin);
 }
 
-/// The record of the exchange at second order: `by` in the place of `from` in it.
-RunVerification exchanged_otherwise(const fs::path& folder, const std::string& from, const std::string& by) {
-    const std::string entry = exchange_in(scratch::read(folder / "events.jsonl"));
-    return altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
-}
+/// The record of an exchange of the list: `by` in the place of `from` in it.
+struct ForgedExchange {
+    const fs::path& folder;
+    std::string entry;
+
+    [[nodiscard]] RunVerification with(const std::string& from, const std::string& by) const {
+        return altered(folder, "events.jsonl", entry, scratch::replaced(entry, from, by));
+    }
+    void refuted(const std::string& from, const std::string& by, const std::string& said) const {
+        BOOST_TEST_CONTEXT(from << " -> " << by) {
+            const RunVerification forged = with(from, by);
+            BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
+            BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
+        }
+    }
+    void not_proved(const std::string& from, const std::string& by) const {
+        const RunVerification forged = with(from, by);
+        BOOST_TEST((forged.verdict != Verdict::proved), from << " -> " << by);
+        BOOST_TEST_MESSAGE(by << ": " << forged.wrong << (forged.undecided.empty() ? "" : forged.undecided[0]));
+    }
+};
 
 } // namespace
 
@@ -173,29 +189,38 @@ BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
     BOOST_TEST(run.wrong == "");
     BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
     BOOST_TEST(run.equilibria_proved == 2);
-    const std::string entry = exchange_in(scratch::read(folder / "events.jsonl"));
-    BOOST_TEST_MESSAGE(entry);
-    const auto refuted = [&](const std::string& from, const std::string& by, const std::string& said) {
-        BOOST_TEST_CONTEXT(from << " -> " << by) {
-            const RunVerification forged = exchanged_otherwise(folder, from, by);
-            BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
-            BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
-        }
-    };
-    refuted("\"0-right\"", "\"1-3\"", "share in");            // its share is -1
-    refuted("\"0-right\"", "\"0-bottom\"", "that cannot be"); // it is what opens
-    refuted("\"1-right\"", "\"0-4\"", "no such exchange");    // does not touch
-    refuted("\"1-right\"", "\"1-top\"", "that cannot be");    // a contact already
-    refuted("\"first_order\":[-", "\"first_order\":[", "second derivative");
-    refuted("\"against_first_order\":[", "\"against_first_order\":[-", "share");
-    const auto not_proved = [&](const std::string& from, const std::string& by) {
-        const RunVerification forged = exchanged_otherwise(folder, from, by);
-        BOOST_TEST((forged.verdict != Verdict::proved));
-        BOOST_TEST_MESSAGE(by << ": " << forged.wrong << (forged.undecided.empty() ? "" : forged.undecided[0]));
-    };
-    not_proved("\"0-right\"", "\"1-top\""); // its share is 0, which an interval does not tell
-    not_proved("\"0-right\"", "\"0-2\"");   // may give way as well, but leads to another list
-    not_proved(entry, "");                  // 1-right overlaps
+    const ForgedExchange forged{folder, exchange_in(scratch::read(folder / "events.jsonl"), "second order")};
+    BOOST_TEST_MESSAGE(forged.entry);
+    forged.refuted("\"0-right\"", "\"1-3\"", "share in");            // its share is -1
+    forged.refuted("\"0-right\"", "\"0-bottom\"", "that cannot be"); // it is what opens
+    forged.refuted("\"1-right\"", "\"0-4\"", "no such exchange");    // does not touch
+    forged.refuted("\"1-right\"", "\"1-top\"", "that cannot be");    // a contact already
+    forged.refuted("\"first_order\":[-", "\"first_order\":[", "second derivative");
+    forged.refuted("\"against_first_order\":[", "\"against_first_order\":[-", "share");
+    forged.refuted("\"second order\"", "\"end\"", "second derivative"); // it does not rest
+    forged.not_proved("\"0-right\"", "\"1-top\""); // its share is 0, which an interval does not tell
+    forged.not_proved("\"0-right\"", "\"0-2\"");   // may give way as well, but leads to another list
+    forged.not_proved(forged.entry, "");           // 1-right overlaps
+}
+
+/// The rows of a lattice sink until they lie in line: the contacts that the run would keep are dependent there.
+BOOST_AUTO_TEST_CASE(a_list_that_is_exchanged_for_the_end_of_an_arc_is_proved_and_a_forged_one_refused) {
+    const scratch::Folder scratch_folder;
+    const fs::path folder = scratch_folder / "run";
+    play(crafted::triangular(3, 4), +1, 20, folder);
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    const ForgedExchange forged{folder, exchange_in(scratch::read(folder / "events.jsonl"), "end")};
+    BOOST_TEST_REQUIRE(forged.entry.find("\"contact\":\"3-8\"") != std::string::npos, forged.entry);
+    forged.refuted("\"3-8\"", "\"4-5\"", "no such exchange"); // does not touch
+    forged.refuted("\"5-8\"", "\"3-5\"", "that cannot be");   // it is what opens
+    forged.refuted("\"first_order\":[0.0,", "\"first_order\":[1.0,", "rate 1 +-");
+    forged.refuted("\"against_first_order\":[", "\"against_first_order\":[-", "share -1");
+    forged.not_proved("\"end\"", "\"second order\"");    // it does not overlap
+    forged.refuted("\"5-8\"", "\"0-left\"", "share in"); // its share is negative
+    // Then the contacts are dependent at the end.
+    BOOST_TEST((altered(folder, "events.jsonl", forged.entry + ",", "").verdict != Verdict::proved));
 }
 
 BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refused) {
@@ -207,8 +232,8 @@ BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refuse
     const RunVerification run = verify_run(folder);
     BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
     const std::string events = scratch::read(folder / "events.jsonl");
-    BOOST_TEST(exchange_in(events).empty());
-    std::string entry = exchange_in(scratch::read(needed / "events.jsonl"));
+    BOOST_TEST(exchange_in(events, "second order").empty());
+    std::string entry = exchange_in(scratch::read(needed / "events.jsonl"), "second order");
     for (const auto& [from, to] :
          {std::pair{"1-right", "0-RIGHT"}, std::pair{"0-right", "1-right"}, std::pair{"0-RIGHT", "0-right"}}) {
         entry = scratch::replaced(entry, from, to);

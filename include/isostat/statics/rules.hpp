@@ -57,6 +57,8 @@ struct TieDecision {
     /// - "step": both close on the way of length O(eps); first-order lengths of the two ways.
     /// - "second order": `chosen` touches, would overlap, and took the place of `against` in the list (C3,
     ///   degenerate.md); `first`: second derivative of its gap, `other`: the share of `against` in its row;
+    /// - "end": `chosen` touches, rests, and took the place of `against` in the list, since the contacts are dependent
+    ///   where the arc ends without it (C5); `first`: the rate of its gap, `other`: the share;
     /// - "rest": `chosen` touches, and neither the second derivative `first` of its gap nor the rate `other` is told
     ///   from 0 when `against` opens: taken to keep touching, which the end of the arc confirms or not (C4).
     std::string what;

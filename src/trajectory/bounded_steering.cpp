@@ -155,10 +155,10 @@ template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refuse
         precisely_ = true; // before what double takes for the end the contacts are another matrix
     } else if (!refused.vertex && !arc_options_.precisely && !next_to_) {
         arc_options_.precisely = true; // contacts that are nearly singular leave no end in double
-        refused_ = refused_ ? refused_ : refused.failure;
+        refused_ = refused.failure;
     } else if (may_graze(refused)) {
         arc_options_.taken_to_rest.push_back(refused.record.closed); // the gaps at the end tell whether it did
-        refused_ = refused_ ? refused_ : refused.failure;
+        refused_ = refused.failure;
     } else {
         return false;
     }

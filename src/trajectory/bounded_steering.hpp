@@ -44,7 +44,7 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
     Result<Departure<Dim>> departure_;
     std::optional<Factorisation> fresh_; ///< instead of the factors of the vertex
     bool precisely_ = false;             ///< the end of the arc in more digits
-    std::optional<Failure> refused_;     ///< of the first end that was to be bettered, or passed by
+    std::optional<Failure> refused_;     ///< of the last end that was to be bettered, or passed by
     int proposals_ = 0;
     bool proposed_ = false;
 };

@@ -88,11 +88,7 @@ template <int Dim> Result<ArcProposal<Dim>> BoundedSteering<Dim>::propose() {
         arc = attempt();
     }
     if (!arc.ok()) {
-        Failure failure = arc.failure();
-        if (passed_by_) { // that they graze was a guess: nothing is known of what lies beyond
-            failure.kind = FailureKind::undecided;
-        }
-        return failure;
+        return refused_.value_or(arc.failure()); // nothing is known of what lies beyond a pair that was passed by
     }
     proposed_ = true;
     if (precisely_ && !arc_options_.precisely) {
@@ -160,9 +156,10 @@ template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refuse
         precisely_ = true; // before what double takes for the end the contacts are another matrix
     } else if (!refused.vertex && !arc_options_.precisely && !next_to_) {
         arc_options_.precisely = true; // contacts that are nearly singular leave no end in double
+        refused_ = refused.failure;
     } else if (may_graze(refused)) {
         arc_options_.taken_to_rest.push_back(refused.record.closed); // the gaps at the end tell whether it did
-        passed_by_ = true;
+        refused_ = refused.failure;
     } else {
         return false;
     }

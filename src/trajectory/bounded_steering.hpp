@@ -13,8 +13,9 @@ namespace isostat {
 /// closed before, a power that is negative at the end, or nothing at all with old factors, is answered by another
 /// proposal; no vertex with fresh factors by an end in more digits; where ties are chosen also one that finds no
 /// regular vertex with fresh factors, nor a list that would be regular there: the pair that seemed to close may only
-/// graze, and is passed by. Failures besides those of `follow_arc`: that of `departure`; `undecided` for all that
-/// follows a pair that was passed by, and when the order of the contacts that close is not settled in a few proposals.
+/// graze, and is passed by. Failures besides those of `follow_arc`: that of `departure`; that of an end for which
+/// nothing better was found; `undecided` for all that follows a pair that was passed by, and when the order of the
+/// contacts that close is not settled in a few proposals.
 template <int Dim> class BoundedSteering final : public Steering<Dim> {
   public:
     /// `departure`: of the pairs that touch; none overlaps at second order. The candidates and the load must outlive
@@ -44,7 +45,7 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
     Result<Departure<Dim>> departure_;
     std::optional<Factorisation> fresh_; ///< instead of the factors of the vertex
     bool precisely_ = false;             ///< the end of the arc in more digits
-    bool passed_by_ = false;             ///< pairs that may have grazed
+    std::optional<Failure> refused_;     ///< of the last end that was to be bettered, or passed by
     int proposals_ = 0;
     bool proposed_ = false;
 };

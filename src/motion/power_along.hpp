@@ -26,10 +26,17 @@ template <int Dim> class PowerAlong {
         double start, end, s;
     };
     /// First place inside a step where the power seems to be negative although both ends are positive: the cubic with
-    /// its value and its first two derivatives at the start, and its value at the end. Mostly without a pass, else one.
+    /// its value and its first two derivatives at the start, and its value at the end. Mostly without a pass; else the
+    /// curvature of the course is solved for until it tells the slope of the power, and one pass more.
     [[nodiscard]] std::optional<double> dip(const CurveCourse<Dim>& course, Chord<Dim>& chord, const Step& step) const;
 
   private:
+    /// Sum of the sizes of the terms of F_ext . v.
+    [[nodiscard]] double terms(const Packing<Dim>& at, const std::vector<double>& v) const;
+    [[nodiscard]] double slope_along(const CurveCourse<Dim>& course) const;
+    void sharpen(CurveCourse<Dim>& course, Chord<Dim>& chord, double s, double least) const;
+    [[nodiscard]] std::optional<double> dip_of_cubic(const CurveCourse<Dim>& course, Chord<Dim>& chord,
+                                                     const Step& step) const;
     [[nodiscard]] std::vector<double> change(const Packing<Dim>& at, const std::vector<double>& v) const;
 
     PowerLoad<Dim> load_;

@@ -170,7 +170,8 @@ void moves_at_known_loads(const std::vector<double>& loads, const State<2>& patc
 }
 
 /// 2 x 4, ..., 7 x 8: on a list that is kept to the end of the last motion contacts may be dependent there.
-BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_end_where_these_meet) {
+BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_end_where_these_meet,
+                     *boost::unit_test::label("slow")) {
     int lists = 0;
     for (const auto& [columns, rows] :
          {std::pair{2, 2}, std::pair{3, 2}, std::pair{4, 2}, std::pair{2, 3}, std::pair{3, 3}, std::pair{2, 4},

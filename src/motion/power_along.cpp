@@ -2,6 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "core/dot.hpp"
+#include "core/roundoff.hpp"
 #include "motion/geometry.hpp"
 
 #include <algorithm>
@@ -86,13 +87,15 @@ std::vector<double> PowerAlong<Dim>::change(const Packing<Dim>& at, const std::v
     return change;
 }
 
-/// Passes until what one does to the power over a length s is small beside `least`, a power.
+/// Passes until what one does to the power over a length s is small beside `least`, a power, or beside what the slope
+/// does: of a power that starts at 0.
 template <int Dim>
 void PowerAlong<Dim>::sharpen(CurveCourse<Dim>& course, Chord<Dim>& chord, double s, double least) const {
     constexpr int most_passes = 10;
     constexpr double small = 0.1;
-    double change = least;
-    for (int pass = 0; pass < most_passes && change > small * least; ++pass) {
+    double change = roundoff::infinity;
+    for (int pass = 0; pass < most_passes && change > small * std::max(least, s * std::abs(slope_along(course)));
+         ++pass) {
         const std::vector<double>& missed = chord.velocity(
             [&](const Contact& c) {
                 return quick_curvature(course.at, c, course.tangent) + gap_rate(course.at, c, course.curvature);

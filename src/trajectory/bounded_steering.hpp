@@ -9,13 +9,12 @@
 namespace isostat {
 
 /// The arc from a vertex, with its factors or fresh ones where these serve badly, and with residuals in double-double
-/// where it does not converge otherwise. A proof that finds another contact
-/// closed before, a power that is negative at the end, or nothing at all with old factors, is answered by another
-/// proposal; no vertex with fresh factors by an end in more digits; where ties are chosen also one that finds no
-/// regular vertex with fresh factors, nor a list that would be regular there: the pair that seemed to close may only
-/// graze, and is passed by. Failures besides those of `follow_arc`: that of `departure`; that of an end for which
-/// nothing better was found; `undecided` for all that follows a pair that was passed by, and when the order of the
-/// contacts that close is not settled in a few proposals.
+/// where it does not converge otherwise. A proof that finds another contact closed before, a power that is negative at
+/// the end, or nothing at all with old factors, is answered by another proposal; no vertex with fresh factors by an end
+/// in more digits, then by the arc in double-double; where ties are chosen also one that finds no regular vertex, nor a
+/// list that would be regular there: the pair that seemed to close may only graze, and is passed by. Failures besides
+/// those of `follow_arc`: that of `departure`; that of an end for which nothing better was found; `undecided` when the
+/// order of the contacts that close is not settled in a few proposals.
 template <int Dim> class BoundedSteering final : public Steering<Dim> {
   public:
     /// `departure`: of the pairs that touch; none overlaps at second order. The candidates and the load must outlive

@@ -68,7 +68,7 @@ class Browser:
         if self._session:
             message["sessionId"] = self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
-        until = time.monotonic() + 60
+        until = time.monotonic() + 600
         while True:
             answer = self._receive(until)
             if answer.get("id") == self._number:
@@ -83,7 +83,7 @@ class Browser:
             raise RuntimeError(str(answer["exceptionDetails"]))
         return answer["result"].get("value")
 
-    def wait(self, expression, seconds=60):
+    def wait(self, expression, seconds=600):
         until = time.monotonic() + seconds
         while not self.value(expression):
             if time.monotonic() > until:

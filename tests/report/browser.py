@@ -40,6 +40,8 @@ class Browser:
     def close(self):
         self._process.kill()
         self._process.wait()
+        os.close(self._write)
+        os.close(self._read)
         shutil.rmtree(self._profile, ignore_errors=True)
 
     def _receive(self, until):

@@ -250,16 +250,15 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
         return Objection{power.negative(),
                          fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }
-    return compare("power", {event.power, event.power_bound}, power, force_tolerance * largest_force(forces), event,
-                   std::numeric_limits<double>::max());
+    return compare_if_bounded("power", {event.power, event.power_bound}, power,
+                              force_tolerance * largest_force(forces));
 }
 
 /// The recorded work is that of the finite loads, and the potential falls.
 Objections check_work(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     double size = 0;
     const Range done = work(from, to, to.evidence->finite_load, size);
-    if (Objections wrong =
-            compare("work", {event.work, event.work_bound}, done, record_tolerance * size, event, size)) {
+    if (Objections wrong = compare_if_bounded("work", {event.work, event.work_bound}, done, record_tolerance * size)) {
         return wrong;
     }
     if (is_first_order_step(event)) {
@@ -391,8 +390,8 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
     const Load<2>& load = to.state->load;
-    if (Objections wrong = compare("eps2", {event.strain, event.strain_bound}, strain_of(to, load.loaded_axis),
-                                   arc_strain_tolerance, event, 1)) {
+    if (Objections wrong = compare_if_bounded("eps2", {event.strain, event.strain_bound},
+                                              strain_of(to, load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
     if (Objections wrong = check_no_overlap(to, event)) {

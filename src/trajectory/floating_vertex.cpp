@@ -1,5 +1,6 @@
 #include "trajectory/floating_vertex.hpp"
 
+#include "core/dot.hpp"
 #include "rigidity/contact_pattern.hpp"
 #include "statics/rule_key.hpp"
 
@@ -19,14 +20,6 @@ constexpr double accuracy = 1e-12;
 constexpr double recorded_accuracy = 1e-8;
 constexpr double accuracy_with_velocity = 1e-3;
 constexpr double safety = 30;
-
-double largest(const std::vector<double>& f) {
-    double size = 0;
-    for (const double x : f) {
-        size = std::max(size, std::abs(x));
-    }
-    return size;
-}
 
 } // namespace
 

@@ -78,12 +78,6 @@ struct ReportArguments {
 };
 int report(const ReportArguments& arguments);
 
-struct ConvertArguments {
-    Common common;
-    std::string input, output;
-};
-int convert(const ConvertArguments& arguments);
-
 struct VerifyArguments {
     Common common;
     std::string certificate; ///< or the folder of a run

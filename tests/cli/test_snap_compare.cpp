@@ -155,7 +155,7 @@ BOOST_AUTO_TEST_CASE(some_frames_of_a_series_are_compared_alone) {
 BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
     const scratch::Folder folder;
     const std::string state = (folder / "state.json").string();
-    expect(run({"convert", scratch::data("vertex100.txt"), "-o", state}), 0);
+    expect(run({"import", scratch::data("vertex100.txt"), "-o", state}), 0);
     const Outcome made = run({"snap", state, "-o", (folder / "snapped.json").string()});
     expect(made, 0);
     BOOST_TEST(contains(made.out, "snap      vertex"), made.out);

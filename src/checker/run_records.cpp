@@ -216,6 +216,9 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.status = status.substr(0, status.find(':'));
     const Field settings = run.at("settings").at("run");
     records.rule = settings.at("rule").string();
+    if (settings.has("rule_seed")) {
+        records.rule_seed = static_cast<std::uint64_t>(settings.at("rule_seed").integer());
+    }
     const std::string ties = settings.has("ties") ? settings.at("ties").string() : "stop";
     records.chooses = ties == "choose";
     records.by_class = ties == "class";
@@ -224,7 +227,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     if (std::filesystem::exists(directory / "start.json")) {
-        records.start = read_any_state<2>(directory / "start.json").state.packing.q;
+        records.start = read_any_state<2>(directory / "start.json").state;
     }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";

@@ -46,6 +46,10 @@ struct Bounded {
 /// The number found lies within the bound; undecided when the bound is above `loosest`.
 Objections compare(const char* name, const Bounded& said, const Range& found, double loosest);
 
+/// A first-order term with its bound against what was found: the two have a number in common, and the bound is no
+/// larger than `force_tolerance` of `size`, which it is a sum of terms of: a wider one says nothing.
+Objections check_said(const std::string& what, const Bounded& said, const Range& found, double size);
+
 /// The largest magnitude.
 double largest_force(const std::vector<Range>& forces);
 

@@ -22,13 +22,10 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
     const Velocities velocities(e);
     const Velocities::Solution motion = velocities.opening(held, 1);
     const auto k = static_cast<std::size_t>(place.state->contacts[held].i);
-    Rational fastest = 0;
-    for (const Rational& v : motion.middle) {
-        fastest = std::max<Rational>(fastest, abs(v));
-    }
-    if (abs(motion.middle[k]) + motion.radius < fastest * Rational(1 - turn_tolerance)) {
+    const double fastest = motion.fastest();
+    if (abs(motion.middle[k]) + motion.radius < Rational(fastest) * Rational(1 - turn_tolerance)) {
         return Objection{true, fmt::format("{} is held, but another coordinate is {} times as fast", event.closed,
-                                           Rational(fastest / abs(motion.middle[k])).get_d())};
+                                           fastest / std::abs(motion.middle[k].get_d()))};
     }
     return {};
 }

@@ -581,8 +581,12 @@ class Replay {
         const std::string state = fmt::format("states/eq_{:06}.json", number);
         const bool row = judged(asked([&] { return check_equilibrium(here_, line); }), line.where);
         const bool row_and_files =
-            row && same_file(state) && (number + 1 < result_.equilibria || same_file("states/last.json")) &&
-            (!records_.certified_states || judged(check_certificate(records_, here_, line), line.where));
+            row && same_file(state, line) && (number + 1 < result_.equilibria || same_file("states/last.json", line)) &&
+            (records_.certified_states
+                 ? judged(check_certificate(records_, here_, line), line.where)
+                 : expect(line.integer("certified") == -1, line.where,
+                          fmt::format("certified is {} at a level without certificates: expected -1",
+                                      line.integer("certified"))));
         result_.equilibria_proved += row_and_files ? 1 : 0;
         reached.state = *here_.state;
         reached.load = here_.load;
@@ -591,13 +595,15 @@ class Replay {
     }
 
     /// A state file, where there is one, holds the equilibrium that was reached, and its forces.
-    bool same_file(const std::string& name) {
+    bool same_file(const std::string& name, const EquilibriumLine& line) {
         const std::filesystem::path path = records_.directory / name;
         if (!std::filesystem::exists(path)) {
             return true;
         }
         const StateFile<2> file = read_any_state<2>(path);
-        return judged(check_stored(here_, file.state, records_.start), name) &&
+        return expect(file.state.equilibrium == line.integer("number"), name,
+                      fmt::format("equilibrium is {}, expected {}", file.state.equilibrium, line.integer("number"))) &&
+               judged(check_stored(here_, file.state, records_.start), name) &&
                judged(check_stored_forces(here_, file.forces), name);
     }
 

@@ -53,10 +53,8 @@ Objections check_said(const std::string& what, const Bounded& said, const Range&
 /// The largest magnitude.
 double largest_force(const std::vector<Range>& forces);
 
-/// The same for a number of an arc. Without a bound at level plain it is a guess, and one that is off by more than
-/// `record_tolerance` of `size` leaves the arc undecided.
-Objections compare(const char* name, const Bounded& said, const Range& found, double loosest, const EventRecord& event,
-                   double size);
+/// The same for a number that may be recorded without a bound (NaN): undecided then.
+Objections compare_if_bounded(const char* name, const Bounded& said, const Range& found, double loosest);
 
 /// A vertex at a load. The state stays where it is: the evidence refers to it. Forces are those at the exact load.
 struct Place {

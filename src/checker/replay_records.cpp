@@ -252,8 +252,8 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
         return Objection{power.negative(),
                          fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }
-    return compare("power", {event.power, event.power_bound}, power, force_tolerance * largest_force(forces), event,
-                   std::numeric_limits<double>::max());
+    return compare_if_bounded("power", {event.power, event.power_bound}, power,
+                              force_tolerance * largest_force(forces));
 }
 
 /// By how much Phi = sum sigma_a ln L_a falls (S5 (b), stability.md). \pre true stresses, without loads on disks
@@ -274,7 +274,7 @@ Objections check_work(const Place& from, const Place& to, const EventRecord& eve
     const Range done = dead ? work(from, to, to.evidence->finite_load, size) : Range(Rational(0));
     if (Objections wrong =
             !dead ? Objections()
-                  : compare("work", {event.work, event.work_bound}, done, record_tolerance * size, event, size)) {
+                  : compare_if_bounded("work", {event.work, event.work_bound}, done, record_tolerance * size)) {
         return wrong;
     }
     const bool potential =
@@ -409,8 +409,8 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    if (Objections wrong = compare("eps2", {event.strain, event.strain_bound},
-                                   strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance, event, 1)) {
+    if (Objections wrong = compare_if_bounded("eps2", {event.strain, event.strain_bound},
+                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
     const auto settled = [&](const Contact& pair, const Range& first) -> Objections {
@@ -450,7 +450,8 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
         return wrong;
     }
     // What touches was asked where the arc ended.
-    if (Objections wrong = check_no_overlap(place, "an equilibrium", [](const auto&, const auto&) { return Objections(); })) {
+    if (Objections wrong =
+            check_no_overlap(place, "an equilibrium", [](const auto&, const auto&) { return Objections(); })) {
         return wrong;
     }
     for (const auto& check : {check_counts, check_measures, check_smallest_gap, check_smallest_force}) {

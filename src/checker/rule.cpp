@@ -158,9 +158,8 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             return wrong;
         }
     }
-    const double size = largest_force(forces);
-    if (Objections wrong = compare("force", {event.force, event.force_bound}, forces[opened], force_tolerance * size,
-                                   event, 100 * size)) {
+    if (Objections wrong = compare_if_bounded("force", {event.force, event.force_bound}, forces[opened],
+                                              force_tolerance * largest_force(forces))) {
         return wrong;
     }
     if (rule == "random" && run.rule_seed) {

@@ -243,7 +243,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.chooses = ties == "choose";
     records.by_class = ties == "class";
     const std::string level =
-        settings.has("certify") ? word(settings.at("certify"), {"plain", "decisions", "states", "arcs"}) : "decisions";
+        settings.has("certify") ? word(settings.at("certify"), {"decisions", "states", "arcs"}) : "decisions";
     records.certified_arcs = level == "arcs";
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
@@ -255,7 +255,6 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
-            records.events.back().estimated = level == "plain";
         });
     }
     const std::filesystem::path equilibria = directory / "equilibria.csv"; // its first row comes with their names

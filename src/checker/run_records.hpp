@@ -32,8 +32,7 @@ struct EventRecord {
     bool power_turn = false;
     double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
     double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
-    bool estimated = false;        ///< level plain: numbers on the way have no bound, they say what to look for
-    std::optional<double> held_at; ///< of power turns
+    std::optional<double> held_at;                                             ///< of power turns
     std::vector<TieRecord> ties;
 };
 

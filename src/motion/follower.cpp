@@ -52,11 +52,6 @@ template <int Dim> void Follower<Dim>::begin() {
         }
     }
     if (!failure_) {
-        opening_ = here_.tangent;
-        const double rate = 1 / gap_rate(here_.at, opened_, opening_);
-        for (double& c : opening_) {
-            c *= rate;
-        }
         predicted_ = predict();
     }
 }
@@ -471,7 +466,6 @@ Arc<Dim> Follower<Dim>::finish(CurvePoint<Dim> end, ArcEnd kind, const Contact& 
     arc.closed = closed;
     arc.power = power;
     arc.tangent = std::move(end.tangent);
-    arc.opening = std::move(opening_);
     arc.open = scan_.open_at_end(closed);
     arc.steps = steps_;
     arc.factorisations = chord_.factorisations();

@@ -235,6 +235,9 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.segments = static_cast<int>(run.at("programme").size());
     const Field settings = run.at("settings").at("run");
     records.rule = word(settings.at("rule"), {"most_negative", "steepest", "random", "least_negative", "least_index"});
+    if (settings.has("rule_seed")) {
+        records.rule_seed = static_cast<std::uint64_t>(settings.at("rule_seed").integer());
+    }
     const std::string ties =
         settings.has("ties") ? word(settings.at("ties"), {"stop", "class", "perturb", "choose"}) : "stop";
     records.chooses = ties == "choose";
@@ -245,7 +248,7 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     if (std::filesystem::exists(directory / "start.json")) {
-        records.start = read_any_state<2>(directory / "start.json").state.packing.q;
+        records.start = read_any_state<2>(directory / "start.json").state;
     }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";

@@ -1,6 +1,7 @@
 #include "io/record_digests.hpp"
 
 #include "io/files.hpp"
+#include "io/folders.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/certificate_file.hpp>
@@ -34,6 +35,18 @@ std::string damage_of(const fs::path& path, const std::string& found, const std:
                              path.string(), found, expected);
 }
 
+/// A checkpoint names the files of its run and nothing else: `resume` reads and cuts what it names.
+void check_names(const json::Field& list, bool of_states) {
+    for (const auto& [name, unused] : list.value().items()) {
+        const bool records = name == "events.jsonl" || name == "equilibria.csv" || name == witness_records;
+        const bool state = name == "start.json" || (name.starts_with("states/eq_") && run_folder.owns(name));
+        if (!(of_states ? state : records)) {
+            list.at(name.c_str()).fail(of_states ? "no file but start.json and states/eq_*.json"
+                                                 : "no file but the records of a run");
+        }
+    }
+}
+
 } // namespace
 
 std::string chained(const std::string& before, const std::string& line) {
@@ -61,6 +74,9 @@ std::optional<CheckedRecords> compare_records(const fs::path& directory) {
     if (const std::size_t state = whole.find(before_state); state < body) {
         const std::size_t begin = state + std::string_view(before_state).size();
         found.state = whole.substr(begin, body - begin);
+    }
+    for (const char* list : {"bytes", "files"}) {
+        check_names(file.at(list), std::string_view(list) == "files");
     }
     for (const auto& [name, unused] : file.at("files").value().items()) {
         found.files[name] = file.at("files").at(name.c_str()).string();

@@ -1,6 +1,7 @@
 """isostat.load: a run as arrays, finished, killed or going on."""
 
 import json
+import shutil
 import unittest
 from pathlib import Path
 
@@ -48,12 +49,12 @@ class Records(Folder):
             run.at(1e9)
 
     def test_forces_at_any_shear_of_a_run_in_a_cell(self):
-        start = project / "examples/cells/tilted-100.json"
+        shutil.copy(project / "examples/cells/tilted-100.json", self.folder)
         run = isostat.load(
             self.run_scene(
-                text=f"""
+                text="""
 [packing]
-file = "{start}"
+file = "tilted-100.json"
 [load]
 loaded = "tilt"
 [[programme]]

@@ -171,7 +171,7 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
-        command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")->excludes(resume);
         add_threads(command, a.common);
         does(command, a, run, true);
     }
@@ -202,7 +202,7 @@ struct Program {
             ->type_name("J");
         command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
-        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")->excludes(resume);
         does(command, a, ensemble, true);
     }
 

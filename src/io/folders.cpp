@@ -154,8 +154,8 @@ bool has(const std::vector<std::string>& names, const char* name) {
 
 /// Nothing is there, or what a kill leaves before the mark is written.
 bool is_unused(const FolderContent& content) {
-    return content.others.empty() &&
-           std::all_of(content.files.begin(), content.files.end(), [](const auto& name) { return name == "lock"; });
+    const bool locked = has(content.files, "lock");
+    return content.others.empty() && content.files.size() == (locked ? 1 : 0) && (locked || content.leftovers.empty());
 }
 
 [[noreturn]] void refuse_to_resume(const fs::path& folder, const FolderKind& kind) {
@@ -166,8 +166,10 @@ bool is_unused(const FolderContent& content) {
 
 [[noreturn]] void refuse_to_write(const fs::path& folder, const FolderKind& kind, const FolderContent& content) {
     const bool other_run = &kind != &run_folder && fs::exists(folder / run_folder.mark);
-    const std::string holds =
-        other_run ? run_folder.words : (content.others.empty() ? content.files : content.others).front();
+    const auto& names = !content.others.empty()  ? content.others
+                        : !content.files.empty() ? content.files
+                                                 : content.leftovers;
+    const std::string holds = other_run ? run_folder.words : names.front();
     throw Error(ErrorKind::usage, fmt::format("{}: holds {}{}, and is not the folder of {}: expected an empty folder",
                                               folder.string(), holds, other_run ? " already" : "", kind.words));
 }
@@ -221,7 +223,9 @@ Descriptor locked(const fs::path& folder, int flags) {
 
 FolderContent content_of(const fs::path& folder, const FolderKind& kind) {
     FolderContent found;
-    look(folder, "", kind, found);
+    if (fs::is_directory(folder)) {
+        look(folder, "", kind, found);
+    }
     for (auto* names : {&found.files, &found.folders, &found.leftovers, &found.others}) {
         std::sort(names->begin(), names->end());
     }

@@ -55,7 +55,7 @@ BOOST_AUTO_TEST_CASE(the_names_of_a_run_are_those_that_it_writes) {
 
 BOOST_AUTO_TEST_CASE(a_folder_with_files_of_somebody_is_not_taken) {
     for (const char* name : {"equilibria.csv", "events.jsonl", "start.json", "states/eq_000000.json", "notes.txt",
-                             "figures/staircase.svg", "samples.csv", "comparison.csv", "report.txt"}) {
+                             "figures/staircase.svg", "samples.csv", "comparison.csv", "report.txt", "run.json.part"}) {
         const scratch::Folder folder;
         fs::create_directories((folder / name).parent_path());
         scratch::write(folder / name, "precious");

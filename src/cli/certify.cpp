@@ -14,6 +14,7 @@ namespace isostat::cli {
 
 int certify(const CertifyArguments& arguments) {
     const std::filesystem::path input = arguments.input;
+    check_output(arguments.output, "\"isostat-certificate\"", {input});
     Certificate certificate;
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));

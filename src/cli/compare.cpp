@@ -3,6 +3,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/read_packing.hpp"
 #include "compare/report.hpp"
+#include "io/folders.hpp"
 
 #include <isostat/compare/compare.hpp>
 #include <isostat/core/error.hpp>
@@ -24,7 +25,10 @@ namespace {
 /// Equilibrium 0 of a run, or a state file.
 State<2> start_of(const std::string& reference) {
     const std::filesystem::path path = reference;
-    return read_any_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
+    if (std::filesystem::is_directory(path)) {
+        (void)content_of(path, run_folder);
+    }
+    return read_any_state<2>(std::filesystem::is_directory(path) ? path / state_name(0) : path).state;
 }
 
 std::string shown(double x) {
@@ -126,6 +130,9 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
 } // namespace
 
 int compare_series(const CompareArguments& a) {
+    if (!a.output.empty()) {
+        check_folder_for(a.output, comparison_folder);
+    }
     compare::SeriesReader reader(a.series);
     const compare::Series& series = reader.series();
     compare::CompareOptions options;

@@ -27,6 +27,9 @@ using crafted::Genericity;
 using crafted::GenericitySample;
 
 /// The unperturbed packing: its contacts, and what is known of h and k.
+constexpr const char* genericity_head =
+    "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
+
 struct Original {
     Packing<2> packing;
     std::vector<Contact> contacts;
@@ -263,6 +266,7 @@ Json report(const GenericityArguments& a, const Original& original, Json results
 } // namespace
 
 int genericity(const GenericityArguments& a) {
+    check_output(a.csv, genericity_head, {a.file});
     const Original original = read_original(a.file);
     crafted::GenericityOptions options;
     options.samples = a.samples;
@@ -275,7 +279,7 @@ int genericity(const GenericityArguments& a) {
         print_head(a, original);
     }
     Json results = Json::array();
-    std::string csv = "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
+    std::string csv = genericity_head;
     std::vector<Genericity> all;
     bool every = true;
     for (const double size : a.sizes) {
@@ -291,7 +295,7 @@ int genericity(const GenericityArguments& a) {
         }
     }
     if (!a.csv.empty()) {
-        write_atomically(a.csv, csv);
+        write_output(a.csv, csv, genericity_head);
     }
     if (text) {
         fmt::print(

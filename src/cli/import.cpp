@@ -309,8 +309,10 @@ Moves moves_of(const Imported& found) {
     return moves;
 }
 
+constexpr const char* moves_head = "disk,x,y,moved,rattler\n";
+
 std::string moves_csv(const Imported& found, const Moves& moves) {
-    std::string text = "disk,x,y,moved,rattler\n";
+    std::string text = moves_head;
     for (std::size_t i = 0; i < moves.disk.size(); ++i) {
         text += fmt::format("{},{},{},{},{}\n", i, found.state.packing.q[2 * i], found.state.packing.q[2 * i + 1],
                             rounded_up(moves.disk[i], 6), moves.rattler[i]);
@@ -362,6 +364,8 @@ std::string advice(const ImportArguments& a, bool crafted, std::vector<double> r
 
 int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
+    check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
+    check_output(a.moved, moves_head, {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     const bool listed = format == "vertex" && a.jitter == 0;
@@ -401,7 +405,7 @@ int import(const ImportArguments& arguments) {
     }
     write_state<2>(a.output, imported.state);
     if (!a.moved.empty()) {
-        write_atomically(a.moved, moves_csv(imported, moves));
+        write_output(a.moved, moves_csv(imported, moves), moves_head);
     }
     if (a.common.json) {
         Json object = provenance;

@@ -9,7 +9,9 @@
 #include <isostat/core/machine.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -167,7 +169,7 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
-        command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")->excludes(resume);
         add_threads(command, a.common);
         does(command, a, run, true);
     }
@@ -190,7 +192,7 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-S,--samples", a.samples, "number of samples")
             ->required()
-            ->check(CLI::Range(1, 1'000'000))
+            ->check(CLI::Range(1, most_samples))
             ->type_name("S");
         command.add_option("-o,--output", a.output, "folder of the ensemble")->required()->type_name("DIR");
         command.add_option("-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)")
@@ -198,7 +200,7 @@ struct Program {
             ->type_name("J");
         command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
-        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")->excludes(resume);
         does(command, a, ensemble, true);
     }
 
@@ -646,6 +648,15 @@ int answered(const std::function<int()>& work) {
     }
 }
 
+/// A file that is opened later must not become what the program prints to.
+void open_standard_descriptors() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(descriptor, F_GETFD) < 0) { // NOLINT(cppcoreguidelines-pro-type-vararg)
+            (void)::open("/dev/null", O_RDWR);  // NOLINT(cppcoreguidelines-pro-type-vararg): it gets the lowest number
+        }
+    }
+}
+
 /// An answer that did not get out is none.
 int delivered(int status) {
     errno = 0;
@@ -662,6 +673,7 @@ int delivered(int status) {
 } // namespace
 
 int main(int argc, char** argv) {
+    open_standard_descriptors();
     isostat::keep_freed_memory();
     isostat::say_when_memory_ends();
     const int status = delivered(answered([&] { return run_program(argc, argv); }));

@@ -184,9 +184,11 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
     return out;
 }
 
+constexpr const char* plateau_head = "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,"
+                                     "all_rank,all_h,all_k,all_rank_exact,all_isostatic\n";
+
 std::string to_csv(const crafted::Plateau& plateau) {
-    std::string out = "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,all_rank,all_h,"
-                      "all_k,all_rank_exact,all_isostatic\n";
+    std::string out = plateau_head;
     const auto counts = [](const PlateauCounts& c) {
         return fmt::format("{},{},{},{},{},{},{}", c.dof_count, c.contact_count, c.rank, c.hyperstaticity, c.mechanisms,
                            c.rank_exact == Verdict::proved ? 1 : 0, word(c.isostatic));
@@ -233,6 +235,7 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Read
 } // namespace
 
 int plateau(const PlateauArguments& a) {
+    check_output(a.csv, plateau_head, {a.file});
     std::array<double, 2> thresholds{};
     if (!a.thresholds.empty()) {
         thresholds = parse_range(a.thresholds, "--thresholds");
@@ -250,7 +253,7 @@ int plateau(const PlateauArguments& a) {
     const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain);
     note_walls(a, result, file);
     if (!a.csv.empty()) {
-        write_atomically(a.csv, to_csv(result));
+        write_output(a.csv, to_csv(result), plateau_head);
     }
     if (a.common.json) {
         print_json(to_json(a, file, result, thresholds));

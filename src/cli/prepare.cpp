@@ -14,11 +14,11 @@ namespace isostat::cli {
 
 namespace {
 
-/// A long computation must not end in a file that cannot be written: tries to make one beside it first.
-void check_writable(const std::filesystem::path& output) {
-    const std::filesystem::path trial = output.string() + ".trial";
-    write_atomically(trial, "\n");
-    std::filesystem::remove(trial);
+/// A long computation must not end in a file that cannot be written: asks, and tries to make one beside it first.
+void check_writable(const PrepareArguments& a) {
+    check_output(a.output, "\"isostat-state\"", {a.scene});
+    check_output(a.output + ".failed.json", "\"isostat-packing\"", {a.scene});
+    check_directory_of(a.output);
 }
 
 } // namespace
@@ -32,7 +32,7 @@ int prepare(const PrepareArguments& arguments) {
                                 "radii_file",
                                 arguments.scene, scene.start.string()));
     }
-    check_writable(arguments.output);
+    check_writable(arguments);
     const bool quiet = arguments.common.quiet || arguments.common.json;
     const auto prepared = prepare_start(scene, arguments.common.command, quiet, arguments.output + ".failed.json");
     if (!prepared.ok()) {

@@ -83,7 +83,10 @@ int report_ensemble(const ReportArguments& arguments) {
                                                          : fs::path(arguments.output) / member.folder.filename();
         try {
             if (!member.begun) {
-                throw Error(ErrorKind::bad_input, "was not begun: `isostat ensemble --resume`");
+                throw Error(
+                    ErrorKind::bad_input,
+                    fmt::format("was not begun{}: `isostat ensemble --resume`",
+                                member.further > 0 ? fmt::format(", nor were {} after it", member.further) : ""));
             }
             const ReportResult result = report_run(member.folder, output, options);
             line.clear();

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace isostat::cli {
@@ -63,7 +64,9 @@ void record_work(const std::filesystem::path& path) {
     const auto work = work_done();
     for (std::size_t k = 0; k < work_kinds; ++k) {
         const char* name = to_string(static_cast<Work>(k));
-        const long before = counts.contains(name) && counts[name].is_number_integer() ? counts[name].get<long>() : 0;
+        constexpr long most = 1L << 53; // the file may say anything
+        const long said = counts.contains(name) && counts[name].is_number_integer() ? counts[name].get<long>() : 0;
+        const long before = said >= 0 && said < most ? said : 0;
         counts[name] = before + work[k];
     }
     Json object;
@@ -96,7 +99,9 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
     }
     fmt::print("\n{}\n", report.text);
     for (const std::string& note : report.notes) {
-        fmt::print("{}\n", note);
+        if (std::count(directory.notes().begin(), directory.notes().end(), note) == 0) {
+            fmt::print("{}\n", note);
+        }
     }
     fmt::print("figures: {}\n", (directory.path() / "figures").string());
 }
@@ -156,6 +161,9 @@ int run(const RunArguments& arguments) {
         const auto& point = directory.checkpoint();
         fmt::print("resuming {} (it was {}) {}\n", arguments.output, directory.previous_status(),
                    point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
+    }
+    for (const std::string& note : directory.notes()) {
+        fmt::print(stderr, "isostat: {}: {}\n", arguments.output, note);
     }
     const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
     if (!quiet) {

@@ -152,6 +152,7 @@ void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, 
 } // namespace
 
 int snap(const SnapArguments& a) {
+    check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);

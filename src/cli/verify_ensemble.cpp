@@ -78,7 +78,8 @@ void add(RunVerification& total, const MemberVerification& member) {
 }
 
 std::string word_of(const MemberVerification& member, const Member& of) {
-    return !of.begun ? "missing" : !member.unreadable.empty() ? "cannot be read" : words(member.run);
+    const std::string more = of.further > 0 ? fmt::format(", and {} after it", of.further) : "";
+    return !of.begun ? "missing" + more : !member.unreadable.empty() ? "cannot be read" : words(member.run);
 }
 
 void print_row(const Member& of, const MemberVerification& member, const Clock& clock) {

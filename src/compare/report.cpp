@@ -1,6 +1,7 @@
 #include "compare/report.hpp"
 
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
@@ -341,6 +342,8 @@ std::string members_csv(const Comparison& comparison) {
 
 std::string comparison_json(const Series& series, const Comparison& comparison) {
     Json out;
+    out["format"] = comparison_folder.format;
+    out["version"] = 1;
     out["title"] = series.title;
     out["made_by"] = series.program;
     out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
@@ -387,7 +390,7 @@ void write_bundle(const std::filesystem::path& folder, const Comparison& compari
 } // namespace
 
 std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison) {
-    make_directory(folder);
+    make_folder_for(folder, comparison_folder);
     const Chart chart = figure(comparison);
     write_atomically(folder / "comparison.csv", frames_csv(comparison));
     write_atomically(folder / "path.csv", path_csv(comparison));

@@ -332,10 +332,10 @@ std::string force_picture(const State<2>& stored, std::span<const double> forces
     constexpr double below = 84;   // scale and caption
     const double width = 1000 + border + beside;
     const double height = canvas.height() + above + below;
-    std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" "
-        "height=\"{:.0f}\" viewBox=\"{:.0f} {:.0f} {:.0f} {:.0f}\">\n",
-        width, height, -border, -above, width, height);
+    std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- forces by isostat -->\n<svg "
+                                   "xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" "
+                                   "height=\"{:.0f}\" viewBox=\"{:.0f} {:.0f} {:.0f} {:.0f}\">\n",
+                                   width, height, -border, -above, width, height);
     text +=
         "<style>.disk{fill:#e9e6df;stroke:#a9a59b;stroke-width:0.5}.rattler{fill:#9fb8cf;stroke:#6f89a3;stroke-width:0."
         "5}"

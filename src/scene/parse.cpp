@@ -50,7 +50,7 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
                 key, fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
         }
     }
-    scene.start = folder / file;
+    scene.start = *section.file("file", folder);
     section.record("file", toml_text(file));
 }
 
@@ -90,7 +90,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     } else if (radii) {
         read_radii_list(section, *radii, options);
     } else {
-        options.radii = read_radii(folder / *radii_file);
+        options.radii = read_radii(*section.file("radii_file", folder));
         section.record("radii_file", toml_text(*radii_file));
     }
     options.jitter = section.number("jitter", options.jitter, 0, largest_jitter, "0, or a number from 1e-14 to 0.1");

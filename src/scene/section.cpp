@@ -1,5 +1,7 @@
 #include "scene/section.hpp"
 
+#include "io/named_input.hpp"
+
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
@@ -118,6 +120,14 @@ std::optional<std::string> Section::string(const std::string& key) {
         fail(key, "a string");
     }
     return node->value<std::string>();
+}
+
+std::optional<std::filesystem::path> Section::file(const std::string& key, const std::filesystem::path& folder) {
+    const auto name = string(key);
+    if (!name) {
+        return std::nullopt;
+    }
+    return named_input(folder, *name, fmt::format("{}:{}: {} in [{}]", source_, line_of(key), key, name_));
 }
 
 std::optional<std::vector<double>> Section::numbers(const std::string& key) {

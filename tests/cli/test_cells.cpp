@@ -109,7 +109,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_cell_is_written_resumed_and_replayed) {
         return fmt::format("[[programme]]\ndo = \"up\"\nequilibria = {}\n", equilibria);
     };
     const std::string packing = fmt::format("[packing]\nfile = \"{}\"\n", scratch::data("cells/tilt_16.json"));
-    scratch::write(scene, packing + programme(2));
+    scratch::write_scene(scene, packing + programme(2));
     const std::string out = (folder / "out").string();
     expect(run({"run", scene, "-o", out}), 0);
     const auto verified = run({"verify", out});
@@ -124,9 +124,10 @@ BOOST_AUTO_TEST_CASE(states_and_arcs_of_a_run_in_a_cell_are_certified) {
     const scratch::Folder folder;
     const std::string scene = (folder / "cell.toml").string();
     const auto verified = [&](const std::string& level) {
-        scratch::write(scene, fmt::format("[packing]\nfile = \"{}\"\n[run]\ncertify = \"{}\"\n[[programme]]\ndo = "
-                                          "\"up\"\nequilibria = 4\n",
-                                          scratch::data("cells/rect_16.json"), level));
+        scratch::write_scene(scene,
+                             fmt::format("[packing]\nfile = \"{}\"\n[run]\ncertify = \"{}\"\n[[programme]]\ndo = "
+                                         "\"up\"\nequilibria = 4\n",
+                                         scratch::data("cells/rect_16.json"), level));
         expect(run({"run", scene, "-o", (folder / level).string()}), 0);
         return run({"verify", (folder / level).string()});
     };
@@ -148,10 +149,11 @@ BOOST_AUTO_TEST_CASE(a_run_that_changes_the_shear_is_written_resumed_and_replaye
     const scratch::Folder folder;
     const std::string scene = (folder / "cell.toml").string();
     const auto play = [&](const std::string& load, const std::string& start) {
-        scratch::write(scene, fmt::format("[packing]\nfile = \"{}\"\n[load]\n{}\n[run]\ncertify = "
-                                          "\"arcs\"\n[[programme]]\ndo = \"up\"\nequilibria = 3\n[[programme]]\ndo = "
-                                          "\"to\"\nto = -0.01\n",
-                                          start, load));
+        scratch::write_scene(scene,
+                             fmt::format("[packing]\nfile = \"{}\"\n[load]\n{}\n[run]\ncertify = "
+                                         "\"arcs\"\n[[programme]]\ndo = \"up\"\nequilibria = 3\n[[programme]]\ndo = "
+                                         "\"to\"\nto = -0.01\n",
+                                         start, load));
         return run({"run", scene, "-o", (folder / "out").string(), "--force"});
     };
     const std::string tilted = scratch::data("cells/tilt_16.json");

@@ -240,17 +240,6 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
     BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
 }
 
-BOOST_AUTO_TEST_CASE(files_of_others_in_a_new_folder_are_not_touched) {
-    const scratch::Folder folder;
-    fs::create_directories(folder / "run/states");
-    scratch::write(folder / "run/states/mine.txt", "mine");
-    scratch::write(folder / "run/start.json", "mine");
-    const RunCounters counters;
-    const RunDirectory directory(folder / "run", header(), RunDirectory::Mode::fresh, counters);
-    BOOST_TEST(scratch::read(folder / "run/states/mine.txt") == "mine");
-    BOOST_TEST(!directory.start().has_value());
-}
-
 BOOST_AUTO_TEST_CASE(resuming_something_else_is_refused) {
     const scratch::Folder folder;
     const RunCounters counters;

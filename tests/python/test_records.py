@@ -1,6 +1,7 @@
 """isostat.load: a run as arrays, finished, killed or going on."""
 
 import json
+import shutil
 import unittest
 from pathlib import Path
 
@@ -50,12 +51,12 @@ class Records(Folder):
 
     def sheared(self, equilibria=2):
         """A run of a cell whose tilt is loaded."""
-        start = project / "examples/cells/tilted-100.json"
+        shutil.copy(project / "examples/cells/tilted-100.json", self.folder)
         return isostat.load(
             self.run_scene(
                 text=f"""
 [packing]
-file = "{start}"
+file = "tilted-100.json"
 [load]
 loaded = "tilt"
 [[programme]]

@@ -16,11 +16,11 @@ namespace {
 
 /// A run with every state stored, a branch included.
 void make_run(const scratch::Folder& folder, const std::string& start) {
-    scratch::write(folder / "s.toml", scene_from(start,
-                                                 "[[programme]]\ndo = \"up\"\nequilibria = 5\n"
-                                                 "[[programme]]\ndo = \"down\"\nfrom = 2\nequilibria = 3\n"
-                                                 "[[programme]]\ndo = \"up\"\nfrom = 1\nto = 1.035\n",
-                                                 "states_every = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(start,
+                                                       "[[programme]]\ndo = \"up\"\nequilibria = 5\n"
+                                                       "[[programme]]\ndo = \"down\"\nfrom = 2\nequilibria = 3\n"
+                                                       "[[programme]]\ndo = \"up\"\nfrom = 1\nto = 1.035\n",
+                                                       "states_every = 1\n"));
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
 }
 

@@ -66,7 +66,8 @@ class States:
 
     def numbers(self) -> list[int]:
         """Numbers of the equilibria whose states were stored, increasing."""
-        return sorted(int(path.stem[3:]) for path in self._folder.glob("eq_*.json"))
+        names = (re.fullmatch(r"eq_(\d{6,})\.json", path.name) for path in self._folder.glob("eq_*"))
+        return sorted(int(name[1]) for name in names if name)
 
     def __len__(self) -> int:
         return len(self.numbers())

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/terminal.hpp"
 #include "io/json.hpp"
 
 #include <isostat/io/state_file.hpp>
@@ -23,7 +24,7 @@ int convert(const ConvertArguments& arguments) {
     if (arguments.common.json) {
         print_json(Json{{"state", arguments.output}, {"disks", disks}, {"contacts", file.state.contacts.size()}});
     } else {
-        fmt::print("{}: {} disks, {} contacts\n", arguments.output, disks, file.state.contacts.size());
+        say("{}: {} disks, {} contacts\n", arguments.output, disks, file.state.contacts.size());
     }
     return done;
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <limits>
 
 namespace isostat {
 
@@ -308,7 +309,7 @@ Json counters_json(const RunCounters& counters) {
 RunCounters counters_from(const json::Field& field) {
     RunCounters counters;
     counters.steps = field.at("arcs").integer();
-    counters.equilibria = static_cast<int>(field.at("equilibria").integer());
+    counters.equilibria = field.at("equilibria").integer(0, std::numeric_limits<int>::max());
     counters.seconds = field.at("seconds").number();
     const json::Field tally = field.at("decisions");
     counters.tally.combinatorial = tally.at("combinatorial").integer();

@@ -186,6 +186,9 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
     }
     const json::Json parsed = json::Field::parse(read_text(run), run.string());
     const json::Field header(parsed, run.string());
+    if (header.at("format").string() != "isostat-run") {
+        header.at("format").fail("\"isostat-run\"");
+    }
     (void)check_records(directory); // damaged records are not drawn
     std::vector<std::string> names;
     const json::Field programme = header.at("programme");

@@ -66,7 +66,8 @@ Contact contact_of(std::pair<int, int> pair) {
 
 double finite(double value, const char* name) {
     if (!std::isfinite(value)) {
-        throw Error(ErrorKind::bad_input, std::string(name) + " is " + std::to_string(value) + ": expected a finite number");
+        throw Error(ErrorKind::bad_input,
+                    std::string(name) + " is " + std::to_string(value) + ": expected a finite number");
     }
     return value;
 }

@@ -219,6 +219,20 @@ const char* unbalanced_axis(const State<2>& state) {
     return nullptr;
 }
 
+/// A vertex text as it is: its contacts, its load.
+Result<Imported> from_vertex_text(const ImportArguments& a) {
+    if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty()) {
+        refuse(a.file, "is a vertex text, which has its contacts and its load: expected no --contacts, --threshold, "
+                       "--stress or --load");
+    }
+    Imported out;
+    out.state = read_any_state<2>(a.file).state;
+    out.from = out.state.packing.q;
+    out.truth = isostat::certify(out.state);
+    out.contacts = "those of the vertex text";
+    return out;
+}
+
 /// A crafted packing as it is: exact contacts, doubles next to its numbers, its load.
 Result<Imported> from_crafted(const ImportArguments& a, const std::string& text) {
     const crafted::PackingFile file = crafted::parse_packing(text, a.file);
@@ -351,11 +365,10 @@ int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
-    const bool own = format == "state" || format == "vertex";
+    const bool listed = format == "vertex" && a.jitter == 0;
+    const bool own = !listed && (format == "state" || format == "vertex");
     if (own && a.jitter == 0) {
-        refuse(a.file, fmt::format("is a {} of this program: expected a packing of another one, or --jitter; isostat "
-                                   "convert copies it",
-                                   format));
+        refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (own) {
         keep_load(a);
@@ -367,8 +380,9 @@ int import(const ImportArguments& arguments) {
                            "it is {}",
                            a.jitter));
     }
-    ReadPacking file = read_imported(a, crafted, own);
-    auto found = crafted ? from_crafted(a, text) : from_foreign(a, file);
+    ReadPacking file = listed ? ReadPacking{} : read_imported(a, crafted, own);
+    file.format = listed ? format : file.format;
+    auto found = listed ? from_vertex_text(a) : crafted ? from_crafted(a, text) : from_foreign(a, file);
     const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
     if (!found.ok() || refuted) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();

@@ -61,7 +61,6 @@ struct Program {
     CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
-    ConvertArguments convert_arguments;
     VerifyArguments verify_arguments;
     PlateauArguments plateau_arguments;
     GenericityArguments genericity_arguments;
@@ -90,7 +89,6 @@ struct Program {
         add_certify();
         add_plan();
         add_report();
-        add_convert();
         add_import();
         add_export();
         add_snap();
@@ -268,15 +266,6 @@ struct Program {
         does(command, a, report, true);
     }
 
-    void add_convert() {
-        ConvertArguments& a = convert_arguments;
-        CLI::App& command = add("convert", "vertex text (or a state file) -> state file",
-                                "Example: isostat convert tests/data/vertex100.txt -o start.json");
-        command.add_option("input", a.input, "vertex text or state file")->required()->type_name("FILE");
-        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
-        does(command, a, convert, false);
-    }
-
     void add_verify() {
         VerifyArguments& a = verify_arguments;
         CLI::App& command =
@@ -355,7 +344,8 @@ struct Program {
             "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local or a "
             "table. A "
             "crafted packing (TOML) is\n"
-            "rounded to doubles and keeps its contacts and its load. With --jitter a state is taken as well.\n"
+            "rounded to doubles and keeps its contacts and its load; a vertex text keeps them too. With --jitter a "
+            "state is taken as well.\n"
             "In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.\n"
             "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
             "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
@@ -419,6 +409,11 @@ struct Program {
             ->type_name("S1,S2");
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
+        command
+            .add_option("--reference-length", a.reference_length,
+                        "lengths that nominal stresses press on (default: those of the frame; a series has those of "
+                        "its first frame)")
+            ->type_name("L1,L2");
         command
             .add_option("--stiffness", a.stiffness,
                         "force / overlap: forces that the file does not say are compared with the exact ones too")

@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(empty_files) {
     const scratch::Folder folder;
     scratch::write(folder / "e.json", "");
     expect(run({"inspect", (folder / "e.json").string()}), 65, {"e.json", "empty"});
-    expect(run({"convert", (folder / "e.json").string(), "-o", (folder / "o.json").string()}), 65, {"e.json", "empty"});
+    expect(run({"import", (folder / "e.json").string(), "-o", (folder / "o.json").string()}), 65, {"e.json", "empty"});
     expect(run({"report", (folder / "e.json").string()}), 65, {"e.json", "empty"});
     BOOST_TEST(!fs::exists(folder / "o.json"));
     expect(run({"inspect", (folder / "absent.json").string()}), 65, {"absent.json", "No such file"});
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     expect(run({"prepare", (folder / "p.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
     expect(run({"prepare", (folder / "p.toml").string(), "-o", (folder / "no/p.json").string(), "-q"}), 74,
            {"no/p.json", "cannot write"});
-    expect(run({"convert", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
+    expect(run({"import", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
     expect(run({"report", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
     BOOST_TEST(scratch::read(folder / "plain") == "a file");
     BOOST_TEST(!fs::exists(folder / "no"));

@@ -15,7 +15,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
     for (const char* name : {"prepare", "run", "ensemble", "inspect", "certify", "verify", "plateau", "genericity",
-                             "plan", "report", "convert"}) {
+                             "plan", "report", "import"}) {
         const Outcome outcome = run({name, "--help"});
         expect(outcome, 0);
         BOOST_TEST(contains(outcome.out, "isostat " + std::string(name) + " "), name);
@@ -83,18 +83,25 @@ BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
     BOOST_TEST(contains(tension.out, "1-bottom"));
 }
 
-BOOST_AUTO_TEST_CASE(convert_keeps_every_number) {
+BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
     const scratch::Folder folder;
     const std::string target = (folder / "state.json").string();
-    expect(run({"convert", scratch::data("vertex100.txt"), "-o", target}), 0);
+    expect(run({"import", scratch::data("vertex100.txt"), "-o", target}), 0);
     const isostat::State<2> a = isostat::read_state<2>(scratch::data("vertex100.txt")).state;
     const isostat::State<2> b = isostat::read_state<2>(target).state;
     BOOST_TEST((a.packing.q == b.packing.q));
     BOOST_TEST((a.packing.radius == b.packing.radius));
     BOOST_TEST((a.load.infinitesimal == b.load.infinitesimal));
     BOOST_TEST((a.contacts == b.contacts));
-    BOOST_TEST(json::parse(b.provenance)["command"].get<std::string>().find("convert") != std::string::npos);
-    expect(run({"inspect", target}), 0);
+    BOOST_TEST(json::parse(b.provenance)["command"].get<std::string>().find("import") != std::string::npos);
+    for (const char* stated : {"--stress=1,2", "--load=true", "--contacts=nearest", "--threshold=1e-9"}) {
+        expect(run({"import", scratch::data("vertex100.txt"), "-o", target, stated}), 65, {"vertex text", stated[2]});
+    }
+    const std::string rows = scratch::read(scratch::data("vertex100.txt")), pulled = (folder / "pulled.txt").string();
+    const std::size_t last = rows.rfind("\n4 ");
+    scratch::write(pulled, rows.substr(0, last + 1) + rows.substr(rows.find('\n', last + 1) + 1));
+    BOOST_TEST(run({"import", pulled, "-o", (folder / "none.json").string()}).status != 0); // a contact is missing
+    BOOST_TEST(!fs::exists(folder / "none.json"));
 }
 
 BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again) {
@@ -205,8 +212,8 @@ BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
         run({"prepare", (folder / "p.toml").string(), "-o", (folder / "p.json").string(), "--json"});
     expect(prepared, 0);
     BOOST_TEST(json::parse(prepared.out)["contacts"] == 20);
-    BOOST_TEST(json::parse(run({"convert", (folder / "p.json").string(), "-o", (folder / "q.json").string(), "--json"})
-                               .out)["disks"] == 9);
+    BOOST_TEST(json::parse(run({"import", scratch::data("vertex100.txt"), "-o", (folder / "q.json").string(), "--json"})
+                               .out)["disks"] == 100);
     const Outcome report = run({"report", (folder / "run").string(), "--json", "--no-charts"});
     BOOST_TEST(json::parse(report.out)["files"].size() > 3U);
 }

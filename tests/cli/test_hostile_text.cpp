@@ -136,7 +136,6 @@ BOOST_AUTO_TEST_CASE(names_of_files_do_not_command_the_terminal) {
                                                               {"certify", file, "-o", out},
                                                               {"verify", file},
                                                               {"verify", out, "--input", file},
-                                                              {"convert", file, "-o", out},
                                                               {"export", file, "-o", out + ".xyz"},
                                                               {"plateau", file},
                                                               {"import", file, "-o", out},

@@ -112,6 +112,21 @@ BOOST_AUTO_TEST_CASE(the_page_of_a_run_that_was_killed_has_what_was_recorded) {
     BOOST_TEST(page.html == scratch::replaced(whole, "\"status\":\"completed\"", "\"status\":\"running\""));
 }
 
+BOOST_AUTO_TEST_CASE(the_page_of_a_run_in_a_cell_has_its_packing_its_images_and_its_arcs) {
+    const scratch::Folder folder;
+    make_run(folder, scratch::data("cells/rect_16.json"));
+    const Page page = run_page(folder / "run", {});
+    BOOST_TEST(page.left_out.empty());
+    BOOST_TEST(contains(page.html, "\"periodic\":[true,true]"));
+    const std::string arcs = std::to_string(records_of(folder / "run").events.size());
+    BOOST_TEST(contains(page.html, "\"arcs\":" + arcs + ","));
+    fs::remove(folder / "run/states/eq_000000.json");
+    const Page bare = run_page(folder / "run", {});
+    BOOST_TEST(contains(bare.html, "\"arcs\":" + arcs + ","));
+    BOOST_REQUIRE(bare.left_out.size() == 1U);
+    BOOST_TEST(contains(bare.left_out[0], "eq_000000.json is not there"));
+}
+
 BOOST_AUTO_TEST_CASE(the_page_of_a_run_without_an_equilibrium_says_so) {
     const scratch::Folder folder;
     make_run(folder, scratch::data("vertex100.txt"));

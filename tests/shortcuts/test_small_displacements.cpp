@@ -1,5 +1,5 @@
 // Linear gaps against closed forms and against the exact path.
-#include "shortcuts/small_displacements.hpp"
+#include "support/shortcuts/small_displacements.hpp"
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 

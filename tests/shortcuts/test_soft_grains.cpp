@@ -1,5 +1,5 @@
 // The soft grains against closed forms, against energy, and against the rigid packing that they approximate.
-#include "shortcuts/soft_grains.hpp"
+#include "support/shortcuts/soft_grains.hpp"
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 

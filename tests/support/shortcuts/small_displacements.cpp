@@ -1,4 +1,4 @@
-#include "shortcuts/small_displacements.hpp"
+#include "support/shortcuts/small_displacements.hpp"
 
 #include "contact/contact_set.hpp"
 #include "contact/words.hpp"

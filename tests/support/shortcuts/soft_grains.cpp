@@ -1,4 +1,4 @@
-#include "shortcuts/soft_grains.hpp"
+#include "support/shortcuts/soft_grains.hpp"
 
 #include "contact/separation.hpp"
 

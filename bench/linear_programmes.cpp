@@ -4,7 +4,7 @@
 //   bench_linear_programmes solve FILE [RUNS]    JSON: processor seconds of each run, programmes, pivots, contacts,
 //                                                coordinates
 //
-// tests/bench/highs_chain.py runs both and compares with scipy's HiGHS on the same programmes.
+// bench/highs_chain.py runs both and compares with scipy's HiGHS on the same programmes.
 
 #include <isostat/packing/load.hpp>
 #include <isostat/preparation/preparation.hpp>

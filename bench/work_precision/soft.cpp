@@ -1,6 +1,6 @@
 // Soft grains against the rigid states that they approximate: contacts, forces, strain, the next rearrangement.
 #include "bench/work_precision/report.hpp"
-#include "shortcuts/soft_grains.hpp"
+#include "support/shortcuts/soft_grains.hpp"
 #include "support/recorder.hpp"
 
 #include <isostat/certificate/inspect.hpp>

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 
@@ -97,7 +98,7 @@ int export_states(const ExportArguments& arguments) {
     if (arguments.common.json) {
         print_json(Json{{"file", arguments.output}, {"format", format}, {"states", files.size()}});
     } else {
-        fmt::print("{}: {}, {} state{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s");
+        say("{}: {}, {} state{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s");
     }
     return done;
 }

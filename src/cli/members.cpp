@@ -1,14 +1,13 @@
 #include "cli/members.hpp"
 
 #include "cli/commands.hpp"
+#include "cli/ranges.hpp"
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
-
-#include <charconv>
 
 namespace isostat::cli {
 
@@ -26,11 +25,11 @@ std::vector<Member> members_of(const fs::path& directory) {
     const json::Field file(parsed, path);
     EnsembleHeader header;
     header.samples = file.at("samples").integer(1, most_samples);
-    const std::string& seed = file.at("first_seed").string();
-    const auto [stop, error] = std::from_chars(seed.data(), seed.data() + seed.size(), header.first_seed);
-    if (error != std::errc() || stop != seed.data() + seed.size()) {
+    const auto seed = ranges::integer_in(file.at("first_seed").string(), 0, ranges::largest_seed);
+    if (!seed) {
         file.at("first_seed").fail("a seed");
     }
+    header.first_seed = static_cast<std::uint64_t>(*seed);
     const SampleFolders folders(directory, header);
     std::vector<Member> members;
     for (std::size_t k = 0; k < static_cast<std::size_t>(header.samples); ++k) {

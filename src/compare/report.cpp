@@ -1,5 +1,6 @@
 #include "compare/report.hpp"
 
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
@@ -123,7 +124,7 @@ const std::vector<Column<BundleMember>>& of_members() {
     return columns;
 }
 
-/// Quoted where it must be; nothing for null.
+/// "nan" for null.
 std::string cell(const Json& value) {
     if (value.is_null()) {
         return "nan";
@@ -131,11 +132,7 @@ std::string cell(const Json& value) {
     if (!value.is_string()) {
         return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
     }
-    std::string safe;
-    for (const char c : value.get<std::string>()) {
-        safe += c == '"' ? std::string("\"\"") : std::string(1, c);
-    }
-    return safe.find_first_of(",\"\n") == std::string::npos ? safe : "\"" + safe + "\"";
+    return text::csv(value.get_ref<const std::string&>());
 }
 
 template <class Row> std::vector<std::string> names_of_columns(const std::vector<Column<Row>>& columns) {

@@ -1,5 +1,6 @@
 #include "report/page.hpp"
 
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "linear/factorisation.hpp"
@@ -305,7 +306,7 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     data["left_out"] = page.left_out;
     page.html = page_template;
     const std::string place = "@DATA@";
-    page.html.replace(page.html.find(place), place.size(), in_script(json::dumped(data)));
+    page.html.replace(page.html.find(place), place.size(), text::in_script(json::dumped(data)));
     return page;
 }
 

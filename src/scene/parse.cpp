@@ -1,3 +1,4 @@
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
 #include "scene/radii_file.hpp"
@@ -207,6 +208,9 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
     }
     const auto name = section.string("name");
+    if (name && !text::is_plain_line(*name)) {
+        section.fail("name", "one line of text without control characters");
+    }
     step.name = name.value_or(describe(step));
     section.record("name", toml_text(step.name));
     section.finish();

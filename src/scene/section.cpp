@@ -1,5 +1,6 @@
 #include "scene/section.hpp"
 
+#include "core/text.hpp"
 #include "io/named_input.hpp"
 
 #include <isostat/core/error.hpp>
@@ -35,19 +36,19 @@ std::string toml_text(double value) {
 
 std::string toml_text(const std::string& value) {
     // A basic string, with those escapes that JSON has as well: records of a run take it over.
-    std::string text = "\"";
+    std::string quoted = "\"";
     for (const char c : value) {
         const auto code = static_cast<unsigned char>(c);
         if (c == '"' || c == '\\') {
-            text += '\\';
-            text += c;
+            quoted += '\\';
+            quoted += c;
         } else if (code < 0x20 || code == 0x7f) {
-            text += fmt::format("\\u{:04X}", code);
+            quoted += fmt::format("\\u{:04X}", code);
         } else {
-            text += c;
+            quoted += c;
         }
     }
-    return text + "\"";
+    return text::json(quoted + "\"");
 }
 
 void Section::fail(const std::string& key, const std::string& expected) const {

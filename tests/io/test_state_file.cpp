@@ -213,8 +213,18 @@ BOOST_AUTO_TEST_CASE(bad_contacts_are_named) {
     refuses_state(replaced(text, "[0,1]", "[0,\"ceiling\"]"), {"contacts[2][1]", "ceiling", "left"});
     refuses_state(replaced(text, "[0,1]", "[0,\"left\"]"), {"contacts[2]", "0-left", "contacts[0]", "once"});
     refuses_state(replaced(text, "[0,1]", "[\"held\",6]"), {"contacts[2]", "from 0 to 5"});
-    // The order of two disks means nothing: the same contact twice.
-    refuses_state(replaced(text, "[0,1]", "[0,1], [1,0]"), {"contacts[3]", "0-1", "contacts[2]"});
+    // A contact has one spelling.
+    refuses_state(replaced(text, "[0,1]", "[0,1], [0,1]"), {"contacts[3]", "0-1", "contacts[2]"});
+    refuses_state(replaced(text, "[0,1]", "[1,0]"), {"contacts[2]", "[1,0]", "[0,1]", "one spelling"});
+}
+
+BOOST_AUTO_TEST_CASE(entries_of_a_list_come_once_and_bounds_are_not_negative) {
+    const std::string text = two_disk_text();
+    refuses_state(replaced(text, "\"contacts\"", "\"fixed\": [1, 1],\n  \"contacts\""), {"fixed[1]", "once"});
+    refuses_state(
+        replaced(text, "\"contacts\"",
+                 "\"perturbation\": {\"seed\": 1, \"rho\": [0, 0], \"zero\": [[[0, 1], 0, -1]]},\n  \"contacts\""),
+        {"perturbation.zero[0][2]", "-1", "not negative"});
 }
 
 BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {

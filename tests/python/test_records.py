@@ -171,9 +171,23 @@ states_every = 1
         }
         for name, contact in known.items():
             self.assertEqual(contact_of_name(name), contact)
-        for name in ("3-nowhere", "7-3", "3-3", "3-7(1)", "3-7(1,0,0)", "3-left(1,0)", "3-7 ", "٣-7"):
+        for name in ("3-nowhere", "7-3", "03-7", "+3-7", "held x of grain 03", "3-3", "3-7(1)", "3-7(1,0,0)", "3-left(1,0)", "3-7 ", "٣-7"):
             with self.assertRaises(isostat.BadInput, msg=name):
                 contact_of_name(name)
+
+    def test_columns_and_fields_come_once_and_integers_are_integers(self):
+        out = self.folder / "out"
+        out.mkdir()
+        (out / "run.json").write_text('{"status": "a", "status": "b"}')
+        with self.assertRaisesRegex(isostat.BadInput, "status.*twice"):
+            isostat.load(out).status
+        (out / "run.json").write_text('{"status": "completed"}')
+        for table in ("number,eps2,eps2\n0,1,1", "number,eps2\n4.9,1", "number,eps2\n+4,1", "number,eps2\n1"):
+            (out / "equilibria.csv").write_text(f"# {table}\n")
+            with self.assertRaisesRegex(isostat.BadInput, "equilibria.csv"):
+                isostat.load(out).equilibria
+        (out / "equilibria.csv").write_text("# number,eps2\n4,1\n")
+        self.assertEqual(isostat.load(out).equilibria["number"].tolist(), [4])
 
 
 if __name__ == "__main__":

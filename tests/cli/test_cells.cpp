@@ -69,6 +69,20 @@ BOOST_AUTO_TEST_CASE(inspect_counts_and_proves_a_rectangle) {
     BOOST_TEST(std::abs(json.at("interval_high")[0].get<double>() - 1.3794962837050024) < 1e-9);
 }
 
+BOOST_AUTO_TEST_CASE(a_step_that_is_no_number_is_none_and_its_message_has_a_reason) {
+    // Rows of equal disks, unloaded along y: a pass of the path follower divides by 0. Disk 0 was "nan periods from the
+    // origin".
+    const scratch::Folder folder;
+    const std::string scene = (folder / "rows.toml").string();
+    scratch::write(scene, "[packing]\nfile = \"" + scratch::data("cells/rows_unloaded.json") +
+                              "\"\n[run]\nties = \"perturb\"\nties_seed = 1\n[[programme]]\ndo = \"down\"\n"
+                              "equilibria = 6\n");
+    const Outcome run_down = run({"run", scene, "-o", (folder / "out").string()});
+    expect(run_down, 2);
+    BOOST_TEST(!contains(run_down.out + run_down.err, "nan"), run_down.err);
+    BOOST_TEST(contains(run_down.err, "at sigma = 0"), run_down.err);
+}
+
 BOOST_AUTO_TEST_CASE(plateau_of_a_periodic_dump) {
     const scratch::Folder folder;
     const std::string file = (folder / "disks.dump").string();

@@ -329,7 +329,7 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.structural_ties = tally.at("ties").at("structural").integer();
     counters.tally.ties = tally.at("ties").at("other").integer();
     counters.tally.choices = tally.at("ties").has("choices") ? tally.at("ties").at("choices").integer() : 0;
-    for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
         counters.tally.perturbed[k] =
             tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()).integer();
     }

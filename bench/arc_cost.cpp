@@ -30,7 +30,7 @@ namespace {
 
 struct Row {
     int n = 0;
-    bench::Stretches plain, proved;
+    bench::Stretches proved;
     Sample rank_against_umfpack;
 };
 
@@ -103,17 +103,11 @@ int main(int argc, char** argv) {
                         {"arcs", "arcs", ""},
                         {"klu", "one KLU analysis + factorisation, ms", "ms", "{:.2f}"},
                         {"umfpack", "one UMFPACK, ms", "ms", "{:.2f}"},
-                        {"plain", "plain, ms", "ms", "{:.2f}"},
                         {"decisions", "decisions, ms", "ms", "{:.2f}"},
-                        {"plain_cpu", "plain, CPU of all threads, ms", "ms", "{:.2f}"},
-                        {"decisions_cpu", "decisions, CPU, ms", "ms", "{:.2f}"},
-                        {"plain_klu", "plain / KLU", "KLU", "{:.2f}"},
+                        {"decisions_cpu", "decisions, CPU of all threads, ms", "ms", "{:.2f}"},
                         {"decisions_klu", "decisions / KLU", "KLU", "{:.2f}"},
-                        {"plain_umfpack", "plain / UMFPACK", "UMFPACK", "{:.2f}"},
                         {"decisions_umfpack", "decisions / UMFPACK", "UMFPACK", "{:.2f}"},
-                        {"decisions_plain", "decisions / plain", "", "{:.2f}"},
-                        {"rank_umfpack", "exact rank / UMFPACK", "UMFPACK", "{:.2f}"},
-                        {"same_events", "same contacts open and close", ""}});
+                        {"rank_umfpack", "exact rank / UMFPACK", "UMFPACK", "{:.2f}"}});
     bool good = true;
     std::vector<Row> rows;
     for (const std::string& source : sources) {
@@ -129,26 +123,17 @@ int main(int argc, char** argv) {
         options.arcs = arcs;
         options.threads = std::max(1, threads);
         for (int repeat = 0; repeat < repeats; ++repeat) {
-            options.level = CertifyLevel::plain;
-            row.plain.runs.push_back(bench::run_stretch(*begin_state, options));
-            options.level = CertifyLevel::decisions;
             row.proved.runs.push_back(bench::run_stretch(*begin_state, options));
         }
         row.rank_against_umfpack = parts(row.n, row.proved.front().last, parts_table);
-        const bool same = bench::same_events(row.plain.front(), row.proved.front());
-        for (const bench::Stretches* level : {&row.plain, &row.proved}) {
-            if (!level->front().failure.empty()) {
-                fmt::print(stderr, "{}: {}\n", source, level->front().failure);
-                good = false;
-            }
+        if (!row.proved.front().failure.empty()) {
+            fmt::print(stderr, "{}: {}\n", source, row.proved.front().failure);
+            good = false;
         }
-        good = good && same;
-        const Sample plain = row.plain.per_arc();
         const Sample proved = row.proved.per_arc();
         table.add({static_cast<long>(row.n), row.proved.front().counters.steps, row.proved.klu().median(),
-                   row.proved.umfpack().median(), plain, proved, row.plain.cpu_per_arc(), row.proved.cpu_per_arc(),
-                   plain.over(row.plain.klu()), proved.over(row.proved.klu()), plain.over(row.plain.umfpack()),
-                   proved.over(row.proved.umfpack()), proved.over(plain), row.rank_against_umfpack, same});
+                   row.proved.umfpack().median(), proved, row.proved.cpu_per_arc(), proved.over(row.proved.klu()),
+                   proved.over(row.proved.umfpack()), row.rank_against_umfpack});
         rows.push_back(std::move(row));
     }
     program.show(parts_table);
@@ -157,15 +142,14 @@ int main(int argc, char** argv) {
         bench::Table growth("growth", "Cost per arc grows as n to the power of",
                             {{"from", "from n", ""},
                              {"to", "to n", ""},
-                             {"plain", "plain", "", "{:.2f}"},
                              {"decisions", "decisions", "", "{:.2f}"},
                              {"klu", "KLU", "", "{:.2f}"},
                              {"umfpack", "UMFPACK", "", "{:.2f}"}});
         const auto between = [&](const Row& a, const Row& b) {
-            growth.add(
-                {static_cast<long>(a.n), static_cast<long>(b.n), exponent(a, b, a.plain.per_arc(), b.plain.per_arc()),
-                 exponent(a, b, a.proved.per_arc(), b.proved.per_arc()), exponent(a, b, a.proved.klu(), b.proved.klu()),
-                 exponent(a, b, a.proved.umfpack(), b.proved.umfpack())});
+            growth.add({static_cast<long>(a.n), static_cast<long>(b.n),
+                        exponent(a, b, a.proved.per_arc(), b.proved.per_arc()),
+                        exponent(a, b, a.proved.klu(), b.proved.klu()),
+                        exponent(a, b, a.proved.umfpack(), b.proved.umfpack())});
         };
         for (std::size_t k = 1; k < rows.size(); ++k) {
             between(rows[k - 1], rows[k]);

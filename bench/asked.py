@@ -16,13 +16,8 @@ import sys
 
 # figure, file, table, row (value of n, or the last row), column, most that is asked, unit
 ASKED = [
-    ("an arc, plain / one KLU, n = 1936, two cores", "arc_cost_2", "arc_cost", 1936, "plain_klu", 0.40, "KLU"),
-    ("the same, one core", "arc_cost", "arc_cost", 1936, "plain_klu", 0.40, "KLU"),
     ("an arc, decisions / one KLU, n = 1936, two cores", "arc_cost_2", "arc_cost", 1936, "decisions_klu", 0.70, "KLU"),
     ("the same, one core", "arc_cost", "arc_cost", 1936, "decisions_klu", 0.70, "KLU"),
-    ("an arc, plain / one KLU, n = 4900, two cores", "arc_cost_2", "arc_cost", 4900, "plain_klu", 0.30, "KLU"),
-    ("the same, one core", "arc_cost", "arc_cost", 4900, "plain_klu", 0.30, "KLU"),
-    ("growth of an arc, plain, n = 400 to 20 000", "growth", "growth", (400, 20000), "plain", 1.15, "exponent"),
     ("growth of an arc, decisions, n = 400 to 20 000", "growth", "growth", (400, 20000), "decisions", 1.15, "exponent"),
     ("exact rank / one UMFPACK factorisation, n = 4900", "exact_rank", "exact_rank", 4900,
      "umfpack_factorisation31", 0.5, "UMFPACK"),

@@ -180,7 +180,7 @@ int main(int argc, char** argv) {
         scale.add(n, "certificate", certified, 1, verdict(certified, certified.status == 0));
         const Cost verified = measure({settings.isostat, "verify", certificate, "--json"});
         scale.add(n, "verification", verified, 1, verdict(verified, verified.status == 0));
-        for (const std::string level : {"plain", "decisions"}) {
+        for (const std::string level : {"decisions"}) {
             const std::filesystem::path scene = settings.work / "run.toml";
             std::ofstream(scene) << scene_of_run(settings, state, level);
             const std::filesystem::path run = settings.work / ("run-" + level);

@@ -35,17 +35,16 @@ struct Recorder : RunObserver<2> {
     }
 };
 
-Recorder run(const State<2>& start, CertifyLevel level, int equilibria) {
+Recorder run(const State<2>& start, int equilibria) {
     Recorder recorder;
     State<2> state = start;
     RunCounters counters;
     Segment segment;
     segment.equilibria = equilibria;
     RunOptions options;
-    options.certify = level;
     const auto outcome = run_segment<2>(state, segment, 0, options, counters, recorder);
     if (!outcome.completed) {
-        fmt::print(stderr, "{}: {}\n", to_string(level), outcome.failure->message());
+        fmt::print(stderr, "{}\n", outcome.failure->message());
     }
     return recorder;
 }
@@ -107,16 +106,15 @@ int main(int argc, char** argv) {
     if (!start) {
         return 1;
     }
-    const Recorder plain = run(*start, CertifyLevel::plain, equilibria);
-    const Recorder proved = run(*start, CertifyLevel::decisions, equilibria);
-    const State<2>& last = plain.states.back();
+    const Recorder proved = run(*start, equilibria);
+    const State<2>& last = proved.states.back();
     const auto end = reference(last);
     if (!end) {
         return 1;
     }
     bench::Table forces("stale_factors",
                         fmt::format("Forces at equilibrium {} of {} disks; error of the reference at most {:.1e}:",
-                                    plain.states.size() - 1, last.packing.disk_count(), end->bound / end->size),
+                                    proved.states.size() - 1, last.packing.disk_count(), end->bound / end->size),
                         {{"arcs", "factors from how many arcs before", ""},
                          {"exchanged", "contacts exchanged since", ""},
                          {"asked", "accuracy asked", "", "{:.0e}"},
@@ -143,16 +141,16 @@ int main(int argc, char** argv) {
         end->factorisation.solve_forces(again);
     });
     int arcs = 0;
-    for (std::size_t back = plain.states.size() - 1; back-- > 0;) {
-        arcs += plain.arcs[back + 1];
-        if (plain.states[back].contacts.size() != last.contacts.size()) {
+    for (std::size_t back = proved.states.size() - 1; back-- > 0;) {
+        arcs += proved.arcs[back + 1];
+        if (proved.states[back].contacts.size() != last.contacts.size()) {
             break;
         }
         ApproximateInverse inverse(
-            contact_matrix(plain.states[back].packing, end->structure.dofs(), plain.states[back].contacts));
+            contact_matrix(proved.states[back].packing, end->structure.dofs(), proved.states[back].contacts));
         int exchanged = 0;
         for (std::size_t slot = 0; slot < last.contacts.size(); ++slot) {
-            if (plain.states[back].contacts[slot] != last.contacts[slot]) {
+            if (proved.states[back].contacts[slot] != last.contacts[slot]) {
                 inverse = inverse.exchanged(static_cast<int>(slot), end->structure.matrix());
                 ++exchanged;
             }
@@ -172,18 +170,15 @@ int main(int argc, char** argv) {
             line(arcs, exchanged, accuracy, passes, given_up, end->error(f), solve);
         }
     }
-    bench::Table levels("levels", "Distance of the stored vertices of a run from the true ones:",
-                        {{"level", "level", ""},
-                         {"equilibria", "equilibria", ""},
-                         {"distance", "largest distance of a coordinate", "", "{:.1e}"}});
-    for (const auto& [name, recorder] : {std::pair{"plain", &plain}, std::pair{"decisions", &proved}}) {
-        double distance = 0;
-        for (const State<2>& state : recorder->states) {
-            const auto at = reference(state);
-            distance = std::max(distance, at ? at->distance : std::numeric_limits<double>::infinity());
-        }
-        levels.add({std::string(name), static_cast<long>(recorder->states.size()), distance});
+    bench::Table levels(
+        "levels", "Distance of the stored vertices of a run from the true ones:",
+        {{"equilibria", "equilibria", ""}, {"distance", "largest distance of a coordinate", "", "{:.1e}"}});
+    double distance = 0;
+    for (const State<2>& state : proved.states) {
+        const auto at = reference(state);
+        distance = std::max(distance, at ? at->distance : std::numeric_limits<double>::infinity());
     }
+    levels.add({static_cast<long>(proved.states.size()), distance});
     program.show(forces);
     program.show(levels);
     return program.finish();

@@ -1,5 +1,6 @@
 // The numbers of records against the vertices of a replay.
 #include "checker/gaps.hpp"
+#include "checker/logarithm.hpp"
 #include "checker/newton.hpp"
 #include "checker/replay.hpp"
 
@@ -57,6 +58,10 @@ Range work(const Place& from, const Place& to, const Forces& load, double& size)
         size += std::abs(load[j].lower.get_d() * to.coordinate(k).lower.get_d());
     }
     return sum;
+}
+
+std::set<Contact> contact_set(const State<2>& state) {
+    return {state.contacts.begin(), state.contacts.end()};
 }
 
 int rattlers(const Place& place) {
@@ -199,30 +204,27 @@ bool is_first_order_step(const EventRecord& event) {
     return std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
 }
 
-/// No pair overlaps where an arc ends.
-Objections check_no_overlap(const Place& to, const EventRecord& event) {
-    for (const Gap& gap : to.gaps()) {
-        if (gap.value.has_zero() && to.first) {
-            const Range first = to.first->gap(gap.pair);
-            const TieRecord* said = said_of_gap(event, gap.pair);
-            const bool left = to.chooses && (first.has_zero() || (said != nullptr && said->choice == "watched"));
-            if (!first.positive() && !left) {
-                return Objection{first.negative(), fmt::format("{} touch at the end of the arc, first-order gap in {}",
-                                                               to_string<2>(gap.pair), shown(first))};
-            }
-            if (said == nullptr) { // a run with more digits may have told the gap from 0
-                return Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and the record "
-                                                    "does not name them",
-                                                    to_string<2>(gap.pair))};
+/// A pair touches, and would overlap with radii R_i + eps rho_i.
+Objection touches(const Contact& pair, const char* where, const Range& first) {
+    return {first.negative(),
+            fmt::format("{} touch at {}, first-order gap in {}", to_string<2>(pair), where, shown(first))};
+}
+
+/// No pair overlaps. `settled`: what is to be said of pairs that touch, with their first-order gaps.
+template <class Settled> Objections check_no_overlap(const Place& place, const char* where, const Settled& settled) {
+    for (const Gap& gap : place.gaps()) {
+        if (gap.value.has_zero() && place.first) {
+            if (Objections open = settled(gap.pair, place.first->gap(gap.pair))) {
+                return open;
             }
             continue;
         }
         if (gap.value.negative()) {
-            return Objection{true, fmt::format("{} overlap at the end of the arc, gap in {}", to_string<2>(gap.pair),
-                                               shown(gap.value))};
+            return Objection{
+                true, fmt::format("{} overlap at {}, gap in {}", to_string<2>(gap.pair), where, shown(gap.value))};
         }
         if (!gap.value.positive()) {
-            return Objection{false, fmt::format("{} may overlap at the end of the arc", to_string<2>(gap.pair))};
+            return Objection{false, fmt::format("{} may overlap at {}", to_string<2>(gap.pair), where)};
         }
     }
     return {};
@@ -250,24 +252,41 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
         return Objection{power.negative(),
                          fmt::format("the power is in {}: expected > 0 at the end of every arc", shown(power))};
     }
-    return compare("power", {event.power, event.power_bound}, power, force_tolerance * largest_force(forces), event,
-                   std::numeric_limits<double>::max());
+    return compare_if_bounded("power", {event.power, event.power_bound}, power,
+                              force_tolerance * largest_force(forces));
 }
 
-/// The recorded work is that of the finite loads, and the potential falls.
+/// By how much Phi = sum sigma_a ln L_a falls (S5 (b), stability.md). \pre true stresses, without loads on disks
+Range fall_of_phi(const Place& from, const Place& to) {
+    Range fall(Rational(0));
+    for (int a = 0; a < 2; ++a) {
+        const Range stress{Rational(to.state->load.stress[static_cast<std::size_t>(a)])};
+        fall = fall + stress * logarithm(from.length(a) / to.length(a));
+    }
+    return fall;
+}
+
+/// The recorded work is that of the finite loads, if they are dead, and the potential falls, if there is one.
 Objections check_work(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
+    const Load<2>& load = to.state->load;
+    const bool dead = load.kind == LoadKind::nominal;
     double size = 0;
-    const Range done = work(from, to, to.evidence->finite_load, size);
+    const Range done = dead ? work(from, to, to.evidence->finite_load, size) : Range(Rational(0));
     if (Objections wrong =
-            compare("work", {event.work, event.work_bound}, done, record_tolerance * size, event, size)) {
+            !dead ? Objections()
+                  : compare_if_bounded("work", {event.work, event.work_bound}, done, record_tolerance * size)) {
         return wrong;
     }
-    if (is_first_order_step(event)) {
+    const bool potential =
+        dead || rattles || std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f == 0; });
+    if (is_first_order_step(event) || !potential) {
         return {}; // no work
     }
     // Rattlers move without any work of the finite load: then the infinitesimal one decides.
     double unused = 0;
-    const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused) : done;
+    const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused)
+                          : dead  ? done
+                                  : fall_of_phi(from, to);
     if (!decides.positive()) {
         return Objection{decides.negative(),
                          fmt::format("the potential does not decrease: work in {}", shown(decides))};
@@ -390,23 +409,49 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    const Load<2>& load = to.state->load;
-    if (Objections wrong = compare("eps2", {event.strain, event.strain_bound}, strain_of(to, load.loaded_axis),
-                                   arc_strain_tolerance, event, 1)) {
+    if (Objections wrong = compare_if_bounded("eps2", {event.strain, event.strain_bound},
+                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
-    if (Objections wrong = check_no_overlap(to, event)) {
+    const auto settled = [&](const Contact& pair, const Range& first) -> Objections {
+        const TieRecord* said = said_of_gap(event, pair);
+        const bool left = to.chooses && (first.has_zero() || (said != nullptr && said->choice == "watched"));
+        if (!first.positive() && !left) {
+            return touches(pair, "the end of the arc", first);
+        }
+        return said != nullptr ? Objections() // else a run with more digits may have told the gap from 0
+                               : Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and "
+                                                              "the record does not name them",
+                                                              to_string<2>(pair))};
+    };
+    if (Objections wrong = check_no_overlap(to, "the end of the arc", settled)) {
         return wrong;
     }
     if (Objections wrong =
             event.power_turn ? check_power_at_turn(to, event) : check_power_at_contact(to, event, rattles)) {
         return wrong;
     }
-    return load.kind == LoadKind::nominal ? check_work(from, to, event, rattles) : Objections();
+    return check_work(from, to, event, rattles);
+}
+
+Objections check_start(const Place& place, const State<2>& given) {
+    const auto settled = [&](const Contact& pair, const Range& first) {
+        const bool left = place.chooses && first.has_zero();
+        return first.positive() || left ? Objections() : touches(pair, "the start", first);
+    };
+    if (!place.first && contact_set(given) != contact_set(*place.state)) {
+        return Objection{true, "start.json has other contacts than those with which its arcs lead to equilibrium 0"};
+    }
+    return check_no_overlap(place, "the start", settled);
 }
 
 Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     if (Objections wrong = check_forces(place)) {
+        return wrong;
+    }
+    // What touches was asked where the arc ended.
+    if (Objections wrong =
+            check_no_overlap(place, "an equilibrium", [](const auto&, const auto&) { return Objections(); })) {
         return wrong;
     }
     for (const auto& check : {check_counts, check_measures, check_smallest_gap, check_smallest_force}) {
@@ -508,11 +553,8 @@ Objections check_coordinates(const Place& place, const State<2>& stored, bool gi
 
 } // namespace
 
-Objections check_stored(const Place& place, const State<2>& stored, const std::vector<double>& start) {
-    const auto as_set = [](const State<2>& state) {
-        return std::set<Contact>(state.contacts.begin(), state.contacts.end());
-    };
-    if (as_set(stored) != as_set(*place.state)) {
+Objections check_stored(const Place& place, const State<2>& stored, const std::optional<State<2>>& start) {
+    if (contact_set(stored) != contact_set(*place.state)) {
         return Objection{true, "the stored state has other contacts"};
     }
     const Packing<2>& here = place.state->packing;
@@ -536,7 +578,7 @@ Objections check_stored(const Place& place, const State<2>& stored, const std::v
             return wrong;
         }
     }
-    return check_coordinates(place, stored, stored.packing.q == start);
+    return check_coordinates(place, stored, start && stored.packing.q == start->packing.q);
 }
 
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces) {

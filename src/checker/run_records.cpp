@@ -235,24 +235,26 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.segments = static_cast<int>(run.at("programme").size());
     const Field settings = run.at("settings").at("run");
     records.rule = word(settings.at("rule"), {"most_negative", "steepest", "random", "least_negative", "least_index"});
+    if (settings.has("rule_seed")) {
+        records.rule_seed = static_cast<std::uint64_t>(settings.at("rule_seed").integer());
+    }
     const std::string ties =
         settings.has("ties") ? word(settings.at("ties"), {"stop", "class", "perturb", "choose"}) : "stop";
     records.chooses = ties == "choose";
     records.by_class = ties == "class";
     const std::string level =
-        settings.has("certify") ? word(settings.at("certify"), {"plain", "decisions", "states", "arcs"}) : "decisions";
+        settings.has("certify") ? word(settings.at("certify"), {"decisions", "states", "arcs"}) : "decisions";
     records.certified_arcs = level == "arcs";
     records.certified_states = level == "states" || records.certified_arcs;
     records.states = directory / "states";
     if (std::filesystem::exists(directory / "start.json")) {
-        records.start = read_any_state<2>(directory / "start.json").state.packing.q;
+        records.start = read_any_state<2>(directory / "start.json").state;
     }
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
-            records.events.back().estimated = level == "plain";
         });
     }
     const std::filesystem::path equilibria = directory / "equilibria.csv"; // its first row comes with their names

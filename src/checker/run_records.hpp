@@ -32,8 +32,7 @@ struct EventRecord {
     bool power_turn = false;
     double stress = 0, strain = 0, force = 0, power = 0, work = 0, displacement = 0;
     double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
-    bool estimated = false;        ///< level plain: numbers on the way have no bound, they say what to look for
-    std::optional<double> held_at; ///< of power turns
+    std::optional<double> held_at;                                             ///< of power turns
     std::vector<TieRecord> ties;
 };
 
@@ -55,6 +54,7 @@ struct EquilibriumLine {
 struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
+    std::optional<std::uint64_t> rule_seed;                ///< of the rule `random`
     bool chooses = false;                                  ///< ties = "choose"
     bool by_class = false;                                 ///< ties = "class"
     std::string status, reason;                            ///< the word, and what follows it
@@ -64,7 +64,7 @@ struct RunRecords {
     std::vector<EventRecord> events;
     std::vector<EquilibriumLine> equilibria;
     std::filesystem::path states;
-    std::vector<double> start; ///< coordinates of start.json; may be far from the true vertex, until the first arc
+    std::optional<State<2>> start; ///< start.json; may be far from the true vertex, until the first arc
     /// The stored state of an equilibrium, with its forces, if there is one.
     [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
 };

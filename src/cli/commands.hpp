@@ -129,6 +129,7 @@ struct SnapArguments {
     ForeignArguments foreign;
     std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
     std::string stress, load, cell;        ///< cell: as of `ImportArguments`
+    std::string reference_length;          ///< "L1,L2"; empty: the lengths of the frame
     double stiffness = 0;                  ///< > 0: force = stiffness x overlap where the file says none
     std::uint64_t seed = 1;
     bool exchange = false;

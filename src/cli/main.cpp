@@ -416,6 +416,11 @@ struct Program {
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
         command
+            .add_option("--reference-length", a.reference_length,
+                        "lengths that nominal stresses press on (default: those of the frame; a series has those of "
+                        "its first frame)")
+            ->type_name("L1,L2");
+        command
             .add_option("--stiffness", a.stiffness,
                         "force / overlap: forces that the file does not say are compared with the exact ones too")
             ->type_name("K")

@@ -102,23 +102,17 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
 }
 
 /// Says what is worth knowing of how a run begins.
-void announce(const Scene& scene, const std::optional<State<2>>& from_file) {
+void announce(const std::optional<State<2>>& from_file) {
     if (const double moved = from_file ? moved_to_grid(*from_file) : 0; moved > 0) {
         fmt::print("start: coordinates of what can move are put on a grid, each moved by at most {}\n",
                    rounded_up(moved, 3));
     }
-    if (scene.run.certify == CertifyLevel::plain) {
-        fmt::print(
-            "certify = \"plain\": the equilibria are proved; the way between them is NOT certified, it is steered "
-            "by double precision without stated bounds\n");
-    }
 }
 
 /// The last line of a run that has its say.
-std::string last_line(const Scene& scene, const SceneEnding& ending, const RunCounters& counters) {
-    return fmt::format("{}{}{}: {} arcs{}, {} equilibria, {}\n", to_string(ending.status),
-                       ending.reason.empty() ? "" : ": ", ending.reason, counters.steps,
-                       scene.run.certify == CertifyLevel::plain ? " (not certified)" : "", counters.equilibria,
+std::string last_line(const SceneEnding& ending, const RunCounters& counters) {
+    return fmt::format("{}{}{}: {} arcs, {} equilibria, {}\n", to_string(ending.status),
+                       ending.reason.empty() ? "" : ": ", ending.reason, counters.steps, counters.equilibria,
                        clock_text(counters.seconds));
 }
 
@@ -165,7 +159,7 @@ int run(const RunArguments& arguments) {
     }
     const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
     if (!quiet) {
-        announce(scene, from_file);
+        announce(from_file);
     }
     SceneEnding ending;
     if (start.ok()) {
@@ -179,7 +173,7 @@ int run(const RunArguments& arguments) {
     if (arguments.common.json) {
         fmt::print("{}", directory.summary());
     } else if (!quiet) {
-        fmt::print("{}", last_line(scene, ending, counters));
+        fmt::print("{}", last_line(ending, counters));
     }
     const std::string open = left_open(counters);
     complain(arguments, ending, open);

@@ -28,9 +28,9 @@ struct Read : compare::SoftForces {
 
 /// A state says contacts and load itself.
 Read from_state(const SnapArguments& a) {
-    if (!a.contacts.empty() || !a.stress.empty() || !a.load.empty()) {
+    if (!a.contacts.empty() || !a.stress.empty() || !a.load.empty() || !a.reference_length.empty()) {
         throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
-                                               "--contacts, --stress, --load");
+                                               "--contacts, --stress, --load, --reference-length");
     }
     const StateFile<2> file = read_any_state<2>(a.file);
     Read out;
@@ -62,6 +62,9 @@ Read from_foreign(const SnapArguments& a) {
     out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     out.soft.load.stress = parse_stress(a.stress);
     out.soft.load.refer_to(file.packing);
+    if (!a.reference_length.empty()) {
+        out.soft.load.reference_length = parse_pair(a.reference_length, "--reference-length", "L1,L2");
+    }
     return out;
 }
 

@@ -67,22 +67,24 @@ void refuse(const std::string& file, const std::string& what) {
 }
 
 std::array<double, 2> parse_stress(const std::string& text) {
-    if (text.empty()) {
-        return {1, 1};
-    }
+    return text.empty() ? std::array<double, 2>{1, 1} : parse_pair(text, "--stress", "S1,S2");
+}
+
+std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names) {
     const std::vector<std::string> words = parse_list(text);
-    std::array<double, 2> stress{};
+    std::array<double, 2> pair{};
     bool good = words.size() == 2;
     for (std::size_t k = 0; good && k < 2; ++k) {
         const char* const end =
             words[k].data() + words[k].size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-        const auto [stop, error] = std::from_chars(words[k].data(), end, stress[k]);
-        good = error == std::errc() && stop == end && stress[k] > 0 && std::isfinite(stress[k]);
+        const auto [stop, error] = std::from_chars(words[k].data(), end, pair[k]);
+        good = error == std::errc() && stop == end && pair[k] > 0 && std::isfinite(pair[k]);
     }
     if (!good) {
-        throw Error(ErrorKind::usage, fmt::format("--stress is '{}': expected S1,S2, two positive numbers", text));
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} is '{}': expected {}, two positive numbers", option, text, names));
     }
-    return stress;
+    return pair;
 }
 
 void take_cell(const CellStatement& statement, Packing<2>& packing) {

@@ -125,6 +125,7 @@ void FrameFile::read_xyz(Lines& lines, FrameHeader& header) const {
     header = read_xyz_header(comment, rows);
     for (std::string& name : header.names) {
         name = name == "pos.0" ? "x" : name == "pos.1" ? "y" : name == "pos.2" ? "z" : name;
+        name = name == "velo.0" || name == "vel.0" ? "vx" : name == "velo.1" || name == "vel.1" ? "vy" : name;
     }
     header.timestep = xyz_timestep(comment, source_).value_or(frames_);
 }

@@ -251,7 +251,6 @@ Json tally_json(const Tally& tally) {
     object["double-double"] = tally.double_double;
     object["mpfr"] = tally.multiprecision;
     object["exact"] = tally.exact;
-    object["plain"] = tally.plain;
     object["undecided"] = tally.undecided;
     object["smallest_margin"] = json::or_null(tally.smallest_margin);
     for (std::size_t k = 0; k < decision_kinds; ++k) {
@@ -316,7 +315,6 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.double_double = tally.at("double-double").integer();
     counters.tally.multiprecision = tally.at("mpfr").integer();
     counters.tally.exact = tally.at("exact").integer();
-    counters.tally.plain = tally.has("plain") ? tally.at("plain").integer() : 0; // runs before there was that level
     counters.tally.undecided = tally.at("undecided").integer();
     for (std::size_t k = 0; k < decision_kinds; ++k) {
         const json::Field kind = tally.at("kinds").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str());

@@ -41,9 +41,6 @@ std::string header_text(const RunHeader& header, const std::string& status) {
 
 /// What is known of the way between the equilibria.
 std::string steering(const RunCounters& counters) {
-    if (counters.tally.plain > 0) {
-        return "not certified: double precision without stated bounds (level plain)";
-    }
     const ArcTally& arcs = counters.arcs;
     if (arcs.certified + arcs.undecided == 0) {
         return "ends of arcs proved, way between them looked at";

@@ -4,6 +4,7 @@
 #include "io/perturbation_json.hpp"
 #include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
+#include "packing/pressed_sides.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -293,6 +294,8 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     state.packing = packing_of<Dim>(document);
     validate(state.packing, source);
     state.load = load_of(document, state.packing);
+    require_pressed_sides(state.packing, state.load,
+                          document.has("load") && document.at("load").has("reference_length"), source);
     if (document.has("equilibrium")) {
         const long number = document.at("equilibrium").integer();
         if (number < 0 || number > 1'000'000'000) {

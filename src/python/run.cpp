@@ -186,7 +186,7 @@ void bind_arc(py::module_& module) {
         .def_readonly("power", &Arc::power, "Force in the new contact.")
         .def_readonly("work", &Arc::work, "Decrease of the potential W along the arc.")
         .def_readonly("displacement", &Arc::displacement, "Largest displacement of a coordinate; length.")
-        .def_readonly("margin", &Arc::margin, "Smallest |quantity| / bound of its decisions; nan at level plain.")
+        .def_readonly("margin", &Arc::margin, "Smallest |quantity| / bound of its decisions.")
         .def_property_readonly(
             "decided_by", [](const Arc& self) { return self.decided_by; }, "The arithmetic that it took.");
 }

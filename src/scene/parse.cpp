@@ -213,23 +213,36 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
     return step;
 }
 
+/// A word that scenes once had, and what says the same now.
+struct RetiredWord {
+    const char* key;
+    const char* word;
+    const char* instead;
+};
+constexpr std::array retired_words{
+    RetiredWord{"certify", "plain", "\"decisions\": every run proves the vertices on its way"},
+};
+
+void refuse_retired_words(Section& section) {
+    for (const RetiredWord& retired : retired_words) {
+        if (section.string(retired.key) == retired.word) {
+            section.fail(retired.key, retired.instead);
+        }
+    }
+}
+
 void read_run(Section& section, Scene& scene) {
     RunOptions& run = scene.run;
+    refuse_retired_words(section);
     run.rule =
         static_cast<OpeningRule>(section.word("rule", 0, {opening_rule_words.begin(), opening_rule_words.end()}));
     run.rule_seed =
         static_cast<std::uint64_t>(section.integer("rule_seed", static_cast<long>(run.rule_seed), 0, largest_seed));
     run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);
     run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
-    run.certify = static_cast<CertifyLevel>(section.word("certify", 1, {"plain", "decisions", "states", "arcs"}));
+    run.certify = static_cast<CertifyLevel>(section.word("certify", 0, {"decisions", "states", "arcs"}));
     run.ties = static_cast<TiePolicy>(section.word("ties", 0, {tie_policy_words.begin(), tie_policy_words.end()}));
-    const std::string policy = tie_policy_words[static_cast<std::size_t>(run.ties)];
     const auto ties_seed = section.integer("ties_seed");
-    if (run.ties != TiePolicy::stop && run.certify == CertifyLevel::plain) {
-        section.refuse("ties", "ties = \"" + policy +
-                                   "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
-                                   "equilibria");
-    }
     if (at_first_order(run.ties)) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
     } else if (ties_seed) {

@@ -53,6 +53,38 @@ BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
            {"--stiffness", "is -1: expected a positive number"});
 }
 
+BOOST_AUTO_TEST_CASE(nominal_stresses_of_a_later_frame_press_on_the_lengths_that_are_stated) {
+    const scratch::Folder folder;
+    const auto rest = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"snap",
+                                       scratch::data("series/disks.dump"),
+                                       "--frame",
+                                       "4",
+                                       "--box",
+                                       "0:15.4667845567222,0:14.8785794068429",
+                                       "--contacts",
+                                       scratch::data("series/contacts.dump"),
+                                       "--contact-columns",
+                                       "i,j,force",
+                                       "--stress",
+                                       "1,1.18",
+                                       "--json",
+                                       "-o",
+                                       (folder / "state.json").string()};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome made = run(words);
+        expect(made, 0);
+        return std::stod(made.out.substr(made.out.find("\"rest\":") + 7));
+    };
+    BOOST_TEST(rest({}) > 1e-4);
+    BOOST_TEST(rest({"--reference-length", "15.459368964433708,14.885842749060064"}) < 1e-6);
+    for (const char* wrong : {"15", "15,0", "15,-1", "15,nan", "15,x"}) {
+        expect(run({"snap", scratch::data("series/disks.dump"), "--box", first_box, "--reference-length", wrong, "-o",
+                    (folder / "state.json").string()}),
+               64, {"--reference-length is '", "L1,L2, two positive numbers"});
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_wall_whose_digits_are_rounded_is_named) {
     const scratch::Folder folder;
     const fs::path state = folder / "state.json";

@@ -295,6 +295,38 @@ BOOST_AUTO_TEST_CASE(links_are_kept_and_pipes_are_not_replaced) {
     BOOST_TEST(std::filesystem::is_fifo(pipe));
 }
 
+BOOST_AUTO_TEST_CASE(no_stress_presses_over_a_side_whose_wall_is_absent) {
+    // The force on the top wall was 4 or 400 with the place of a right wall that is not there.
+    const auto state = [](const std::string& lower, const std::string& upper, const std::string& load) {
+        return R"({"format": "isostat-state", "version": 2, "disks": [[0.5, 1, 0.5], [2, 1, 1]], "length": [400, 2],
+            "walls": {"lower": [")" +
+               lower + R"(", "fixed"], "upper": [")" + upper +
+               R"(", "movable"]}, "fixed": [0], "contacts": [[1, "bottom"], [1, "top"], [0, 1]], "load": {)" + load +
+               R"(, "stress": [1, 1]}})";
+    };
+    const std::string present = R"("kind": "true", "reference_length": [4, 2])", dead = R"("reference_length": [4, 2])";
+    for (const auto& [lower, upper] : {std::pair("fixed", "absent"), std::pair("absent", "fixed")}) {
+        expect_bad_input([&, l = lower, u = upper] { (void)parse_state<2>(state(l, u, present), "FILE"); },
+                         {"FILE", "\"true\"", "length along x", "absent", "expected nominal"});
+        expect_bad_input(
+            [&, l = lower, u = upper] { (void)parse_state<2>(state(l, u, R"("kind": "nominal")"), "FILE"); },
+            {"FILE", "no reference_length", "length along x"});
+        const State<2> stated = parse_state<2>(state(lower, upper, dead), "FILE").state;
+        BOOST_TEST(stated.load.wall_forces(stated.packing).front().length == 4);
+        State<2> other = stated; // as [load] of a scene says it
+        other.load.kind = LoadKind::true_stress;
+        expect_bad_input([&] { isostat::check_start(other, "SCENE"); }, {"SCENE", "length along x"});
+    }
+    for (const std::string& load : {present, std::string(R"("kind": "nominal")")}) {
+        BOOST_TEST(parse_state<2>(state("fixed", "fixed", load), "FILE").state.load.reference_length[1] == 2);
+    }
+    // The right wall is pressed over the height, which both walls bound.
+    const std::string beside =
+        R"({"format": "isostat-state", "version": 2, "disks": [[1, 1, 1]], "length": [2, 2], "walls":
+        {"lower": ["fixed", "fixed"], "upper": ["movable", "fixed"]}, "contacts": [], "load": {"kind": "true"}})";
+    BOOST_TEST((parse_state<2>(beside, "FILE").state.load.kind == LoadKind::true_stress));
+}
+
 BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {
     const scratch::Folder folder;
     expect_bad_input([&] { (void)read_state<2>(folder / "absent.json"); }, {"absent.json", "No such file"});

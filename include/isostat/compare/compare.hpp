@@ -41,6 +41,8 @@ struct Frame {
     std::vector<long> ids;
     Load<2> load;
     std::vector<FileContact> contacts; ///< as they stand in the files, in their order; walls too
+    std::vector<double> velocity;      ///< of the disks, in any unit of time; empty: not in the files
+    double rounding = 0;               ///< so far are gaps known by the digits of the files
 };
 
 /// What the manifest says of every frame.

@@ -337,7 +337,7 @@ RunCounters counters_from(const json::Field& field) {
     counters.tally.structural_ties = counted(tally.at("ties").at("structural"));
     counters.tally.ties = counted(tally.at("ties").at("other"));
     counters.tally.choices = tally.at("ties").has("choices") ? counted(tally.at("ties").at("choices")) : 0;
-    for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
         counters.tally.perturbed[k] =
             counted(tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()));
     }

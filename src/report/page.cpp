@@ -259,7 +259,7 @@ Json header_json(const std::filesystem::path& directory) {
     }
     object["segments"] = run.at("programme").value();
     const json::Field settings = run.at("settings").at("run");
-    object["level"] = settings.has("certify") ? settings.at("certify").string() : "decisions";
+    object["level"] = settings.at("certify").string();
     return object;
 }
 

@@ -152,19 +152,16 @@ std::string decision_table(const json::Field& decisions) {
     text += fmt::format("undecided            {} (ties {}); structural ties ordered by the infinitesimal loads {}\n",
                         decisions.at("undecided").integer(), decisions.at("ties").at("other").integer(),
                         decisions.at("ties").at("structural").integer());
-    if (decisions.at("ties").has("perturbed")) { // records of older versions have none
-        const json::Field perturbed = decisions.at("ties").at("perturbed");
-        std::string kinds;
-        long all = 0;
-        for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
-            const long count = perturbed.at(kind).integer();
-            all += count;
-            kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, count);
-        }
-        text += all == 0 ? "" : fmt::format("settled by first order in the radii {} ({})\n", all, kinds);
-        const json::Field ties = decisions.at("ties");
-        text += ties.has("choices") ? fmt::format("chosen by the rule   {}\n", ties.at("choices").integer()) : "";
+    const json::Field ties = decisions.at("ties"), perturbed = ties.at("perturbed");
+    std::string kinds;
+    long all = 0;
+    for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
+        const long count = perturbed.at(kind).integer();
+        all += count;
+        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, count);
     }
+    text += all == 0 ? "" : fmt::format("settled by first order in the radii {} ({})\n", all, kinds);
+    text += ties.has("choices") ? fmt::format("chosen by the rule   {}\n", ties.at("choices").integer()) : "";
     return text;
 }
 

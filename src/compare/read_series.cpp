@@ -4,6 +4,7 @@
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/frame_file.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -231,7 +232,7 @@ class Disks {
                 places.see(row->field(column));
             }
             for (const std::size_t column : speeds) {
-                frame.velocity.push_back(foreign::to_number(row->field(column)).value_or(NAN) * f);
+                frame.velocity.push_back(finite_number(row->field(column)).value_or(NAN) * f);
             }
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }

@@ -290,7 +290,7 @@ bool opens_by_slope(const TieRecord& tie) {
 Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
                        ExactLoad& at_limit) {
     const Evidence& e = *place.evidence;
-    if (event.force != 0 || !(event.force_bound == 0 || event.estimated)) {
+    if (event.force != 0 || event.force_bound != 0) {
         return Objection{true,
                          fmt::format("the force at a limit is {} +- {}, not 0 +- 0", event.force, event.force_bound)};
     }

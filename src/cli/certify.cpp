@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/rounding.hpp"
+#include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 #include "io/files.hpp"
 
@@ -15,6 +16,7 @@ namespace isostat::cli {
 
 int certify(const CertifyArguments& arguments) {
     const std::filesystem::path input = arguments.input;
+    check_output(arguments.output, "\"isostat-certificate\"", {input});
     Certificate certificate;
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
@@ -40,12 +42,12 @@ int certify(const CertifyArguments& arguments) {
     } else {
         print_claims(result);
         print_forces_in_file(file, result);
-        fmt::print("{:<14} {}: {}\n", to_string(verdict),
-                   verdict == Verdict::proved    ? "an isostatic, stable equilibrium without overlap at the true vertex"
-                   : verdict == Verdict::refuted ? "not such an equilibrium"
-                   : untold.any() ? fmt::format("the claims are of the stored doubles; {}", untold.words())
-                                  : "some claims could not be made",
-                   arguments.output);
+        say("{:<14} {}: {}\n", to_string(verdict),
+            verdict == Verdict::proved    ? "an isostatic, stable equilibrium without overlap at the true vertex"
+            : verdict == Verdict::refuted ? "not such an equilibrium"
+            : untold.any()                ? fmt::format("the claims are of the stored doubles; {}", untold.words())
+                                          : "some claims could not be made",
+            arguments.output);
     }
     return status_of(verdict);
 }

@@ -33,6 +33,9 @@ struct RunArguments {
 };
 int run(const RunArguments& arguments);
 
+/// Of an ensemble.
+inline constexpr int most_samples = 1'000'000;
+
 struct EnsembleArguments {
     Common common;
     std::string scene, output;
@@ -77,12 +80,6 @@ struct ReportArguments {
     double stiffness = 0; ///< > 0: the table of soft limits too
 };
 int report(const ReportArguments& arguments);
-
-struct ConvertArguments {
-    Common common;
-    std::string input, output;
-};
-int convert(const ConvertArguments& arguments);
 
 struct VerifyArguments {
     Common common;
@@ -136,6 +133,7 @@ struct SnapArguments {
     ForeignArguments foreign;
     std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
     std::string stress, load, cell;        ///< cell: as of `ImportArguments`
+    std::string reference_length;          ///< "L1,L2"; empty: the lengths of the frame
     double stiffness = 0;                  ///< > 0: force = stiffness x overlap where the file says none
     std::uint64_t seed = 1;
     bool exchange = false;

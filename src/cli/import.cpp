@@ -3,6 +3,7 @@
 #include "cli/read_packing.hpp"
 #include "cli/rounding.hpp"
 #include "cli/soft_list.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 
@@ -224,6 +225,21 @@ const char* unbalanced_axis(const State<2>& state) {
     return nullptr;
 }
 
+/// A vertex text as it is: its contacts, its load.
+Result<Imported> from_vertex_text(const ImportArguments& a) {
+    if (!a.contacts.empty() || a.threshold || !a.stress.empty() || !a.load.empty()) {
+        refuse(a.file, "is a vertex text, which has its contacts and its load: expected no --contacts, --threshold, "
+                       "--stress or --load");
+    }
+    Imported out;
+    out.state = read_any_state<2>(a.file).state;
+    out.from = out.state.packing.q;
+    out.truth = isostat::certify(out.state);
+    out.contacts = "those of the vertex text";
+    out.load_of_file = true;
+    return out;
+}
+
 /// A crafted packing as it is: exact contacts, doubles next to its numbers, its load.
 Result<Imported> from_crafted(const ImportArguments& a, const std::string& text) {
     const crafted::PackingFile file = crafted::parse_packing(text, a.file);
@@ -329,8 +345,10 @@ void judge_moves(const ImportArguments& a, const Imported& found, const Moves& m
     }
 }
 
+constexpr const char* moves_head = "disk,x,y,moved,rattler\n";
+
 std::string moves_csv(const Imported& found, const Moves& moves) {
-    std::string text = "disk,x,y,moved,rattler\n";
+    std::string text = moves_head;
     for (std::size_t i = 0; i < moves.disk.size(); ++i) {
         text += fmt::format("{},{},{},{},{}\n", i, found.state.packing.q[2 * i], found.state.packing.q[2 * i + 1],
                             rounded_up(moves.disk[i], 6), moves.rattler[i]);
@@ -364,29 +382,28 @@ std::string load_by_default(const ImportArguments& a, const Imported& found) {
 
 void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found, const Moves& moves) {
     const State<2>& state = found.state;
-    fmt::print("file      {} ({})\n", a.file, file.format);
+    say("file      {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
-        fmt::print("          {}\n", note);
+        say("          {}\n", note);
     }
     const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
-    fmt::print("contacts  {}\n", found.contacts);
-    fmt::print("moved     disks with a force at most {}, {} {}", rounded_up(moves.backbone, 3),
-               state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
-    fmt::print("{}\n", rattlers == 0 ? ""
-                                     : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
-                                                   rounded_up(moves.rattlers, 3)));
-    fmt::print("load      sigma = ({}, {}), {}{}\n", state.load.stress[0], state.load.stress[1],
-               state.load.kind == LoadKind::nominal ? "nominal" : "true stresses", load_by_default(a, found));
+    say("contacts  {}\n", found.contacts);
+    say("moved     disks with a force at most {}, {} {}", rounded_up(moves.backbone, 3),
+        state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
+    say("{}\n", rattlers == 0 ? ""
+                              : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
+                                            rounded_up(moves.rattlers, 3)));
+    say("load      sigma = ({}, {}), {}{}\n", state.load.stress[0], state.load.stress[1],
+        state.load.kind == LoadKind::nominal ? "nominal" : "true stresses", load_by_default(a, found));
     if (found.copy) {
-        fmt::print(
-            "jitter    this is a copy with other radii: gaps or forces are so small that h, the contacts and the "
+        say("jitter    this is a copy with other radii: gaps or forces are so small that h, the contacts and the "
             "strict verdict may differ from those of the file\n");
     }
-    fmt::print("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
-               state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction(),
-               found.untold.any()
-                   ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
-                   : "");
+    say("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
+        state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction(),
+        found.untold.any()
+            ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
+            : "");
 }
 
 /// What may help where no vertex is proved. Empty: nothing.
@@ -400,13 +417,14 @@ std::string advice(const ImportArguments& a, bool crafted, std::vector<double> r
 
 int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
+    check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
+    check_output(a.moved, moves_head, {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
-    const bool own = format == "state" || format == "vertex";
+    const bool listed = format == "vertex" && a.jitter == 0;
+    const bool own = !listed && (format == "state" || format == "vertex");
     if (own && a.jitter == 0) {
-        refuse(a.file, fmt::format("is a {} of this program: expected a packing of another one, or --jitter; isostat "
-                                   "convert copies it",
-                                   format));
+        refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (own) {
         keep_load(a);
@@ -418,9 +436,10 @@ int import(const ImportArguments& arguments) {
                            "it is {}",
                            a.jitter));
     }
-    ReadPacking file = read_imported(a, crafted, own);
-    auto found = crafted ? from_crafted(a, text) : from_foreign(a, file);
-    if (found.ok() && !crafted) {
+    ReadPacking file = listed ? ReadPacking{} : read_imported(a, crafted, own);
+    file.format = listed ? format : file.format;
+    auto found = listed ? from_vertex_text(a) : crafted ? from_crafted(a, text) : from_foreign(a, file);
+    if (found.ok() && !crafted && !listed) {
         Imported& f = found.value();
         f.untold = untold_by(file.rounding, f.state, f.truth);
         const double jitter = 2 * a.jitter * file.packing.max_radius();
@@ -429,7 +448,7 @@ int import(const ImportArguments& arguments) {
     const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
     if (!found.ok() || refuted) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
-        fmt::print(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
+        say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
         return refuted ? failed : status_of(found.failure().kind);
     }
     Imported& imported = found.value();
@@ -440,15 +459,15 @@ int import(const ImportArguments& arguments) {
     const Json provenance = provenance_of(a, format, imported, moves);
     imported.state.provenance = json::dumped(provenance);
     if (imported.truth.verdict != Verdict::proved) {
-        fmt::print(stderr, "isostat: {}: {}{}\n", a.file, fmt::join(imported.truth.claims.undecided, "; "),
-                   advice(a, crafted, file.packing.radius));
+        say(stderr, "isostat: {}: {}{}\n", a.file, fmt::format("{}", fmt::join(imported.truth.claims.undecided, "; ")),
+            advice(a, crafted, file.packing.radius));
     }
     if (!imported.truth.claims.vertex || !imported.truth.claims.forces) {
         return undecided;
     }
     write_state<2>(a.output, imported.state);
     if (!a.moved.empty()) {
-        write_atomically(a.moved, moves_csv(imported, moves));
+        write_output(a.moved, moves_csv(imported, moves), moves_head);
     }
     if (a.common.json) {
         Json object = provenance;

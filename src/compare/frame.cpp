@@ -96,10 +96,7 @@ void try_exchange(const SoftState& soft, const Reading& reading, const Snap& sna
     out.state = std::move(e.state);
 }
 
-} // namespace
-
-JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
-    const Reading reading = read_frame(series, frame);
+JudgedFrame judge(const Series& series, const Frame& frame, const Reading& reading, bool complete) {
     JudgedFrame out;
     out.result = begin(frame, reading);
     out.list = reading.contacts;
@@ -118,9 +115,16 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
         return out;
     }
     if (!(reading.unbalanced <= series.rest)) {
+        r.status = reading.blurred ? FrameStatus::undecided : FrameStatus::moving;
+        r.reason = fmt::format(
+            "a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}{}{}{}", reading.unbalanced,
+            series.rest, reading.blurred ? "; so much is within the digits of the files, overlaps have no more" : "",
+            reading.dashpots.empty() ? "" : "; ", reading.dashpots, reading.few);
+        return out;
+    }
+    if (!reading.dashpots.empty()) {
         r.status = FrameStatus::moving;
-        r.reason = fmt::format("a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}",
-                               reading.unbalanced, series.rest, reading.few);
+        r.reason = fmt::format("forces differ from the law by {:.3g} mean forces; {}", reading.law, reading.dashpots);
         return out;
     }
     const Snap snapped = snap(soft);
@@ -150,6 +154,25 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
             r.reason = state.failure().message();
         }
     }
+    return out;
+}
+
+} // namespace
+
+JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
+    const Reading reading = read_frame(series, frame);
+    JudgedFrame out = judge(series, frame, reading, complete);
+    FrameResult& r = out.result;
+    const auto add = [&](const std::string& words) {
+        r.reason += (r.reason.empty() || words.empty() ? "" : "; ") + words;
+    };
+    const bool list_matters = r.status == FrameStatus::soft || r.status == FrameStatus::refuted ||
+                              (r.status == FrameStatus::moving && r.counting.mechanisms > 0);
+    if (list_matters && !reading.unsure.empty()) {
+        r.status = FrameStatus::undecided;
+        add(reading.unsure);
+    }
+    add(reading.rounding);
     return out;
 }
 

@@ -289,14 +289,6 @@ std::optional<Factorisation> Factorisation::of_moving_block(const IsostaticStruc
     return block;
 }
 
-Factorisation Factorisation::fresh_copy() const {
-    assert(is_fresh());
-    Factorisation copy;
-    // NOLINTNEXTLINE(modernize-make-unique): an aggregate
-    copy.implementation_.reset(new Implementation{implementation_->matrix, implementation_->inverse, true, 0, {}, {}});
-    return copy;
-}
-
 Factorisation::~Factorisation() = default;
 Factorisation::Factorisation(Factorisation&&) noexcept = default;
 Factorisation& Factorisation::operator=(Factorisation&&) noexcept = default;

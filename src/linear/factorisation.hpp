@@ -28,8 +28,6 @@ class Factorisation {
     /// solve; forces are those of the block. Nothing when more than a quarter of the degrees of freedom move.
     template <int Dim>
     static std::optional<Factorisation> of_moving_block(const IsostaticStructure<Dim>& structure, int slot);
-    /// The same factors for another thread. \pre is_fresh()
-    [[nodiscard]] Factorisation fresh_copy() const;
     ~Factorisation();
     Factorisation(Factorisation&&) noexcept;
     Factorisation& operator=(Factorisation&&) noexcept;

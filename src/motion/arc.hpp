@@ -66,8 +66,6 @@ template <int Dim> struct Arc {
     Contact closed;              ///< the new contact, or the fastest coordinate at the power turn (ContactKind::held)
     double power = 0;            ///< F_ext . t at the end, t scaled to 1 in the fastest coordinate; as good as t
     std::vector<double> tangent; ///< t, on coordinates: a guess of the null vector of the kept contacts, not a bound
-    /// Velocity at the start, on coordinates, that opens the contact at unit rate: a guess.
-    std::vector<double> opening;
     /// The candidates that are not contacts at the end, in the order of the list; empty: not known.
     std::vector<Contact> open;
     double displacement = 0; ///< largest displacement of a coordinate

@@ -77,7 +77,6 @@ template <int Dim> class Follower {
     CurveCourse<Dim> here_; ///< where the next step begins
     double step_limit_;
     double noise_;                   ///< lengths that rounding may make
-    Vector opening_;                 ///< velocity at the start that opens the contact at unit rate
     std::optional<Failure> failure_; ///< of `begin` or `predict`
     bool predicted_ = false;         ///< curvature and `event_` belong to `here_`
     bool moved_ = false;             ///< `here_` is no longer the start

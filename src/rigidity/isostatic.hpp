@@ -88,7 +88,7 @@ class RegularityProof {
 enum class RegularityEvidence : std::uint8_t {
     elimination,    ///< full rank mod p of the stored coordinates
     singular_value, ///< smallest singular value bounded away from 0, also for the stored coordinates
-    none            ///< nothing was proved: between the equilibria of a run at level `plain` only
+    none            ///< nothing was proved: for steering, whose ends are proved apart
 };
 
 /// Largest number of coordinates of a packing, and so of contacts of a structure: error bounds allow for sums of so
@@ -121,7 +121,7 @@ template <int Dim> class IsostaticStructure {
     /// By a positive lower bound of its smallest singular value (statement T3 with V8, or V1). \pre the proof is of
     /// this matrix.
     static IsostaticStructure exchanged(ExchangedContacts<Dim> contacts, const RegularityProof& proof);
-    /// Taken for regular, without proof (`evidence() == RegularityEvidence::none`): for steering at level `plain`. A
+    /// Taken for regular, without proof (`evidence() == RegularityEvidence::none`): for steering ahead of the proofs. A
     /// bound of its inverse, if asked for, is proved all the same or not at all.
     static IsostaticStructure without_proof(ExchangedContacts<Dim> contacts);
 

@@ -1,3 +1,4 @@
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
 #include "scene/radii_file.hpp"
@@ -50,7 +51,7 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
                 key, fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
         }
     }
-    scene.start = folder / file;
+    scene.start = *section.file("file", folder);
     section.record("file", toml_text(file));
 }
 
@@ -90,7 +91,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     } else if (radii) {
         read_radii_list(section, *radii, options);
     } else {
-        options.radii = read_radii(folder / *radii_file);
+        options.radii = read_radii(*section.file("radii_file", folder));
         section.record("radii_file", toml_text(*radii_file));
     }
     options.jitter = section.number("jitter", options.jitter, 0, largest_jitter, "0, or a number from 1e-14 to 0.1");
@@ -207,29 +208,45 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
     }
     const auto name = section.string("name");
+    if (name && !text::is_plain_line(*name)) {
+        section.fail("name", "one line of text without control characters");
+    }
     step.name = name.value_or(describe(step));
     section.record("name", toml_text(step.name));
     section.finish();
     return step;
 }
 
+/// A word that scenes once had, and what says the same now.
+struct RetiredWord {
+    const char* key;
+    const char* word;
+    const char* instead;
+};
+constexpr std::array retired_words{
+    RetiredWord{"certify", "plain", "\"decisions\": every run proves the vertices on its way"},
+};
+
+void refuse_retired_words(Section& section) {
+    for (const RetiredWord& retired : retired_words) {
+        if (section.string(retired.key) == retired.word) {
+            section.fail(retired.key, retired.instead);
+        }
+    }
+}
+
 void read_run(Section& section, Scene& scene) {
     RunOptions& run = scene.run;
+    refuse_retired_words(section);
     run.rule =
         static_cast<OpeningRule>(section.word("rule", 0, {opening_rule_words.begin(), opening_rule_words.end()}));
     run.rule_seed =
         static_cast<std::uint64_t>(section.integer("rule_seed", static_cast<long>(run.rule_seed), 0, largest_seed));
     run.max_arcs = section.integer("max_arcs", run.max_arcs, 1, 1'000'000'000);
     run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
-    run.certify = static_cast<CertifyLevel>(section.word("certify", 1, {"plain", "decisions", "states", "arcs"}));
+    run.certify = static_cast<CertifyLevel>(section.word("certify", 0, {"decisions", "states", "arcs"}));
     run.ties = static_cast<TiePolicy>(section.word("ties", 0, {tie_policy_words.begin(), tie_policy_words.end()}));
-    const std::string policy = tie_policy_words[static_cast<std::size_t>(run.ties)];
     const auto ties_seed = section.integer("ties_seed");
-    if (run.ties != TiePolicy::stop && run.certify == CertifyLevel::plain) {
-        section.refuse("ties", "ties = \"" + policy +
-                                   "\" in [run] settles ties that were proved: certify = \"plain\" proves none between "
-                                   "equilibria");
-    }
     if (at_first_order(run.ties)) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
     } else if (ties_seed) {

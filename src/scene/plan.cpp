@@ -83,9 +83,7 @@ void add_solvers(Plan& plan, const Scene& scene) {
              "complete contact candidates and the proof that nothing overlaps: made once, then carried along with the "
              "disks; where they overlap all pairs are swept");
     plan.add("solver", "elimination mod 2^61 - 1", true,
-             runs && scene.run.certify == CertifyLevel::plain
-                 ? "the contact matrix of every equilibrium is proved regular; those in between are not"
-                 : "every contact matrix is proved regular before it is used in double precision");
+             "every contact matrix is proved regular before it is used in double precision");
     plan.add("solver", "sparse LU (KLU)", true, "forces and mechanisms");
     plan.add("solver", "double-double", true,
              "only where the bound of the double precision result does not decide a sign");
@@ -117,12 +115,9 @@ void add_proofs(Plan& plan, const Scene& scene) {
     };
     plan.add("proof", "equilibria", runs,
              "rank (exact), sign of every force, both ends of the supported interval, no overlap");
-    plan.add("proof", "decisions", runs && level >= CertifyLevel::decisions,
-             runs && level < CertifyLevel::decisions
-                 ? asked(CertifyLevel::decisions) + "; the way from equilibrium to equilibrium is not certified: it is "
-                                                    "steered by double precision without stated bounds"
-                 : "every comparison that steers has a bound on both sides; ends of arcs proved, the way between "
-                   "them looked at; its cost is that of the run");
+    plan.add("proof", "decisions", runs,
+             "every comparison that steers has a bound on both sides; ends of arcs proved, the way between them looked "
+             "at; its cost is that of the run");
     plan.add("proof", "states", runs && level >= CertifyLevel::states,
              asked(CertifyLevel::states) +
                  "; the certificate of each equilibrium in certificates/; some 5 factorisations each");

@@ -15,12 +15,6 @@ template <int Dim> Words names(const ArcRecord<Dim>& record) {
     return words("the arc that opens {} and closes {}", named<Dim>(record.opened), named<Dim>(record.closed));
 }
 
-/// eps_2, in double.
-template <int Dim> double strain(const Load<Dim>& load, const Packing<Dim>& packing) {
-    const double reference = load.strain_length(load.loaded_axis);
-    return reference > 0 ? (load.at_rest(load.loaded_axis) - packing.length(load.loaded_axis)) / reference : 0;
-}
-
 } // namespace
 
 std::uint64_t bits_for(std::uint64_t seed, long step) { // splitmix64 finaliser
@@ -36,36 +30,19 @@ ArcKind kind_of(const Contact& opened, bool infinitesimal) {
 
 template <int Dim>
 FloatingSteering<Dim>::FloatingSteering(const Origin& from, const ArcStart<Dim>& start, const RunOptions& options,
-                                        CandidateList<Dim> candidates, bool for_proofs)
+                                        CandidateList<Dim> candidates)
     : packing_(&from.packing), structure_(&from.structure), factorisation_(&from.factorisation), start_(start),
-      load_(*start.load), options_(options), candidates_(std::move(candidates)), for_proofs_(for_proofs) {
+      load_(*start.load), candidates_(std::move(candidates)) {
     arc_options_.step_fraction = options.step_fraction;
     arc_options_.extrapolate_tangent = true;
 }
 
 template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::propose() {
-    if (queue_.empty()) {
-        return next();
-    }
-    Result<ArcProposal<Dim>> arc = std::move(queue_.front());
-    queue_.pop_front();
-    return arc;
-}
-
-template <int Dim> void FloatingSteering<Dim>::propose_ahead(const std::function<bool()>& enough) {
-    while (!ended_ && !enough() && queue_.size() < static_cast<std::size_t>(options_.max_arcs)) {
-        queue_.push_back(next());
-    }
-}
-
-template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
     ArcProposal<Dim> arc;
     ArcRecord<Dim>& record = arc.record;
     record.step = start_.step;
     record.kind = start_.kind;
     record.opened = structure_->contacts()[start_.opening.contact.index()];
-    record.force = start_.opening.force.value;
-    record.margin = std::nan("");
     arc.opening = start_.opening;
     ended_ = true; // unless there is another arc after this one
     Prediction prediction;
@@ -74,22 +51,20 @@ template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
     if (!path.ok()) {
         return path.failure();
     }
-    if (auto failure = record_arc(record, path.value())) {
+    record_path(record, path.value());
+    if (auto failure = check_work(record, path.value())) {
         return *failure;
     }
     if (auto failure = arrive(arc, path.value(), prediction)) {
         return *failure;
     }
-    if (auto failure = record_power(record)) {
+    if (auto failure = check_power(record)) {
         return *failure;
     }
-    record.strain = strain(load_, *packing_);
-    if (for_proofs_) {
-        arc.ahead = true;
-        arc.end = *packing_;
-        arc.tangent = std::move(path.value().tangent);
-        arc.forces = here_->force;
-    }
+    arc.ahead = true;
+    arc.end = *packing_;
+    arc.tangent = std::move(path.value().tangent);
+    arc.forces = here_->force;
     choose(arc);
     return arc;
 }
@@ -133,13 +108,8 @@ template <int Dim> Result<Arc<Dim>> FloatingSteering<Dim>::follow(Prediction& pr
 }
 
 template <int Dim>
-std::optional<Failure> FloatingSteering<Dim>::record_arc(ArcRecord<Dim>& record, const Arc<Dim>& path) const {
-    if (here_ && here_->has_departure()) {
-        record.force = here_->better_force(start_.opening.contact.index(), path.opening);
-    }
-    record_path(record, path);
+std::optional<Failure> FloatingSteering<Dim>::check_work(const ArcRecord<Dim>& record, const Arc<Dim>& path) const {
     const WorkOfArc work = work_of(load_, *packing_, path.end);
-    record.work = work.value;
     if (load_.kind == LoadKind::nominal && work.value < -1e-12 * work.size) {
         return failed(FailureKind::undecided, "W increased by {:.6g} along {}", -work.value, names(record));
     }
@@ -163,10 +133,8 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     if (!next->predicted()) { // a normal turned into or out of an axis: the backbone may be another one
         predicted.reset();
     }
-    ApproximateInverse approximate = operator_at(*next, path.passes + prediction.passes, predicted);
-    if (for_proofs_) {
-        arc.contacts = *next;
-    }
+    ApproximateInverse approximate = operator_at(*next, path.passes + prediction.passes);
+    arc.contacts = *next;
     auto unproved = IsostaticStructure<Dim>::without_proof(std::move(*next));
     if (rule_.due(approximate)) {
         refactorisation_.begin(approximate, unproved.shared_matrix());
@@ -175,40 +143,33 @@ std::optional<Failure> FloatingSteering<Dim>::arrive(ArcProposal<Dim>& arc, Arc<
     here_ = std::make_unique<FloatingVertex<Dim>>(
         typename FloatingVertex<Dim>::Arrival{std::move(path.end), std::move(unproved), approximate, std::move(guess),
                                               std::move(path.open), predicted ? &*predicted : nullptr},
-        typename FloatingVertex<Dim>::Context{load_, options_.rule, candidates_, arc_options_});
-    if (for_proofs_) {
-        arc.approximate = std::move(approximate);
-    }
+        typename FloatingVertex<Dim>::Context{load_, candidates_, arc_options_});
+    arc.approximate = std::move(approximate);
     packing_ = &here_->packing;
     structure_ = &here_->structure;
     factorisation_ = &here_->factorisation;
     return std::nullopt;
 }
 
-/// An operator close to the inverse, after an arc that cost so many passes: renewed, predicted, or the one before with
-/// one more exchange.
+/// An operator close to the inverse, after an arc that cost so many passes: renewed, or the one before with one more
+/// exchange.
 template <int Dim>
-ApproximateInverse FloatingSteering<Dim>::operator_at(const ExchangedContacts<Dim>& next, int passes,
-                                                      std::optional<PredictedVertex<Dim>>& predicted) {
+ApproximateInverse FloatingSteering<Dim>::operator_at(const ExchangedContacts<Dim>& next, int passes) {
     rule_.add(passes, factorisation_->approximate());
     if (auto renewed = refactorisation_.after(next.slot(), next.matrix())) {
         rule_.restart();
         return std::move(*renewed);
     }
-    if (predicted && !for_proofs_) { // the new column is the predicted one, which only a proof would notice
-        return std::move(*predicted->approximate);
-    }
     return factorisation_->approximate().exchanged(next.slot(), next.matrix());
 }
 
-template <int Dim> std::optional<Failure> FloatingSteering<Dim>::record_power(ArcRecord<Dim>& record) const {
+template <int Dim> std::optional<Failure> FloatingSteering<Dim>::check_power(const ArcRecord<Dim>& record) const {
     if (record.power_turn) {
         return std::nullopt;
     }
     const std::size_t slot = start_.opening.contact.index();
     const bool infinitesimal = start_.opening.infinitesimal;
-    record.power = infinitesimal ? here_->infinitesimal()[slot] : here_->force[slot];
-    if ((infinitesimal || !here_->is_structural_zero(slot)) && !here_->compressive(slot, infinitesimal, for_proofs_)) {
+    if ((infinitesimal || !here_->is_structural_zero(slot)) && !here_->compressive(slot, infinitesimal)) {
         return failed(FailureKind::undecided, "the power of the load is not clearly positive at the end of {}",
                       names(record));
     }
@@ -218,10 +179,8 @@ template <int Dim> std::optional<Failure> FloatingSteering<Dim>::record_power(Ar
 /// What opens next; nothing: it ends here.
 template <int Dim> void FloatingSteering<Dim>::choose(ArcProposal<Dim>& arc) {
     // The ends of a straight strut carry one force at a power turn: only a proof orders them.
-    const auto chosen =
-        arc.record.power_turn ? std::optional<Opening>() : here_->choose(bits_for(options_.rule_seed, start_.step));
-    // What the errors of doubles leave open takes a proof, unless every end gets one.
-    if (!chosen || (!for_proofs_ && !here_->resolves(*chosen))) {
+    const auto chosen = arc.record.power_turn ? std::optional<Opening>() : here_->choose();
+    if (!chosen) {
         const ContactId hold = arc.record.power_turn ? start_.opening.contact : ContactId();
         arc.last = SteeredEnd<Dim>{here_->packing, structure_->contacts(), hold, candidates_.triangulation};
         return;

@@ -9,8 +9,6 @@
 
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
 
@@ -31,17 +29,13 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
         const IsostaticStructure<Dim>& structure;
         const Factorisation& factorisation;
     };
-    /// `for_proofs`: proposals carry what the proof of each needs; else only the last one tells where it ends. The load
-    /// and the options must outlive the steering.
+    /// The load and the options must outlive the steering.
     FloatingSteering(const Origin& from, const ArcStart<Dim>& start, const RunOptions& options,
-                     CandidateList<Dim> candidates, bool for_proofs);
+                     CandidateList<Dim> candidates);
 
-    [[nodiscard]] bool goes_on() const override { return !ended_ || !queue_.empty(); }
+    [[nodiscard]] bool goes_on() const override { return !ended_; }
     Result<ArcProposal<Dim>> propose() override;
     bool revise(const ArcProof<Dim>& /*refused*/) override { return false; }
-
-    /// Queues proposals for later calls, until `enough`, the last one or a failure.
-    void propose_ahead(const std::function<bool()>& enough);
 
   private:
     /// What is known at the start of an arc: what its forces cost, and its end as predicted, with the vertex there.
@@ -50,13 +44,11 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
         std::optional<typename ArcDeparture<Dim>::Expected> end;
         Future<PredictedVertex<Dim>> vertex; ///< refers to `end`, and to the vertex at the start
     };
-    Result<ArcProposal<Dim>> next();
     Result<Arc<Dim>> follow(Prediction& prediction);
-    [[nodiscard]] std::optional<Failure> record_arc(ArcRecord<Dim>& record, const Arc<Dim>& path) const;
+    [[nodiscard]] std::optional<Failure> check_work(const ArcRecord<Dim>& record, const Arc<Dim>& path) const;
     [[nodiscard]] std::optional<Failure> arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Prediction& prediction);
-    [[nodiscard]] ApproximateInverse operator_at(const ExchangedContacts<Dim>& next, int passes,
-                                                 std::optional<PredictedVertex<Dim>>& predicted);
-    [[nodiscard]] std::optional<Failure> record_power(ArcRecord<Dim>& record) const;
+    [[nodiscard]] ApproximateInverse operator_at(const ExchangedContacts<Dim>& next, int passes);
+    [[nodiscard]] std::optional<Failure> check_power(const ArcRecord<Dim>& record) const;
     void choose(ArcProposal<Dim>& arc);
 
     const Packing<Dim>* packing_;
@@ -64,12 +56,9 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
     const Factorisation* factorisation_;
     ArcStart<Dim> start_; ///< of the next arc
     const Load<Dim>& load_;
-    const RunOptions& options_;
     CandidateList<Dim> candidates_;
     ArcOptions arc_options_;
-    bool for_proofs_;
     bool ended_ = false;
-    std::deque<Result<ArcProposal<Dim>>> queue_;
     RefactorisationRule rule_;
     Refactorisation refactorisation_;
     std::unique_ptr<FloatingVertex<Dim>> here_; ///< null: at the start. Last: it uses the rest

@@ -1,7 +1,7 @@
 #include "trajectory/floating_vertex.hpp"
 
+#include "core/dot.hpp"
 #include "rigidity/contact_pattern.hpp"
-#include "statics/rule_key.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,20 +13,11 @@ namespace {
 
 /// Relative, of forces on the way where they are close to 0 or to each other: estimated, not bounded.
 constexpr double accuracy = 1e-12;
-/// Elsewhere they are as accurate as the choice of what opens asks for, and as the record of its force does: the
-/// estimated error times `safety` changes neither. Where the velocity of its arc is at hand, the record is made better
-/// with that (`better_force`), and asks for less.
-constexpr double recorded_accuracy = 1e-8;
-constexpr double accuracy_with_velocity = 1e-3;
+/// Elsewhere they are as accurate as the choice of what opens asks for: the estimated error times `safety` does not
+/// change it. A proof starts from these forces: a few digits more save it passes where no arc was begun beside.
+constexpr double accuracy_for_proof = 1e-8;
+constexpr double accuracy_beside_arc = 1e-3;
 constexpr double safety = 30;
-
-double largest(const std::vector<double>& f) {
-    double size = 0;
-    for (const double x : f) {
-        size = std::max(size, std::abs(x));
-    }
-    return size;
-}
 
 } // namespace
 
@@ -49,14 +40,14 @@ FloatingVertex<Dim>::FloatingVertex(Arrival arrival, const Context& context)
         pending_backbone_ =
             Future<std::vector<unsigned char>>([this] { return ContactPattern(packing, structure).carrying(loaded_); });
     }
-    if (departs() && renew_candidates(context.candidates, packing)) { // not by a task that may be dropped
+    if (renew_candidates(context.candidates, packing)) { // not by a task that may be dropped
         arrival.open.clear();
     }
     load_on_dofs_ = force;
     if (arrival.predicted != nullptr) {
         predicted_passes_ = arrival.predicted->passes;
         arrival.guess = std::move(arrival.predicted->force);
-        if (departs() && arrival.predicted->opens.valid()) {
+        if (arrival.predicted->opens.valid()) {
             depart(arrival, arrival.predicted->opens.index());
         }
     }
@@ -96,16 +87,13 @@ template <int Dim> void FloatingVertex<Dim>::solve(const Arrival& arrival) {
     const auto enough = [&](std::span<const double> f, double error) {
         take_backbone();
         error_ = safety * error;
-        if (!departs()) {
-            return false;
-        }
         const std::size_t chosen = most_negative(f, structure.contacts(), backbone_);
         if (!departure_ && chosen < f.size() && structure.contacts()[chosen].kind != ContactKind::held) {
             depart(arrival, chosen);
             begin_arc(arrival);
         }
         const bool begun = departure_ && departure_->opened == ContactId(chosen);
-        const double asked = begun ? accuracy_with_velocity : recorded_accuracy;
+        const double asked = begun ? accuracy_beside_arc : accuracy_for_proof;
         return (chosen == f.size() || error_ <= asked * std::abs(f[chosen])) && clear(f, chosen);
     };
     error_ = safety * factorisation.solve_forces_until(force, arrival.guess, enough);
@@ -129,74 +117,19 @@ template <int Dim> typename FloatingVertex<Dim>::Departure* FloatingVertex<Dim>:
     return departure_.get();
 }
 
-template <int Dim> std::optional<Opening> FloatingVertex<Dim>::choose(std::uint64_t random_bits) {
-    const auto chosen = stage(true, random_bits);
-    return chosen ? chosen : stage(false, random_bits);
+template <int Dim> std::optional<Opening> FloatingVertex<Dim>::choose() {
+    const auto chosen = stage(true);
+    return chosen ? chosen : stage(false);
 }
 
-template <int Dim> double FloatingVertex<Dim>::better_force(std::size_t l, const std::vector<double>& velocity) const {
-    std::vector<double> rest = load_on_dofs_;
-    const sparse::Matrix<double>& h = structure.matrix();
-    for (std::size_t c = 0; c < force.size(); ++c) {
-        for (auto e = static_cast<std::size_t>(h.start[c]); e < static_cast<std::size_t>(h.start[c + 1]); ++e) {
-            rest[static_cast<std::size_t>(h.row[e])] -= h.value[e] * force[c];
-        }
-    }
-    double power = 0;
-    for (std::size_t mu = 0; mu < rest.size(); ++mu) {
-        power += rest[mu] * velocity[static_cast<std::size_t>(structure.dofs().coordinate_of(static_cast<int>(mu)))];
-    }
-    return force[l] - power; // the approach velocity is minus the rate
-}
-
-template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_infinitesimal, bool proof_follows) {
+template <int Dim> bool FloatingVertex<Dim>::compressive(std::size_t l, bool of_infinitesimal) {
     if (!of_infinitesimal && error_ > 0 && std::abs(force[l]) <= error_) {
         std::vector<double> better = load_on_dofs_;
         factorisation.solve_forces_from(better, force, accuracy);
         force = std::move(better);
         error_ = 0;
     }
-    const std::vector<double>& f = of_infinitesimal ? infinitesimal() : force;
-    return f[l] > (proof_follows ? 0 : accuracy * largest(f));
-}
-
-template <int Dim> bool FloatingVertex<Dim>::resolves(const Opening& chosen) {
-    const double finite_error = std::max(error_, accuracy * largest(force));
-    if (chosen.infinitesimal) {
-        const std::vector<double>& f = infinitesimal();
-        return signs_are_clear(true, force, finite_error) &&
-               is_clear(false, f, accuracy * largest(f), chosen.contact.index());
-    }
-    return is_clear(true, force, finite_error, chosen.contact.index());
-}
-
-template <int Dim>
-bool FloatingVertex<Dim>::signs_are_clear(bool finite, const std::vector<double>& f, double error) const {
-    for (std::size_t l = 0; l < f.size(); ++l) {
-        if (is_structural_zero(l) != finite && !(std::abs(f[l]) > error)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-template <int Dim>
-bool FloatingVertex<Dim>::is_clear(bool finite, const std::vector<double>& f, double error, std::size_t chosen) const {
-    const bool most = departs();
-    if (!(std::abs(f[chosen]) > error) || (!most && !signs_are_clear(finite, f, error))) {
-        return false;
-    }
-    const auto& contacts = structure.contacts();
-    const double size = signed_size(contacts[chosen], f[chosen]);
-    for (std::size_t l = 0; l < f.size(); ++l) {
-        const double difference = signed_size(contacts[l], f[l]) - size;
-        const bool rival = l != chosen && is_structural_zero(l) != finite;
-        if (rival && ((most && difference <= 2 * error) ||
-                      (context_.rule == OpeningRule::least_negative && std::abs(difference) <= 2 * error))) {
-            return false;
-        }
-    }
-    return true;
+    return (of_infinitesimal ? infinitesimal() : force)[l] > 0;
 }
 
 /// Whether that is the most negative finite force for all forces within the error; if it is none: whether there is none
@@ -214,61 +147,23 @@ template <int Dim> bool FloatingVertex<Dim>::clear(std::span<const double> f, st
     return true;
 }
 
-/// Among the finite forces, or the infinitesimal ones of the structural zeros, that are negative.
-template <int Dim> std::optional<Opening> FloatingVertex<Dim>::stage(bool finite, std::uint64_t random_bits) {
+/// Among the finite forces, or the infinitesimal ones of the structural zeros: the most negative one.
+template <int Dim> std::optional<Opening> FloatingVertex<Dim>::stage(bool finite) {
     if (!finite && std::find(backbone_.begin(), backbone_.end(), 0) == backbone_.end()) {
         return std::nullopt;
     }
     const std::vector<double>& f = finite ? force : infinitesimal();
     const auto& contacts = structure.contacts();
-    std::vector<std::size_t> negative;
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        if (is_structural_zero(l) != finite && signed_size(contacts[l], f[l]) < 0) {
-            negative.push_back(l);
-        }
-    }
-    if (negative.empty()) {
+    const std::size_t best = most_negative(f, contacts, backbone_, finite);
+    if (best == contacts.size()) {
         return std::nullopt;
     }
-    const std::size_t best = pick(std::move(negative), f, random_bits);
     Opening opening;
     opening.contact = ContactId(best);
     opening.infinitesimal = !finite;
     opening.force = {f[best], std::numeric_limits<double>::infinity()};
     opening.direction = contacts[best].kind == ContactKind::held && f[best] >= 0 ? -1 : +1;
     return opening;
-}
-
-template <int Dim>
-std::size_t FloatingVertex<Dim>::pick(std::vector<std::size_t> negative, const std::vector<double>& f,
-                                      std::uint64_t random_bits) const {
-    const auto& contacts = structure.contacts();
-    if (const auto place = rule_place(context_.rule, negative.size(), random_bits)) {
-        std::sort(negative.begin(), negative.end(),
-                  [&](std::size_t a, std::size_t b) { return contacts[a] < contacts[b]; });
-        return negative[*place];
-    }
-    std::size_t best = negative.front();
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const std::size_t l : negative) {
-        const double key = rule_key(context_.rule, signed_size(contacts[l], f[l]), [&] { return mechanism_norm(l); });
-        if (key < smallest) {
-            smallest = key;
-            best = l;
-        }
-    }
-    return best;
-}
-
-template <int Dim> double FloatingVertex<Dim>::mechanism_norm(std::size_t l) const {
-    std::vector<double> v(force.size(), 0.0);
-    v[l] = 1;
-    factorisation.solve_velocities(v);
-    double square = 0;
-    for (const double c : v) {
-        square += c * c;
-    }
-    return std::sqrt(square);
 }
 
 template class FloatingVertex<2>;

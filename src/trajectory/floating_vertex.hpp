@@ -22,7 +22,6 @@ template <int Dim> class FloatingVertex {
     /// What the steering has for each of its vertices. Must outlive them.
     struct Context {
         const Load<Dim>& load;
-        OpeningRule rule;
         CandidateList<Dim>& candidates; ///< made anew when less is left of their reach than an arc needs
         const ArcOptions& arc;
     };
@@ -57,31 +56,18 @@ template <int Dim> class FloatingVertex {
         Future<std::unique_ptr<ArcDeparture<Dim>>> arc;
     };
     [[nodiscard]] Departure* departure(const Opening& opening);
-    [[nodiscard]] bool has_departure() const { return departure_ != nullptr; }
-    /// What opens by the rule; nothing: no force is negative.
-    [[nodiscard]] std::optional<Opening> choose(std::uint64_t random_bits);
-    /// Whether the errors of the forces leave that choice as it is; else it takes a proof. What `steepest` compares
-    /// besides signs is not looked at.
-    [[nodiscard]] bool resolves(const Opening& chosen);
-    /// The force in a contact whose opening at unit rate moves the grains at `velocity` (on coordinates): f + v . (F -
-    /// H f), whose error is the product of those of f and v.
-    [[nodiscard]] double better_force(std::size_t l, const std::vector<double>& velocity) const;
-    /// Whether the force in a contact is compressive: clearly, but where a proof will tell.
-    [[nodiscard]] bool compressive(std::size_t l, bool of_infinitesimal, bool proof_follows);
+    /// What has the most negative force, and opens; nothing: no force is negative.
+    [[nodiscard]] std::optional<Opening> choose();
+    /// Whether the force in a contact is compressive, as far as doubles tell.
+    [[nodiscard]] bool compressive(std::size_t l, bool of_infinitesimal);
 
   private:
-    [[nodiscard]] bool departs() const { return context_.rule == OpeningRule::most_negative; }
     void take_backbone();
     void solve(const Arrival& arrival);
     void depart(const Arrival& arrival, std::size_t opens);
     void begin_arc(const Arrival& arrival);
     [[nodiscard]] bool clear(std::span<const double> f, std::size_t chosen) const;
-    [[nodiscard]] bool signs_are_clear(bool finite, const std::vector<double>& f, double error) const;
-    [[nodiscard]] bool is_clear(bool finite, const std::vector<double>& f, double error, std::size_t chosen) const;
-    std::optional<Opening> stage(bool finite, std::uint64_t random_bits);
-    [[nodiscard]] std::size_t pick(std::vector<std::size_t> negative, const std::vector<double>& f,
-                                   std::uint64_t random_bits) const;
-    [[nodiscard]] double mechanism_norm(std::size_t l) const;
+    std::optional<Opening> stage(bool finite);
 
     Context context_;
     std::vector<int> loaded_;

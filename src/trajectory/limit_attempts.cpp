@@ -80,8 +80,7 @@ std::optional<Result<Reached<Dim>>> LimitAttempts<Dim>::open_another(Attempt<Dim
 /// What a run that chooses nothing says where another policy would look further.
 template <int Dim> Failure LimitAttempts<Dim>::offering_class(const Failure& failure, ContactId first) const {
     const RunOptions& options = recorder_.options;
-    const bool may = options.ties == TiePolicy::stop && options.certify != CertifyLevel::plain &&
-                     !others_of_class(statics_, first).empty();
+    const bool may = options.ties == TiePolicy::stop && !others_of_class(statics_, first).empty();
     return may ? failed(failure.kind, "{}; other forces vanish with it: ties = \"class\" in [run] may open one of them",
                         failure)
                : failure;

@@ -6,12 +6,12 @@
 namespace isostat {
 
 std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
-                          const std::vector<unsigned char>& backbone) {
+                          const std::vector<unsigned char>& backbone, bool inside) {
     std::size_t best = f.size();
     double smallest = 0;
     for (std::size_t l = 0; l < f.size(); ++l) {
         const double size = signed_size(contacts[l], f[l]);
-        if (size < smallest && backbone[l] != 0) {
+        if (size < smallest && (backbone[l] != 0) == inside) {
             smallest = size;
             best = l;
         }
@@ -34,8 +34,7 @@ PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vec
         ContactPattern(end.end, from.dofs(), predicted.contacts->contacts(), h, predicted.contacts->matching())
             .carrying(loaded);
     const auto structure = IsostaticStructure<Dim>::without_proof(*predicted.contacts);
-    predicted.approximate = approximate.exchanged(predicted.contacts->slot(), h);
-    const Factorisation factorisation(structure, *predicted.approximate);
+    const Factorisation factorisation(structure, approximate.exchanged(predicted.contacts->slot(), h));
     predicted.force = on_dofs(load.external_force(end.end), structure.dofs());
     // One pass mostly finds out which force is most negative.
     factorisation.solve_forces_until(predicted.force, force, [](std::span<const double>, double) { return true; });
@@ -43,7 +42,6 @@ PredictedVertex<Dim> predict(const IsostaticStructure<Dim>& from, const std::vec
     const std::size_t opens_next = most_negative(predicted.force, structure.contacts(), predicted.backbone);
     if (opens_next < predicted.force.size() && structure.contacts()[opens_next].kind != ContactKind::held) {
         predicted.opens = ContactId(opens_next);
-        (void)predicted.approximate->mechanism(static_cast<int>(opens_next)); // kept there
     }
     return predicted;
 }

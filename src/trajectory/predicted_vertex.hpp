@@ -20,20 +20,19 @@ inline double signed_size(const Contact& contact, double force) {
     return contact.kind == ContactKind::held ? -std::abs(force) : force;
 }
 
-/// The most negative of the forces that are not structural zeros; their number when none is negative.
+/// The most negative of the forces in the backbone, or of those outside; the number of all when none is negative.
 std::size_t most_negative(std::span<const double> f, const std::vector<Contact>& contacts,
-                          const std::vector<unsigned char>& backbone);
+                          const std::vector<unsigned char>& backbone, bool inside = true);
 
 /// The vertex at the end of an arc as the start of the arc predicts it. A guess: what is made of it is checked
 /// against the vertex, or refined there.
 template <int Dim> struct PredictedVertex {
     std::optional<ExchangedContacts<Dim>> contacts;
-    std::vector<int> loaded;                       ///< degrees of freedom, as at the start
-    std::vector<unsigned char> backbone;           ///< with these
-    std::vector<double> force;                     ///< rough
-    std::optional<ApproximateInverse> approximate; ///< for the matrix of `contacts`; has the mechanism of `opens`
-    ContactId opens;                               ///< what opens next, with these forces; or none
-    int passes = 0;                                ///< of the factors, for the forces
+    std::vector<int> loaded;             ///< degrees of freedom, as at the start
+    std::vector<unsigned char> backbone; ///< with these
+    std::vector<double> force;           ///< rough
+    ContactId opens;                     ///< what opens next, with these forces; or none
+    int passes = 0;                      ///< of the factors, for the forces
 };
 
 /// `from`: the start, with the degrees of freedom loaded there, its forces, and an operator close to the inverse of its

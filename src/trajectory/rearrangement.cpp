@@ -2,6 +2,7 @@
 
 #include "contact/words.hpp"
 #include "trajectory/bounded_steering.hpp"
+#include "trajectory/floating_steering.hpp"
 
 #include <fmt/format.h>
 
@@ -22,8 +23,8 @@ template <int Dim> void Standing<Dim>::move_to(std::shared_ptr<Vertex<Dim>> to, 
 }
 
 template <int Dim>
-Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following)
-    : prover_(prover), recorder_(recorder), following_(following), at_(std::move(start.at)),
+Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder)
+    : prover_(prover), recorder_(recorder), at_(std::move(start.at)),
       here_{std::move(start.vertex), start.opening, start.kind, std::move(start.chosen)},
       tilts_at_start_(here_.vertex->packing.q.begin() +
                           static_cast<std::ptrdiff_t>(here_.vertex->packing.length_at(Dim)),
@@ -39,42 +40,23 @@ template <int Dim> std::string Rearrangement<Dim>::at_equilibrium() const {
     return fmt::format("equilibrium at sigma = {:.17g}", at_.stress());
 }
 
-template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run(std::unique_ptr<NextRearrangement<Dim>> begun) {
-    if (begun && here_.kind == ArcKind::limit && begun->starts_with(here_.opening.contact, at_)) {
-        begun->count_work();
-        steering_ = std::move(begun);
+template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run() {
+    if (auto failure = follow_arcs()) {
+        return *failure;
     }
-    while (true) {
-        if (auto failure = follow_arcs()) {
-            return *failure;
-        }
-        if (!end_) {
-            end_ = prove_end(prover_, plain() ? std::move(*steered_to_) : at_here());
-        }
-        if (auto failure = judge(*end_)) {
-            return *failure;
-        }
-        const OpeningDecision& decision = end_->decision->value();
-        if (!decision.opening) {
-            if (plain()) {
-                recorder_.count({DecisionKind::gaps, end_->gaps.margin, end_->gaps.rung});
-                recorder_.count({DecisionKind::equilibrium, decision.margin, decision.rung});
-            }
-            return Reached<Dim>{std::move(*end_), arcs_, std::move(next_)};
-        }
-        // Only plain steering ends where a force is negative: it goes on from there.
-        here_.move_to(end_->vertex, *decision.opening);
-        steering_.reset();
-        end_.reset();
-        next_.reset();
-        ended_ = false;
+    if (!end_) {
+        end_ = prove_end(prover_, at_here());
     }
+    if (auto failure = judge(*end_)) {
+        return *failure;
+    }
+    return Reached<Dim>{std::move(*end_), arcs_};
 }
 
 /// The other rules choose by differences that floating steering does not resolve.
 template <int Dim> bool Rearrangement<Dim>::floats() const {
-    return plain() || (!at_first_order(options().ties) && options().rule == OpeningRule::most_negative &&
-                       !here_.by_steps && here_.resting.empty());
+    return !at_first_order(options().ties) && options().rule == OpeningRule::most_negative && !here_.by_steps &&
+           here_.resting.empty();
 }
 
 /// Propose, prove, record, decide, until no force is negative.
@@ -88,8 +70,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
             steering_ = make_steering();
         }
         ProofChain<Dim> chain(prover_, here_.vertex, here_.opening, at_);
-        Proofs proofs([&](ArcProposal<Dim>& arc) { return plain() ? unproved(arc) : chain.prove(arc); },
-                      ahead_ ? window : 0);
+        Proofs proofs([&](ArcProposal<Dim>& arc) { return chain.prove(arc); }, ahead_ ? window : 0);
         const int before = arcs_;
         proposed_ = 0;
         steered_to_.reset();
@@ -143,8 +124,8 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
 template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steering() {
     const Vertex<Dim>& vertex = *here_.vertex;
     ArcStart<Dim> start{here_.opening, here_.kind, recorder_.counters.steps + 1, &at_.load, {}};
-    ahead_ = floats() && !plain();
-    if (!floats()) {
+    ahead_ = floats();
+    if (!ahead_) {
         if (arcs_ == 0) {
             take_log(*here_.vertex, here_.settled);
         }
@@ -155,7 +136,7 @@ template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steer
     }
     return std::make_unique<FloatingSteering<Dim>>(
         typename FloatingSteering<Dim>::Origin{vertex.packing, vertex.structure, vertex.factorisation}, start,
-        options(), prover_.candidates(), ahead_);
+        options(), prover_.candidates());
 }
 
 /// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
@@ -229,10 +210,8 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::record(Proofs& pro
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Dim>& proof) {
     const ArcRecord<Dim>& record = proof.record;
-    if (proof.next) {
-        const auto& opening = proof.next->value().opening;
-        recorder_.counters.tally.structural_ties += opening && opening->straight_strut ? 1 : 0;
-    }
+    const OpeningDecision& decision = proof.next->value();
+    recorder_.counters.tally.structural_ties += decision.opening && decision.opening->straight_strut ? 1 : 0;
     if (std::abs(record.strain) > options().max_strain) {
         return failed(FailureKind::cap_reached,
                       "|{}| = {:.6g} at sigma = {:.17g}: the sample fails "
@@ -242,11 +221,6 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
     if (auto failure = flows(proof)) {
         return failure;
     }
-    if (!proof.next) { // level `plain`
-        ended_ = steered_to_.has_value();
-        return std::nullopt;
-    }
-    const OpeningDecision& decision = proof.next->value();
     const ContactId held = record.power_turn ? here_.opening.contact : ContactId();
     if (decision.opening) {
         here_.move_to(proof.vertex, *decision.opening);
@@ -261,9 +235,6 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::decide(ArcProof<Di
 
 /// A dead shear force may do work without bound: W has no minimum along the tilt.
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::flows(const ArcProof<Dim>& proof) const {
-    if (!proof.vertex) {
-        return std::nullopt;
-    }
     const Packing<Dim>& now = proof.vertex->packing;
     for (std::size_t k = now.length_at(Dim); k < now.q.size(); ++k) {
         const double shear = (now.q[k] - tilts_at_start_[k - now.length_at(Dim)]) / now.length(Dim - 1);
@@ -290,17 +261,11 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
     }
     if (failed) {
         ++recorder_.counters.steps;
-        if (plain()) {
-            ++recorder_.counters.tally.plain;
-        } else {
-            recorder_.count({DecisionKind::opening, here_.opening.margin, here_.opening.rung, here_.opening.perturbed});
-        }
+        recorder_.count({DecisionKind::opening, here_.opening.margin, here_.opening.rung, here_.opening.perturbed});
         return located(not_proved(*failed), where(arcs_ + 1));
     }
     if (!refused) {
-        if (!plain()) {
-            steering_.reset(); // it was for one arc
-        }
+        steering_.reset(); // it was for one arc
         return std::nullopt;
     }
     if (steering_->revise(*refused)) {
@@ -357,11 +322,8 @@ template <int Dim> SteeredEnd<Dim> Rearrangement<Dim>::at_here() const {
 }
 
 /// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
-/// run starts from the same bits. At level `plain`, with several threads, the next rearrangement is begun beside it.
+/// run starts from the same bits.
 template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end) {
-    const bool follows = plain() && following_ != nullptr && threads() > 1 &&
-                         std::none_of(end.contacts.begin(), end.contacts.end(),
-                                      [](const Contact& c) { return c.kind == ContactKind::held; });
     Task listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
     auto begun = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
     listing.finish();
@@ -370,20 +332,7 @@ template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prov
         proof.failure = begun.failure();
         return proof;
     }
-    auto beginning = std::make_shared<typename Vertex<Dim>::Beginning>(std::move(begun.value()));
-    if (follows) {
-        next_ = std::make_unique<NextRearrangement<Dim>>(*beginning, prover.candidates());
-    }
-    const long step = recorder_.counters.steps;
-    Future<EndProof<Dim>> proving([&, hold = end.fresh_hold, step] {
-        return prover.prove_end(std::move(*beginning), at_, hold, here_.zeros, step);
-    });
-    if (next_ && next_->begin(at_.load, *following_, options(), step + 1)) {
-        next_->propose_ahead([&] { return !proving.underway() || recorder_.stopped(); });
-    } else {
-        next_.reset();
-    }
-    return proving.get();
+    return prover.prove_end(std::move(begun.value()), at_, end.fresh_hold, here_.zeros, recorder_.counters.steps);
 }
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndProof<Dim>& end) const {
@@ -391,27 +340,15 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return located(not_proved(*end.failure), at_equilibrium());
     }
     if (end.gaps.negative) {
-        const auto overlap = named<Dim>(*end.gaps.negative);
-        return plain() ? failed(FailureKind::undecided, "{}: plain steering went past a contact, {} overlap",
-                                at_equilibrium(), overlap)
-                       : failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(), overlap);
+        return failed(FailureKind::overlap, "{}: {} overlap", at_equilibrium(), named<Dim>(*end.gaps.negative));
     }
     const Result<OpeningDecision>& decision = *end.decision;
-    if (plain()) {
-        return decision.ok() ? std::nullopt : std::optional<Failure>(located(decision.failure(), where(arcs_)));
-    }
     if (decision.ok() && !decision.value().opening) {
         return std::nullopt;
     }
     return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
                   at_first_order(options().ties) ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
-}
-
-template <int Dim> std::optional<ArcProof<Dim>> Rearrangement<Dim>::unproved(ArcProposal<Dim>& arc) {
-    ArcProof<Dim> proof;
-    proof.record = std::move(arc.record);
-    return proof;
 }
 
 template struct Standing<2>;

@@ -2,7 +2,6 @@
 /// \file
 /// From an equilibrium at its limit to the next one: private to the room.
 
-#include "trajectory/next_rearrangement.hpp"
 #include "trajectory/pipeline.hpp"
 #include "trajectory/prover.hpp"
 #include "trajectory/recorder.hpp"
@@ -18,7 +17,6 @@ namespace isostat {
 template <int Dim> struct Reached {
     EndProof<Dim> proof;
     int arcs = 0;
-    std::unique_ptr<NextRearrangement<Dim>> next; ///< what follows, if it was begun
 };
 
 /// Where a rearrangement stands, and what is known there.
@@ -39,14 +37,9 @@ template <int Dim> struct Standing {
 
 /// One rearrangement under a constant load (paper, section 2.3): a contact opens, the grains move until another one
 /// closes, and the contact with the largest traction opens next, until there is none. Every arc is *proposed* by a
-/// steering, *proved*, *recorded*, and its end *decides* what opens; the level and the ties say who steers and what is
-/// proved:
-/// - `decisions` and above: floating steering goes ahead of the proofs, by a window; where one does not agree the arc
-/// is
-///   proposed again by bounded steering, window 0. With first-order ties, and by rules whose choice steering does not
-///   resolve, all of it is bounded;
-/// - `plain`: floating steering, whose arcs are recorded as they are; only the end is proved, beside the arcs of the
-///   rearrangement after it.
+/// steering, *proved*, *recorded*, and its end *decides* what opens. Floating steering goes ahead of the proofs, by a
+/// window; where one does not agree the arc is proposed again by bounded steering, window 0. With first-order ties, and
+/// by rules whose choice steering does not resolve, bounded steering proposes every arc.
 template <int Dim> class Rearrangement {
   public:
     struct Start {
@@ -56,17 +49,16 @@ template <int Dim> class Rearrangement {
         LimitLoad<Dim> at;
         std::vector<TieDecision> chosen{}; ///< why this one opens, where the rule takes another first
     };
-    /// `following`: what follows the next equilibrium; null: nothing. All must outlive the rearrangement.
-    Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder, const Segment* following);
+    /// All must outlive the rearrangement.
+    Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder);
 
-    /// `begun`: a guess of this rearrangement, or null. Once.
-    Result<Reached<Dim>> run(std::unique_ptr<NextRearrangement<Dim>> begun);
+    /// Once.
+    Result<Reached<Dim>> run();
     /// Recorded so far.
     [[nodiscard]] int arcs() const { return arcs_; }
 
   private:
     [[nodiscard]] const RunOptions& options() const { return recorder_.options; }
-    [[nodiscard]] bool plain() const { return options().certify == CertifyLevel::plain; }
     [[nodiscard]] bool floats() const;
     std::optional<Failure> follow_arcs();
     [[nodiscard]] std::optional<Failure> cap() const;
@@ -75,7 +67,6 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> relist(const ListExchange& exchange);
     using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
     std::optional<Failure> propose(Proofs& proofs);
-    static std::optional<ArcProof<Dim>> unproved(ArcProposal<Dim>& arc);
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof<Dim>& proof);
     [[nodiscard]] std::optional<Failure> flows(const ArcProof<Dim>& proof) const;
@@ -90,15 +81,13 @@ template <int Dim> class Rearrangement {
 
     Prover<Dim>& prover_;
     Recorder<Dim>& recorder_;
-    const Segment* following_;
     LimitLoad<Dim> at_;
     Standing<Dim> here_;
     std::vector<double> tilts_at_start_;
     int arcs_ = 0;
-    bool ended_ = false; ///< no force is negative where it is
-    bool ahead_ = false; ///< the steering goes ahead of the proofs
-    int proposed_ = 0;   ///< arcs by it
-    std::unique_ptr<NextRearrangement<Dim>> next_;
+    bool ended_ = false;                        ///< no force is negative where it is
+    bool ahead_ = false;                        ///< the steering goes ahead of the proofs
+    int proposed_ = 0;                          ///< arcs by it
     std::unique_ptr<Steering<Dim>> steering_;   ///< refers to `here_.vertex`
     std::optional<SteeredEnd<Dim>> steered_to_; ///< by `steering_`, if it came to an end
     std::optional<EndProof<Dim>> end_;

@@ -25,7 +25,6 @@ template <int Dim> void Recorder<Dim>::record(ArcProof<Dim>& proof, int arc, dou
     record.equilibrium = counters.equilibria;
     record.arc = arc;
     record.stress = stress;
-    counters.tally.plain += options.certify == CertifyLevel::plain ? 1 : 0;
     count(proof);
     counters.tally.choices += std::count_if(record.perturbed.begin(), record.perturbed.end(),
                                             [](const TieDecision& tie) { return tie.choice != TieChoice::none; });

@@ -69,7 +69,6 @@ template <int Dim> class Run {
     EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
     std::array<std::optional<LoadLimit>, 2> limits_; ///< of `vertex_`, as `describe` found them
     int made_ = -1; ///< equilibria of the segment; a start that is no equilibrium yet makes one that does not count
-    std::unique_ptr<NextRearrangement<Dim>> next_; ///< if it was begun
 };
 
 template <int Dim> SegmentOutcome Run<Dim>::run() {
@@ -252,11 +251,10 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
 }
 
 template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt<Dim>& attempt) {
-    const bool last = segment_.equilibria && made_ + 1 >= *segment_.equilibria;
     prover_.start_at(vertex_->packing);
     Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at, attempt.chosen}, prover_,
-                                     recorder_, last ? nullptr : &segment_);
-    auto reached = rearrangement.run(std::move(next_));
+                                     recorder_);
+    auto reached = rearrangement.run();
     attempt.begun = rearrangement.arcs() > 0;
     return reached;
 }
@@ -271,7 +269,6 @@ template <int Dim> std::optional<Failure> Run<Dim>::rearrange(const Opening& ope
     }
     const Load<Dim> load = attempt.at.load;
     Reached<Dim>& there = reached.value();
-    next_ = std::move(there.next);
     vertex_ = std::move(there.proof.vertex);
     state_.load = load;
     state_.packing = vertex_->packing;

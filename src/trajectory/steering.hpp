@@ -30,7 +30,7 @@ template <int Dim> struct ArcStart {
 /// Of an arc that starts with an opening of a contact, but for the first one at a limit load.
 ArcKind kind_of(const Contact& opened, bool infinitesimal);
 
-/// Where steering found no negative force, or at level `plain` not clearly one. Nothing is proved of it.
+/// Where steering found no negative force. Nothing is proved of it.
 template <int Dim> struct SteeredEnd {
     Packing<Dim> packing;
     std::vector<Contact> contacts;

@@ -170,10 +170,11 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell) {
     run.options.rule = static_cast<OpeningRule>(
         random.integer(2) == 0 ? 0 : random.integer(static_cast<int>(opening_rule_words.size())));
     run.options.rule_seed = random.bits();
-    run.options.certify = static_cast<CertifyLevel>(random.integer(in_cell ? 2 : 4)); // cells: plain, decisions
+    run.options.certify =
+        static_cast<CertifyLevel>(std::max(0, random.integer(in_cell ? 2 : 4) - 1)); // cells: decisions
     run.options.max_strain = 1e3;
     run.options.max_arcs = 400;
-    if (!in_cell && run.options.certify != CertifyLevel::plain && random.integer(5) == 0) {
+    if (!in_cell && random.integer(5) == 0) {
         run.options.ties = TiePolicy::perturb;
         run.options.ties_seed = random.bits();
     }

@@ -323,7 +323,6 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_right_after_the_start_is_seen_to_turn) {
     std::vector<Recorded> records;
     RandomRun run = run_from("small_power_at_start.json", +1);
     run.options.rule = OpeningRule::least_negative;
-    run.options.certify = CertifyLevel::plain;
     BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
     const std::string events = scratch::read(folder.path() / "run" / "events.jsonl");
     BOOST_TEST(std::count(events.begin(), events.end(), '\n') >= 391);

@@ -1,4 +1,4 @@
-// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA plain|decisions. Prints the number of
+// A fixed piece of work to count instructions on: count VERTEX_FILE EQUILIBRIA decisions|arcs. Prints the number of
 // arcs.
 
 #include <isostat/io/state_file.hpp>
@@ -22,7 +22,7 @@ void no_check_of_protected_intervals() {}
 int main(int argc, char** argv) {
     using namespace isostat;
     const std::string level = argc == 4 ? argv[3] : "";
-    if (level != "plain" && level != "decisions") {
+    if (level != "decisions" && level != "arcs") {
         return 64;
     }
     struct : RunObserver<2> {
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
     Segment segment;
     segment.equilibria = std::atoi(argv[2]);
     RunOptions options;
-    options.certify = level == "plain" ? CertifyLevel::plain : CertifyLevel::decisions;
+    options.certify = level == "arcs" ? CertifyLevel::arcs : CertifyLevel::decisions;
     const auto outcome = run_segment<2>(state, segment, 0, options, counters, observer);
     fmt::print("{}\n", counters.steps);
     return outcome.completed ? 0 : 1;

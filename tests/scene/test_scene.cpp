@@ -236,6 +236,10 @@ BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
     refuses_scene(head + "[programme]\ndo = \"up\"\n", {"s.toml:3:", "[[programme]]"});
 }
 
+BOOST_AUTO_TEST_CASE(words_that_scenes_no_longer_have_are_refused_with_what_to_write_instead) {
+    refuses_scene(head + "[run]\ncertify = \"plain\"\n", {"s.toml:4:", "certify", "plain", "\"decisions\""});
+}
+
 BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
     refuses_scene("[run]\nmax_arcs = 3\n", {"s.toml", "[packing]"});
     refuses_scene("[packing]\nseed = 3\n", {"s.toml:1:", "file, disks, radii or radii_file"});

@@ -170,14 +170,10 @@ BOOST_AUTO_TEST_SUITE(trajectory_cells)
 BOOST_AUTO_TEST_CASE(sequences_of_an_independent_program) {
     for (const std::string& name : names) {
         const Json& sequence = sequences().at(name);
-        for (const CertifyLevel level : {CertifyLevel::decisions, CertifyLevel::plain}) {
-            BOOST_TEST_CONTEXT(name << ", certify = " << to_string(level)) {
-                RunOptions options;
-                options.certify = level;
-                const Played played = play(start_of(name), +1, static_cast<int>(sequence.size()), {}, options);
-                check_sequence(played, sequence, true);
-                BOOST_TEST(played.counters.tally.undecided == 0);
-            }
+        BOOST_TEST_CONTEXT(name) {
+            const Played played = play(start_of(name), +1, static_cast<int>(sequence.size()));
+            check_sequence(played, sequence, true);
+            BOOST_TEST(played.counters.tally.undecided == 0);
         }
     }
 }
@@ -239,18 +235,14 @@ BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_that_rolled_many_periods_away_ends_the_run_with_words) {
-    for (const CertifyLevel level : {CertifyLevel::plain, CertifyLevel::decisions}) {
-        const State<2> start = start_of("rect_16");
-        RunOptions options;
-        options.certify = level;
-        const State<2> near = shifted(start, std::vector<std::array<int, 2>>(16, {23, 0})).state;
-        BOOST_TEST(play(near, +1, 1, {}, options).outcome.completed);
-        const State<2> far = shifted(start, std::vector<std::array<int, 2>>(16, {28, 0})).state;
-        const Played played = play(far, +1, 1, {}, options);
-        BOOST_TEST(!played.outcome.completed);
-        BOOST_TEST((played.why().find("periods from the origin") != std::string::npos), played.why());
-        BOOST_TEST(played.records.equilibria.size() == 1U); // the start
-    }
+    const State<2> start = start_of("rect_16");
+    const State<2> near = shifted(start, std::vector<std::array<int, 2>>(16, {23, 0})).state;
+    BOOST_TEST(play(near, +1, 1).outcome.completed);
+    const State<2> far = shifted(start, std::vector<std::array<int, 2>>(16, {28, 0})).state;
+    const Played played = play(far, +1, 1);
+    BOOST_TEST(!played.outcome.completed);
+    BOOST_TEST((played.why().find("periods from the origin") != std::string::npos), played.why());
+    BOOST_TEST(played.records.equilibria.size() == 1U); // the start
 }
 
 BOOST_AUTO_TEST_CASE(in_whichever_order_place_and_basis) {

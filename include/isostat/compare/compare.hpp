@@ -42,6 +42,8 @@ struct Frame {
     Load<2> load;
     std::vector<FileContact> contacts; ///< as they stand in the files, in their order; walls too
     std::string note;                  ///< empty, or how the cell of the file was described anew
+    std::vector<double> velocity;      ///< of the disks, in any unit of time; empty: not in the files
+    double rounding = 0;               ///< so far are gaps known by the digits of the files
 };
 
 /// What the manifest says of every frame.

@@ -47,7 +47,7 @@ template <int Dim> struct ArcRecord {
     double force = 0;        ///< in the opened contact: 0 at a limit; the infinitesimal one for arcs of rattlers
     double power = 0; ///< -dW/dh at the end, h the gap that closes: the force of the new contact; 0 at a power turn
     double work = 0;  ///< of the finite loads along the arc: the decrease of W
-    /// Proved bounds of the errors of these; NaN: none (level `plain`, the power at a turn, work of true stresses).
+    /// Proved bounds of the errors of these; NaN: none (the power at a turn, work of true stresses).
     double strain_bound = std::numeric_limits<double>::quiet_NaN();
     double force_bound = std::numeric_limits<double>::quiet_NaN();
     double power_bound = std::numeric_limits<double>::quiet_NaN();
@@ -55,7 +55,7 @@ template <int Dim> struct ArcRecord {
     double displacement = 0;      ///< largest displacement of a coordinate
     int steps = 0;                ///< predictor steps
     double margin = 0;            ///< smallest |quantity| / bound over the decisions of this arc (> 1: decided); or NaN
-    Rung decided_by = Rung::none; ///< highest rung that was needed; `none` at level `plain`: nothing was proved
+    Rung decided_by = Rung::none; ///< highest rung that was needed
     std::optional<ArcCertificate> certificate; ///< level `arcs` only
     std::vector<TieDecision> perturbed; ///< what first-order terms settled, or the rule chose, from opening to end
 };
@@ -129,19 +129,16 @@ constexpr std::string_view to_string(DecisionKind kind) {
 }
 
 /// How much of a run is proved.
-/// - plain: the equilibria only: rank (exact), signs of all forces, both ends of the supported interval, no overlap.
-///   In between the run is steered by refined double precision: no rank, no sign, no order of events there is proved
-///   or bounded;
-/// - decisions: every comparison that steers, with a bound on both sides;
+/// - decisions: the equilibria (rank, signs of all forces, both ends of the supported interval, no overlap) and every
+///   comparison that steers between them, with a bound on both sides;
 /// - states: besides, a certificate file for each equilibrium (an observer writes them);
 /// - arcs: besides, each arc enclosed between its events (`certify_arc`). An arc that is not certified does not stop
 ///   the run: it is counted and its record tells why.
-enum class CertifyLevel : unsigned char { plain, decisions, states, arcs };
+enum class CertifyLevel : unsigned char { decisions, states, arcs };
 
-/// "plain", "decisions", "states", "arcs".
+/// "decisions", "states", "arcs".
 constexpr const char* to_string(CertifyLevel level) {
     switch (level) {
-    case CertifyLevel::plain: return "plain";
     case CertifyLevel::decisions: return "decisions";
     case CertifyLevel::states: return "states";
     case CertifyLevel::arcs: break;
@@ -176,7 +173,6 @@ struct Tally {
     long double_double = 0;
     long multiprecision = 0;
     long exact = 0;
-    long plain = 0;     ///< arcs steered without a bound (level `plain`): their decisions are counted nowhere else
     long undecided = 0; ///< ended a segment: a sign or an order that no rung settled
     long ties = 0;      ///< of `undecided`: ties, equal exactly or to the last bit tried
     long structural_ties =

@@ -84,7 +84,7 @@ long arcs_of(const std::filesystem::path& run) {
 std::string scene_of_run(const Settings& settings, const std::filesystem::path& state, const std::string& level) {
     return fmt::format("[packing]\nfile = \"{}\"\n[[programme]]\ndo = \"up\"\nequilibria = {}\n[run]\nmax_arcs = "
                        "{}\ncertify = \"{}\"\n[output]\npictures = false\n",
-                       std::filesystem::absolute(state).string(), settings.equilibria, settings.arcs, level);
+                       state.filename().string(), settings.equilibria, settings.arcs, level);
 }
 
 /// Rows of the table; growth against the size before.
@@ -182,6 +182,9 @@ int main(int argc, char** argv) {
         scale.add(n, "verification", verified, 1, verdict(verified, verified.status == 0));
         for (const std::string level : {"decisions"}) {
             const std::filesystem::path scene = settings.work / "run.toml";
+            if (!std::filesystem::exists(settings.work / state.filename())) {
+                std::filesystem::copy_file(state, settings.work / state.filename());
+            }
             std::ofstream(scene) << scene_of_run(settings, state, level);
             const std::filesystem::path run = settings.work / ("run-" + level);
             const Cost cost =

@@ -3,9 +3,11 @@
 
   python3 proofs/check_links.py [TOP]     another top folder: for check_links_test.sh
 
+  `name`, `other` (code)     some file of src, include, tests, bench or examples has each name as a word outside of comments
+  `name`, `other` (test)     a test case has this name; so functions and tests may move from file to file
   `name`, `other` (src|include|tests|proofs|examples/... file)
-                             the file exists and contains each name as a word outside of comments; a name in a .v file
-                             must be stated there, one in a test_*.cpp file be a test case
+                             the file exists and has each name; one in a .v file must be stated there, one in a
+                             test_*.cpp file be a test case
   (Coq: `name`, ...)         some file of proofs/coq states it
   word.md, coq/word.v        exists in proofs/
   @key                       is in references.bib
@@ -17,7 +19,7 @@ import sys
 
 top = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()
 names = r"`[A-Za-z_:0-9]+`"
-group = re.compile(rf"({names}(?:(?:,| and|, and) {names})*) \(((?:src|include|tests|proofs|examples)/[A-Za-z0-9_/.-]+)\)")
+group = re.compile(rf"({names}(?:(?:,| and|, and) {names})*) \((code|test|(?:src|include|tests|proofs|examples)/[A-Za-z0-9_/.-]+)\)")
 wrong, checked = [], 0
 
 
@@ -34,7 +36,12 @@ def read(path):
 
 @functools.cache
 def named_in(path):
-    """The names that a file may be asked for."""
+    """The names that a file may be asked for, or all code, or all tests."""
+    if path in ("code", "test"):
+        folders = ("src", "include", "tests", "bench", "examples") if path == "code" else ("tests",)
+        kinds = ("*.cpp", "*.hpp", "*.py") if path == "code" else ("test_*.cpp",)
+        files = [file for folder in folders for kind in kinds for file in (top / folder).rglob(kind)]
+        return set().union(*(named_in(str(file.relative_to(top))) for file in files))
     text = read(path)
     if path.endswith(".v"):
         return set(re.findall(r"^(?:Theorem|Lemma|Corollary|Fact) (\w+)", text, re.M))
@@ -47,10 +54,10 @@ def check_page(page, coq):
     text = read(page)
     flat = re.sub(r"[ \n]+", " ", text)
     for listed, path in group.findall(flat):
-        if not (top / path).is_file():
+        if path not in ("code", "test") and not (top / path).is_file():
             wrong.append(f"{page}: no file {path}")
             continue
-        has = "states no" if path.endswith(".v") else "has no test case" if "/test_" in path else "has no"
+        has = "states no" if path.endswith(".v") else "has no test case" if "/test_" in path or path == "test" else "has no"
         for name in re.findall(r"`([^`]+)`", listed):
             expect(name.split("::")[-1] in named_in(path), f"{page}: {path} {has} {name}")
     for listed in re.findall(r"Coq: (`[a-z0-9_]+`(?:, `[a-z0-9_]+`)*)", flat):

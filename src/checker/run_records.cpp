@@ -2,6 +2,7 @@
 
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/numbers.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
@@ -9,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -141,21 +141,18 @@ EventRecord event_of(const std::string& line, const std::string& where) {
 }
 
 double number_of(const std::string& text, const std::string& where, const std::string& name) {
-    double value = 0;
-    const char* const end = text.data() + text.size();
     if (integer_columns.contains(name)) {
-        int integer = 0;
-        const auto [stop, error] = std::from_chars(text.data(), end, integer);
-        if (error != std::errc() || stop != end) {
+        const auto integer = plain_integer(text);
+        if (!integer || *integer != static_cast<int>(*integer)) {
             bad_field(where, name, text, "an integer");
         }
-        return integer;
+        return static_cast<int>(*integer);
     }
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    if (error != std::errc() || stop != end || std::isnan(value)) {
+    const auto number = text == "inf" ? HUGE_VAL : text == "-inf" ? -HUGE_VAL : finite_number(text);
+    if (!number) {
         bad_field(where, name, text, "a number");
     }
-    return value;
+    return *number;
 }
 
 /// The two columns of a contact have its one spelling, or that of none.

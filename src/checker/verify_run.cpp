@@ -4,6 +4,7 @@
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"
 #include "checker/way.hpp"
+#include "io/folders.hpp"
 #include "io/record_digests.hpp"
 
 #include <isostat/checker/verify.hpp>
@@ -636,6 +637,7 @@ RunVerification verify_run(const std::filesystem::path& directory,
                            const std::function<void(const VerificationProgress&)>& progress) {
     require_floating_point();
     RunVerification result;
+    (void)content_of(directory, run_folder); // no link leads out of it, no pipe is read
     if (is_running(directory)) {
         result.finished = false;
         return result;

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 #include "io/files.hpp"
 
@@ -14,6 +15,7 @@ namespace isostat::cli {
 
 int certify(const CertifyArguments& arguments) {
     const std::filesystem::path input = arguments.input;
+    check_output(arguments.output, "\"isostat-certificate\"", {input});
     Certificate certificate;
     certificate.input = input.filename().string();
     certificate.input_hash = sha256(read_text(input));
@@ -36,12 +38,11 @@ int certify(const CertifyArguments& arguments) {
     } else {
         print_claims(result);
         print_forces_in_file(file, result);
-        fmt::print("{:<14} {}: {}\n", to_string(result.verdict),
-                   result.verdict == Verdict::proved
-                       ? "an isostatic, stable equilibrium without overlap at the true vertex"
-                   : result.verdict == Verdict::refuted ? "not such an equilibrium"
-                                                        : "some claims could not be made",
-                   arguments.output);
+        say("{:<14} {}: {}\n", to_string(result.verdict),
+            result.verdict == Verdict::proved    ? "an isostatic, stable equilibrium without overlap at the true vertex"
+            : result.verdict == Verdict::refuted ? "not such an equilibrium"
+                                                 : "some claims could not be made",
+            arguments.output);
     }
     return status_of(result.verdict);
 }

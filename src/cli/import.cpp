@@ -2,6 +2,7 @@
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/soft_list.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 
@@ -309,8 +310,10 @@ Moves moves_of(const Imported& found) {
     return moves;
 }
 
+constexpr const char* moves_head = "disk,x,y,moved,rattler\n";
+
 std::string moves_csv(const Imported& found, const Moves& moves) {
-    std::string text = "disk,x,y,moved,rattler\n";
+    std::string text = moves_head;
     for (std::size_t i = 0; i < moves.disk.size(); ++i) {
         text += fmt::format("{},{},{},{},{}\n", i, found.state.packing.q[2 * i], found.state.packing.q[2 * i + 1],
                             rounded_up(moves.disk[i], 6), moves.rattler[i]);
@@ -334,21 +337,21 @@ Json provenance_of(const ImportArguments& a, const std::string& format, const Im
 
 void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found, const Moves& moves) {
     const State<2>& state = found.state;
-    fmt::print("file      {} ({})\n", a.file, file.format);
+    say("file      {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
-        fmt::print("          {}\n", note);
+        say("          {}\n", note);
     }
     const auto rattlers = std::count(moves.rattler.begin(), moves.rattler.end(), 1);
-    fmt::print("contacts  {}\n", found.contacts);
-    fmt::print("moved     disks with a force at most {}, {} {}", rounded_up(moves.backbone, 3),
-               state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
-    fmt::print("{}\n", rattlers == 0 ? ""
-                                     : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
-                                                   rounded_up(moves.rattlers, 3)));
-    fmt::print("load      sigma = ({}, {}), {}\n", state.load.stress[0], state.load.stress[1],
-               state.load.kind == LoadKind::nominal ? "nominal" : "true stresses");
-    fmt::print("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}\n", to_string(found.truth.verdict), a.output,
-               state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction());
+    say("contacts  {}\n", found.contacts);
+    say("moved     disks with a force at most {}, {} {}", rounded_up(moves.backbone, 3),
+        state.packing.cell.any() ? "cell" : "walls", rounded_up(moves.walls, 3));
+    say("{}\n", rattlers == 0 ? ""
+                              : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
+                                            rounded_up(moves.rattlers, 3)));
+    say("load      sigma = ({}, {}), {}\n", state.load.stress[0], state.load.stress[1],
+        state.load.kind == LoadKind::nominal ? "nominal" : "true stresses");
+    say("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}\n", to_string(found.truth.verdict), a.output,
+        state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction());
 }
 
 /// What may help where no vertex is proved. Empty: nothing.
@@ -362,6 +365,8 @@ std::string advice(const ImportArguments& a, bool crafted, std::vector<double> r
 
 int import(const ImportArguments& arguments) {
     ImportArguments a = arguments;
+    check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
+    check_output(a.moved, moves_head, {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     const bool listed = format == "vertex" && a.jitter == 0;
@@ -385,7 +390,7 @@ int import(const ImportArguments& arguments) {
     const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
     if (!found.ok() || refuted) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
-        fmt::print(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
+        say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
         return refuted ? failed : status_of(found.failure().kind);
     }
     Imported& imported = found.value();
@@ -393,15 +398,15 @@ int import(const ImportArguments& arguments) {
     const Json provenance = provenance_of(a, format, imported, moves);
     imported.state.provenance = json::dumped(provenance);
     if (imported.truth.verdict != Verdict::proved) {
-        fmt::print(stderr, "isostat: {}: {}{}\n", a.file, fmt::join(imported.truth.claims.undecided, "; "),
-                   advice(a, crafted, file.packing.radius));
+        say(stderr, "isostat: {}: {}{}\n", a.file, fmt::format("{}", fmt::join(imported.truth.claims.undecided, "; ")),
+            advice(a, crafted, file.packing.radius));
     }
     if (!imported.truth.claims.vertex || !imported.truth.claims.forces) {
         return undecided;
     }
     write_state<2>(a.output, imported.state);
     if (!a.moved.empty()) {
-        write_atomically(a.moved, moves_csv(imported, moves));
+        write_output(a.moved, moves_csv(imported, moves), moves_head);
     }
     if (a.common.json) {
         Json object = provenance;

@@ -100,7 +100,7 @@ std::string other_use(const std::string& command, const fs::path& file) {
     if (kind == nullptr || std::find(kind->commands.begin(), kind->commands.end(), command) != kind->commands.end()) {
         return "";
     }
-    return fmt::format("\n{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,
+    return fmt::format("{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,
                        fmt::join(kind->commands, ", "), command,
                        kind == &state && command == "run" ? "; a scene with [packing] file = ... runs it" : "");
 }

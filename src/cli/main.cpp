@@ -3,13 +3,18 @@
 #include "cli/interrupt.hpp"
 #include "cli/kinds.hpp"
 #include "cli/manual.hpp"
+#include "cli/ranges.hpp"
+#include "cli/terminal.hpp"
 #include "core/memory.hpp"
+#include "core/text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -18,22 +23,14 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <iostream>
 #include <new>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace {
-
-/// CLI11's own names the largest double in three hundred digits.
-const CLI::Validator positive(
-    [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value > 0 ? "" : "is " + text + ": expected a positive number";
-    },
-    "> 0");
 
 using namespace isostat::cli;
 
@@ -41,13 +38,7 @@ using namespace isostat::cli;
 std::string quoted(int argc, char** argv) {
     std::string line;
     for (int k = 0; k < argc; ++k) {
-        const std::string word = argv[k]; // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`!*?[](){}<>|&;#~") == std::string::npos;
-        std::string safe = word;
-        for (std::size_t at = safe.find('\''); at != std::string::npos; at = safe.find('\'', at + 4)) {
-            safe.replace(at, 1, "'\\''");
-        }
-        line += (k == 0 ? "" : " ") + (plain ? word : "'" + safe + "'");
+        line += (k == 0 ? "" : " ") + isostat::text::shell(argv[k]); // NOLINT(*-pointer-arithmetic)
     }
     return line;
 }
@@ -57,7 +48,7 @@ void add_threads(CLI::App& command, Common& common) {
         .add_option("--threads", common.threads,
                     "cores for independent work (default: all that this process may use); results have the same bits "
                     "for any number")
-        ->check(CLI::Range(1, 1024))
+        ->check(ranges::integer(1, 1024))
         ->type_name("N");
 }
 
@@ -167,7 +158,7 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
-        command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")->excludes(resume);
         add_threads(command, a.common);
         does(command, a, run, true);
     }
@@ -190,15 +181,17 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-S,--samples", a.samples, "number of samples")
             ->required()
-            ->check(CLI::Range(1, 1'000'000))
+            ->check(ranges::integer(1, most_samples))
             ->type_name("S");
         command.add_option("-o,--output", a.output, "folder of the ensemble")->required()->type_name("DIR");
         command.add_option("-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)")
-            ->check(CLI::Range(1, 10'000))
+            ->check(ranges::integer(1, 10'000))
             ->type_name("J");
-        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
+        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed))
+            ->type_name("SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
-        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")->excludes(resume);
         does(command, a, ensemble, true);
     }
 
@@ -215,6 +208,7 @@ struct Program {
                 "          isostat inspect examples/packings/triangular_patch_3x3.toml");
         command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
         command.add_option("--at", a.at, "under this sigma_2 instead of that of the state; prints every force")
+            ->check(ranges::number(-ranges::largest, ranges::largest))
             ->type_name("SIGMA2");
         add_threads(command, a.common);
         does(command, a, inspect, false);
@@ -269,7 +263,7 @@ struct Program {
             .add_option("--stiffness", a.stiffness,
                         "of a run: also where grains of this stiffness (force / overlap) would leave each structure, "
                         "predicted: soft_limits.csv")
-            ->check(positive)
+            ->check(ranges::number(ranges::smallest, ranges::largest))
             ->type_name("K");
         does(command, a, report, true);
     }
@@ -371,14 +365,16 @@ struct Program {
         command.add_option("--contact-columns", a.contact_columns, "columns of that file: two ids and the force")
             ->type_name("I,J,FORCE");
         command.add_option("--threshold", a.threshold, "pairs with this gap or less are the contacts")
+            ->check(ranges::number(-ranges::largest, ranges::largest))
             ->excludes(contacts);
         command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)")
             ->type_name("S1,S2");
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
-        command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)");
+        command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed));
         command.add_option("--jitter", a.jitter, "radii R_i (1 + jitter rho_i), rho_i in [-1, 1) at random")
-            ->check(CLI::Range(0.0, 0.1));
+            ->check(ranges::number(0, 0.1));
         command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
             ->type_name("FILE.csv");
         add_cell(command, a.cell);
@@ -424,10 +420,11 @@ struct Program {
             .add_option("--stiffness", a.stiffness,
                         "force / overlap: forces that the file does not say are compared with the exact ones too")
             ->type_name("K")
-            ->check(positive);
+            ->check(ranges::number(ranges::smallest, ranges::largest));
         command.add_flag("--exchange", a.exchange,
                          "where the list has no vertex: the one downhill, which need not be the only one near");
-        command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)");
+        command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed));
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
@@ -460,7 +457,7 @@ struct Program {
             .add_option(
                 "--bundle", a.bundle,
                 "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)")
-            ->check(CLI::Range(0, 10000));
+            ->check(ranges::integer(0, 10'000));
         command.add_flag(
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
@@ -510,13 +507,17 @@ struct Program {
                         "periods move")
             ->required()
             ->type_name("FILE");
-        command.add_option("--samples", a.samples, "samples per size (default 100)");
+        command.add_option("--samples", a.samples, "samples per size (default 100)")
+            ->check(ranges::integer(1, 1'000'000'000));
         command.add_option("--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)")
-            ->delimiter(',');
-        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)");
-        command.add_option("--stress", a.stress, "isotropic stress (default 1)");
+            ->delimiter(',')
+            ->check(ranges::number(0, 1));
+        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed));
+        command.add_option("--stress", a.stress, "isotropic stress (default 1)")
+            ->check(ranges::number(ranges::smallest, ranges::largest));
         command.add_option("--lists", a.lists, "frequent contact lists to show (default 10)")
-            ->check(CLI::NonNegativeNumber);
+            ->check(ranges::integer(0, 1'000'000'000));
         command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
         command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
         command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
@@ -545,7 +546,7 @@ struct Program {
                         "overlap to a tenth of the smallest radius)")
             ->type_name("A:B");
         command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
-            ->check(CLI::NonNegativeNumber);
+            ->check(ranges::integer(0, 1'000'000'000));
         command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
         command
             .add_option("--cell", a.strain,
@@ -596,9 +597,22 @@ std::string use_of_input(const CLI::App& app) {
     return files.empty() ? "" : other_use(command.get_name(), files.front()->results().front());
 }
 
-int complain(isostat::ErrorKind kind, const std::string& message) {
-    std::cerr << "isostat: " << message << '\n';
+/// `use` stands on a line of its own.
+int complain(isostat::ErrorKind kind, const std::string& message, const std::string& use = "") {
+    say(stderr, "isostat: {}\n", message);
+    if (!use.empty()) {
+        say(stderr, "{}\n", use);
+    }
     return isostat::Error(kind, "").exit_status();
+}
+
+/// What CLI11 prints: the help that was asked for, or what is wrong with the command line.
+int explain(const CLI::App& app, const CLI::ParseError& error) {
+    std::ostringstream help, trouble;
+    const int status = app.exit(error, help, trouble);
+    say_lines(help.str());
+    say_lines(trouble.str(), stderr);
+    return status == 0 ? done : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
 }
 
 int run_program(int argc, char** argv) {
@@ -610,7 +624,7 @@ int run_program(int argc, char** argv) {
     try {
         program.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return program.app.exit(error) == 0 ? done : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
+        return explain(program.app, error);
     }
     isostat::require_floating_point();
     ignore_file_size_signals();
@@ -620,7 +634,7 @@ int run_program(int argc, char** argv) {
         if (error.kind() != isostat::ErrorKind::bad_input) {
             throw;
         }
-        throw isostat::Error(error.kind(), error.what() + use_of_input(program.app));
+        return complain(error.kind(), error.what(), use_of_input(program.app));
     }
 }
 
@@ -637,7 +651,7 @@ int answered(const std::function<int()>& work) {
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(ErrorKind::cannot_write, error.what());
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) { // fmt::print says what the system said
+        if (std::ferror(stdout) != 0) { // `say` tells what the system said
             return complain(ErrorKind::cannot_write, std::string("standard output: ") + error.what());
         }
         return complain(ErrorKind::internal, std::string("unexpected failure: ") + error.what());
@@ -646,10 +660,19 @@ int answered(const std::function<int()>& work) {
     }
 }
 
+/// A file that is opened later must not become what the program prints to.
+void open_standard_descriptors() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(descriptor, F_GETFD) < 0) { // NOLINT(cppcoreguidelines-pro-type-vararg)
+            (void)::open("/dev/null", O_RDWR);  // NOLINT(cppcoreguidelines-pro-type-vararg): it gets the lowest number
+        }
+    }
+}
+
 /// An answer that did not get out is none.
 int delivered(int status) {
     errno = 0;
-    const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush().good();
+    const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
     const int error = errno;
     const int failure = isostat::Error(isostat::ErrorKind::cannot_write, "").exit_status();
     if (written || status == failure) {
@@ -662,6 +685,7 @@ int delivered(int status) {
 } // namespace
 
 int main(int argc, char** argv) {
+    open_standard_descriptors();
     isostat::keep_freed_memory();
     isostat::say_when_memory_ends();
     const int status = delivered(answered([&] { return run_program(argc, argv); }));

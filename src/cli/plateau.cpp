@@ -3,6 +3,7 @@
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
 #include "cli/soft_list.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
@@ -44,11 +45,11 @@ void print_strains(const ReadPacking& file, const crafted::Plateau& plateau, dou
     const std::vector<Contact> backbone = shown_backbone(file, plateau, threshold);
     const int disks =
         file.packing.disk_count() - static_cast<int>(untouched(file.packing.disk_count(), backbone).size());
-    fmt::print("\nbackbone at the threshold {:.17g}, for every way to strain the cell\n", threshold);
+    say("\nbackbone at the threshold {:.17g}, for every way to strain the cell\n", threshold);
     print_counts(fmt::format("{} disks", disks), strains_of(file, backbone));
-    fmt::print("contacts needed          {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting)\n",
-               contacts_for_bulk_modulus<2>(disks), contacts_for_all_moduli<2>(disks));
-    fmt::print("jammed                   undecided: that asks for forces; counts alone do not tell\n");
+    say("contacts needed          {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting)\n",
+        contacts_for_bulk_modulus<2>(disks), contacts_for_all_moduli<2>(disks));
+    say("jammed                   undecided: that asks for forces; counts alone do not tell\n");
 }
 
 std::string word(Verdict verdict) {
@@ -68,55 +69,55 @@ std::string range_text(const PlateauRange& range) {
 void print_ranges(const std::string& title, const std::vector<PlateauRange>& ranges, const std::string& none) {
     constexpr std::size_t longest = 8;
     if (ranges.empty()) {
-        fmt::print("{:<28}{}\n", title, none);
+        say("{:<28}{}\n", title, none);
     }
     for (std::size_t k = 0; k < ranges.size() && k < longest; ++k) {
-        fmt::print("{:<28}{}\n", k == 0 ? title : "", range_text(ranges[k]));
-        fmt::print("{:<28}  from N = {} with {} rattlers, {} candidates\n", "", ranges[k].contacts, ranges[k].rattlers,
-                   ranges[k].candidates);
+        say("{:<28}{}\n", k == 0 ? title : "", range_text(ranges[k]));
+        say("{:<28}  from N = {} with {} rattlers, {} candidates\n", "", ranges[k].contacts, ranges[k].rattlers,
+            ranges[k].candidates);
     }
     if (ranges.size() > longest) {
-        fmt::print("{:<28}and {} more ranges\n", "", ranges.size() - longest);
+        say("{:<28}and {} more ranges\n", "", ranges.size() - longest);
     }
 }
 
 void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
                 const std::array<double, 2>& thresholds) {
-    fmt::print("file                        {} ({})\n", a.file, file.format);
+    say("file                        {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
-        fmt::print("                            {}\n", note);
+        say("                            {}\n", note);
     }
-    fmt::print("disks                       {}, radii {:.6g} to {:.6g}\n", file.packing.disk_count(),
-               file.packing.min_radius(), file.packing.max_radius());
-    fmt::print("thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
-    fmt::print("candidates                  {}, smallest gap {:.6g}; the contact list changes at {} thresholds\n",
-               plateau.candidates, plateau.deepest_overlap, plateau.changes);
-    fmt::print("rows                        {} of these, {} ranks computed, the rest follows from monotony\n\n",
-               plateau.steps.size(), plateau.ranks_computed);
-    fmt::print("{:>14} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:<10}| {:>8} {:>7} {:>7}\n", "threshold",
-               "candidates", "rattlers", "N_f", "N", "rank", "h", "k", " isostatic", "all N_f", "h", "k");
+    say("disks                       {}, radii {:.6g} to {:.6g}\n", file.packing.disk_count(),
+        file.packing.min_radius(), file.packing.max_radius());
+    say("thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
+    say("candidates                  {}, smallest gap {:.6g}; the contact list changes at {} thresholds\n",
+        plateau.candidates, plateau.deepest_overlap, plateau.changes);
+    say("rows                        {} of these, {} ranks computed, the rest follows from monotony\n\n",
+        plateau.steps.size(), plateau.ranks_computed);
+    say("{:>14} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:<10}| {:>8} {:>7} {:>7}\n", "threshold", "candidates",
+        "rattlers", "N_f", "N", "rank", "h", "k", " isostatic", "all N_f", "h", "k");
     for (const PlateauStep& s : plateau.steps) {
-        fmt::print("{:>14.6g} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {:<9} | {:>8} {:>7} {:>7}\n", s.threshold,
-                   s.candidate_count, s.rattlers, s.backbone.dof_count, s.backbone.contact_count, s.backbone.rank,
-                   bound(s.backbone.hyperstaticity, s.backbone), bound(s.backbone.mechanisms, s.backbone),
-                   word(s.backbone.isostatic), s.all.dof_count, bound(s.all.hyperstaticity, s.all),
-                   bound(s.all.mechanisms, s.all));
+        say("{:>14.6g} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7}  {:<9} | {:>8} {:>7} {:>7}\n", s.threshold,
+            s.candidate_count, s.rattlers, s.backbone.dof_count, s.backbone.contact_count, s.backbone.rank,
+            bound(s.backbone.hyperstaticity, s.backbone), bound(s.backbone.mechanisms, s.backbone),
+            word(s.backbone.isostatic), s.all.dof_count, bound(s.all.hyperstaticity, s.all),
+            bound(s.all.mechanisms, s.all));
     }
     const int rigid = plateau.steps.empty() ? 0 : plateau.steps.back().all.rigid_motions;
-    fmt::print("\nN_f, N, rank, h, k: backbone, that is without disks and contacts that can carry no force by the "
-               "position of the normals;\nall: every disk. k includes {} common rigid motions. <=: proved bound.\n\n",
-               rigid);
+    say("\nN_f, N, rank, h, k: backbone, that is without disks and contacts that can carry no force by the "
+        "position of the normals;\nall: every disk. k includes {} common rigid motions. <=: proved bound.\n\n",
+        rigid);
     print_ranges("backbone isostatic, proved", plateau.ranges, "at no threshold");
     print_ranges("all disks isostatic, proved", plateau.ranges_all, "at no threshold");
     if (!plateau.special.empty()) {
         print_ranges("N = N_f but rank deficient", plateau.special, "");
     }
-    fmt::print("no self-stress (h = 0)      {}\n",
-               plateau.no_self_stress_open
-                   ? fmt::format("up to the largest threshold {:.17g}, proved", plateau.no_self_stress_below)
-                   : fmt::format("below {:.17g}, proved", plateau.no_self_stress_below));
+    say("no self-stress (h = 0)      {}\n",
+        plateau.no_self_stress_open
+            ? fmt::format("up to the largest threshold {:.17g}, proved", plateau.no_self_stress_below)
+            : fmt::format("below {:.17g}, proved", plateau.no_self_stress_below));
     if (file.packing.cell.all()) {
-        fmt::print("cell                        {}, as --cell says: its strains are among the N_f above\n", a.strain);
+        say("cell                        {}, as --cell says: its strains are among the N_f above\n", a.strain);
         print_strains(file, plateau, thresholds[1]);
     }
 }
@@ -184,9 +185,11 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
     return out;
 }
 
+constexpr const char* plateau_head = "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,"
+                                     "all_rank,all_h,all_k,all_rank_exact,all_isostatic\n";
+
 std::string to_csv(const crafted::Plateau& plateau) {
-    std::string out = "threshold,candidates,rattlers,N_f,N,rank,h,k,rank_exact,isostatic,all_N_f,all_N,all_rank,all_h,"
-                      "all_k,all_rank_exact,all_isostatic\n";
+    std::string out = plateau_head;
     const auto counts = [](const PlateauCounts& c) {
         return fmt::format("{},{},{},{},{},{},{}", c.dof_count, c.contact_count, c.rank, c.hyperstaticity, c.mechanisms,
                            c.rank_exact == Verdict::proved ? 1 : 0, word(c.isostatic));
@@ -233,6 +236,7 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Read
 } // namespace
 
 int plateau(const PlateauArguments& a) {
+    check_output(a.csv, plateau_head, {a.file});
     std::array<double, 2> thresholds{};
     if (!a.thresholds.empty()) {
         thresholds = parse_range(a.thresholds, "--thresholds");
@@ -250,7 +254,7 @@ int plateau(const PlateauArguments& a) {
     const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain);
     note_walls(a, result, file);
     if (!a.csv.empty()) {
-        write_atomically(a.csv, to_csv(result));
+        write_output(a.csv, to_csv(result), plateau_head);
     }
     if (a.common.json) {
         print_json(to_json(a, file, result, thresholds));

@@ -1,5 +1,6 @@
 #include "cli/read_packing.hpp"
 
+#include "cli/ranges.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
 
@@ -10,35 +11,16 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 
 namespace isostat::cli {
 
 namespace {
 
-std::optional<double> number_in(const std::string& text) {
-    double value = 0;
-    const char* const end = text.data() + text.size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && stop == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
+constexpr std::int64_t most_frames = 1'000'000'000'000'000;
 
 [[noreturn]] void usage(const std::string& option, const std::string& value, const std::string& expected) {
     throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}", option, value, expected));
-}
-
-std::vector<std::string> split(const std::string& text, char at) {
-    std::vector<std::string> out(1);
-    for (const char c : text) {
-        if (c == at) {
-            out.emplace_back();
-        } else {
-            out.back() += c;
-        }
-    }
-    return out;
 }
 
 ForeignOptions options_of(const ForeignArguments& a) {
@@ -53,7 +35,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
         const std::string& text = radius ? a.radius : a.diameter;
         SizeStatement size;
         size.meaning = radius ? SizeMeaning::radius : SizeMeaning::diameter;
-        if (const auto value = number_in(text)) {
+        if (const auto value = ranges::number_in(text)) {
             if (!(*value > 0)) {
                 usage(radius ? "--radius" : "--diameter", text, "a positive number or the name of a column");
             }
@@ -65,7 +47,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
     }
     out.walls = a.walls == "box" ? ForeignWalls::box : (a.walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::none);
     if (!a.box.empty()) {
-        const auto axes = split(a.box, ',');
+        const auto axes = parse_list(a.box);
         if (axes.size() != 2) {
             usage("--box", a.box, "XLO:XHI,YLO:YHI");
         }
@@ -76,17 +58,16 @@ ForeignOptions options_of(const ForeignArguments& a) {
         }
     }
     if (a.frame != "last") {
-        const auto frame = number_in(a.frame);
-        if (!frame || *frame < 0 || *frame != std::floor(*frame) || *frame > 1e15) {
-            usage("--frame", a.frame, "a number from 0, or last");
+        out.frame = ranges::integer_in(a.frame, 0, most_frames);
+        if (!out.frame) {
+            usage("--frame", a.frame, "an integer from 0, or last");
         }
-        out.frame = static_cast<long>(*frame);
     }
     if (!a.columns.empty()) {
-        out.columns = split(a.columns, ',');
+        out.columns = parse_list(a.columns);
     }
     if (!a.select.empty()) {
-        const auto words = split(a.select, '=');
+        const auto words = parse_list(a.select, '=');
         if (words.size() != 2 || words[0].empty() || words[1].empty()) {
             usage("--select", a.select, "COLUMN=VALUE, for instance type=1");
         }
@@ -101,13 +82,21 @@ ForeignOptions options_of(const ForeignArguments& a) {
 
 } // namespace
 
-std::vector<std::string> parse_list(const std::string& text) {
-    return split(text, ',');
+std::vector<std::string> parse_list(const std::string& text, char at) {
+    std::vector<std::string> out(1);
+    for (const char c : text) {
+        if (c == at) {
+            out.emplace_back();
+        } else {
+            out.back() += c;
+        }
+    }
+    return out;
 }
 
 std::array<double, 2> parse_range(const std::string& text, const std::string& option) {
-    const auto ends = split(text, ':');
-    const auto low = number_in(ends[0]), high = ends.size() == 2 ? number_in(ends[1]) : std::nullopt;
+    const auto ends = parse_list(text, ':');
+    const auto low = ranges::number_in(ends[0]), high = ends.size() == 2 ? ranges::number_in(ends[1]) : std::nullopt;
     if (!low || !high || *low > *high) {
         usage(option, text, "A:B, two numbers with A <= B");
     }

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/soft_list.hpp"
+#include "cli/terminal.hpp"
 #include "compare/force_split.hpp"
 #include "compare/soft_state.hpp"
 #include "io/files.hpp"
@@ -124,34 +125,35 @@ std::optional<State<2>> state_of(const SnapArguments& a, const Read& read, const
 
 void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, const Json& report, bool written) {
     for (const std::string& note : read.notes) {
-        fmt::print("          {}\n", note);
+        say("          {}\n", note);
     }
-    fmt::print("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words,
-               snap.counting.dof_count, snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity,
-               snap.counting.mechanisms, snap.rattlers.size());
-    fmt::print("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
-               report["reason"].get<std::string>());
+    say("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words, snap.counting.dof_count,
+        snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity, snap.counting.mechanisms,
+        snap.rattlers.size());
+    say("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
+        report["reason"].get<std::string>());
     if (!report["distance"].is_null()) {
-        fmt::print("distance  of a disk with a force from its true place at most {}\n",
-                   rounded_up(report["distance"].get<double>(), 3));
+        say("distance  of a disk with a force from its true place at most {}\n",
+            rounded_up(report["distance"].get<double>(), 3));
     }
     if (const auto forces = report.find("forces"); forces != report.end() && !(*forces)["rest"].is_null()) {
-        fmt::print("forces    of the file differ by at most {} mean forces from those that balance at its coordinates, "
-                   "in {}",
-                   rounded_up((*forces)["rest"].get<double>(), 2), (*forces)["contact"].get<std::string>());
-        fmt::print("{}\n", (*forces)["stiffness"].is_null()
-                               ? ""
-                               : fmt::format("; those by at most {} from the ones at the vertex",
-                                             rounded_up((*forces)["stiffness"].get<double>(), 2)));
+        say("forces    of the file differ by at most {} mean forces from those that balance at its coordinates, "
+            "in {}",
+            rounded_up((*forces)["rest"].get<double>(), 2), (*forces)["contact"].get<std::string>());
+        say("{}\n", (*forces)["stiffness"].is_null()
+                        ? ""
+                        : fmt::format("; those by at most {} from the ones at the vertex",
+                                      rounded_up((*forces)["stiffness"].get<double>(), 2)));
     }
     if (written) {
-        fmt::print("written   {}\n", a.output);
+        say("written   {}\n", a.output);
     }
 }
 
 } // namespace
 
 int snap(const SnapArguments& a) {
+    check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);

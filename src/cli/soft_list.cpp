@@ -1,5 +1,6 @@
 #include "cli/soft_list.hpp"
 
+#include "cli/ranges.hpp"
 #include "compare/backbone.hpp"
 #include "compare/pair_images.hpp"
 #include "contact/candidates.hpp"
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -75,10 +75,9 @@ std::array<double, 2> parse_pair(const std::string& text, const char* option, co
     std::array<double, 2> pair{};
     bool good = words.size() == 2;
     for (std::size_t k = 0; good && k < 2; ++k) {
-        const char* const end =
-            words[k].data() + words[k].size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-        const auto [stop, error] = std::from_chars(words[k].data(), end, pair[k]);
-        good = error == std::errc() && stop == end && pair[k] > 0 && std::isfinite(pair[k]);
+        const auto value = ranges::number_in(words[k], ranges::smallest);
+        good = value.has_value();
+        pair[k] = value.value_or(0);
     }
     if (!good) {
         throw Error(ErrorKind::usage,

@@ -52,7 +52,8 @@ class FrameTable {
         for (std::size_t k = 0; k < names.size(); ++k) {
             names_.emplace_back(names.field(k));
         }
-        where_ = fmt::format("{}:{}", manifest.frames, names.number());
+        where_ = names.place();
+        foreign::refuse_twice(names_, where_);
         (void)required("timestep");
         sides_ = !manifest.periodic || find("tilt") >= 0; // the bounds of a dump are not the walls
         for (const char* name : wall_names) {
@@ -94,7 +95,7 @@ class FrameTable {
     }
 
   private:
-    [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name, where_); }
+    [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name); }
     [[nodiscard]] std::size_t required(const std::string& name) const {
         const int at = find(name);
         if (at < 0) {
@@ -131,7 +132,7 @@ class FrameTable {
         } else {
             load.stress[1] = line.number(required("force_top"), "force_top") * per_force;
         }
-        if (!(load.stress[1] > 0)) {
+        if (!(load.stress[1] > 0 && std::isfinite(load.stress[1]))) {
             line.fail(fmt::format("{}", load.stress[1]), "sigma2", "a positive number");
         }
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {

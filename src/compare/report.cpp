@@ -1,6 +1,8 @@
 #include "compare/report.hpp"
 
+#include "core/text.hpp"
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
@@ -122,7 +124,7 @@ const std::vector<Column<BundleMember>>& of_members() {
     return columns;
 }
 
-/// Quoted where it must be; nothing for null.
+/// "nan" for null.
 std::string cell(const Json& value) {
     if (value.is_null()) {
         return "nan";
@@ -130,11 +132,7 @@ std::string cell(const Json& value) {
     if (!value.is_string()) {
         return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
     }
-    std::string safe;
-    for (const char c : value.get<std::string>()) {
-        safe += c == '"' ? std::string("\"\"") : std::string(1, c);
-    }
-    return safe.find_first_of(",\"\n") == std::string::npos ? safe : "\"" + safe + "\"";
+    return text::csv(value.get_ref<const std::string&>());
 }
 
 template <class Row> std::vector<std::string> names_of_columns(const std::vector<Column<Row>>& columns) {
@@ -341,6 +339,8 @@ std::string members_csv(const Comparison& comparison) {
 
 std::string comparison_json(const Series& series, const Comparison& comparison) {
     Json out;
+    out["format"] = comparison_folder.format;
+    out["version"] = 1;
     out["title"] = series.title;
     out["made_by"] = series.program;
     out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
@@ -387,7 +387,7 @@ void write_bundle(const std::filesystem::path& folder, const Comparison& compari
 } // namespace
 
 std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison) {
-    make_directory(folder);
+    make_folder_for(folder, comparison_folder);
     const Chart chart = figure(comparison);
     write_atomically(folder / "comparison.csv", frames_csv(comparison));
     write_atomically(folder / "path.csv", path_csv(comparison));

@@ -29,6 +29,12 @@ namespace {
 constexpr double largest_length = 1e100;   // squares neither overflow
 constexpr double smallest_length = 1e-100; // nor underflow
 
+/// More are no contacts, and take longer than anyone waits.
+int most_pairs(const Packing<2>& packing) {
+    constexpr int most_disks = std::numeric_limits<int>::max() / most_pairs_per_disk;
+    return most_pairs_per_disk * std::min(packing.disk_count(), most_disks);
+}
+
 class Sequence {
   public:
     Sequence(const Packing<2>& packing, double largest, Strain strain)
@@ -190,7 +196,8 @@ class Sequence {
         const int count = images.packing.disk_count();
         preparation::PairList pairs;
         std::vector<double> centres(images.packing.q.begin(), images.packing.q.end() - 2);
-        preparation::find_pairs<2>(centres, images.packing.radius, reach + images.rounding, pairs);
+        preparation::find_pairs<2>(centres, images.packing.radius, reach + images.rounding, pairs,
+                                   most_pairs(images.packing));
         std::vector<Contact> found;
         for (int a = 0; a < count; ++a) {
             const auto k = static_cast<std::size_t>(a);
@@ -213,7 +220,7 @@ class Sequence {
             find_pairs_of_images(reach);
             pairs.start.assign(packing_.radius.size() + 1, 0);
         } else {
-            preparation::find_pairs<2>(packing_.q, packing_.radius, reach, pairs);
+            preparation::find_pairs<2>(packing_.q, packing_.radius, reach, pairs, most_pairs(packing_));
         }
         for (int i = 0; i < packing_.disk_count(); ++i) {
             const auto k = static_cast<std::size_t>(i);

@@ -124,7 +124,7 @@ std::string name_of_temporary(const std::string& name) {
 }
 
 bool is_marked(const std::filesystem::path& path, const std::string& text) {
-    std::array<char, 4096> first{};
+    std::array<char, 300> first{};
     std::ifstream file(path, std::ios::binary);
     file.read(first.data(), first.size());
     return std::string_view(first.data(), static_cast<std::size_t>(file.gcount())).find(text) != std::string_view::npos;
@@ -150,6 +150,10 @@ void check_output(const std::filesystem::path& path, const std::string& mark,
 void write_output(const std::filesystem::path& path, const std::string& text, const std::string& mark) {
     check_output(path, mark);
     write_atomically(path, text);
+}
+
+void check_directory_of(const std::filesystem::path& path) {
+    ::unlink(temporary_beside(path).first.c_str());
 }
 
 void make_directory(const std::filesystem::path& path) {

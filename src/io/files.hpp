@@ -26,16 +26,19 @@ void write_atomically(const std::filesystem::path& path, const std::string& text
 /// a kill ("x.json.part" of earlier versions); empty for other names.
 std::string name_of_temporary(const std::string& name);
 
-/// The first 4096 bytes of a file contain this text.
+/// The first 300 bytes of a file contain this text.
 bool is_marked(const std::filesystem::path& path, const std::string& text);
 
 /// Throws `Error(usage)` when a file that is to be written is one of `inputs`, by whatever name, or holds something
-/// else than what is written there: neither nothing nor, among its first bytes, `mark`.
+/// else than what would be written: it is not empty, and `is_marked` says no.
 void check_output(const std::filesystem::path& path, const std::string& mark,
                   std::initializer_list<std::filesystem::path> inputs = {});
 
 /// `check_output` and `write_atomically`: for every file whose name the user chooses.
 void write_output(const std::filesystem::path& path, const std::string& text, const std::string& mark);
+
+/// Throws `Error(cannot_write)` unless a file can be made beside `path`; it is removed again.
+void check_directory_of(const std::filesystem::path& path);
 
 /// Makes a directory and its parents. Throws `Error(cannot_write)` naming the directory and the reason.
 void make_directory(const std::filesystem::path& path);

@@ -133,8 +133,8 @@ void look(const fs::path& folder, const std::string& before, const FolderKind& k
         const std::string whole = name_of_temporary(name);
         if (file || kind.owns_folder(name)) {
             if (type != (file ? fs::file_type::regular : fs::file_type::directory)) {
-                throw Error(ErrorKind::bad_input, fmt::format("{}: expected a {} that is no link", entry.path().string(),
-                                                              file ? "regular file" : "folder"));
+                throw Error(ErrorKind::bad_input, fmt::format("{}: expected a {} that is no link",
+                                                              entry.path().string(), file ? "regular file" : "folder"));
             }
             (file ? found.files : found.folders).push_back(name);
         } else if (type == fs::file_type::regular && !whole.empty() && kind.owns(whole)) {
@@ -152,27 +152,10 @@ bool has(const std::vector<std::string>& names, const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Throws `Error(bad_input)` unless the mark says that the folder is of this kind.
-void check_mark(const fs::path& folder, const FolderKind& kind) {
-    const fs::path mark = folder / kind.mark;
-    if (mark.extension() != ".json") {
-        if (!is_marked(mark, kind.format)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: is not of {}", mark.string(), kind.words));
-        }
-        return;
-    }
-    const json::Json parsed = json::Field::parse(read_text(mark), mark.string());
-    const json::Field file(parsed, mark.string());
-    if (file.at("format").string() != kind.format) {
-        file.at("format").fail(fmt::format("\"{}\"", kind.format));
-    }
-    (void)file.at("version").integer(1, 1);
-}
-
 /// Nothing is there, or what a kill leaves before the mark is written.
 bool is_unused(const FolderContent& content) {
-    return content.others.empty() &&
-           std::all_of(content.files.begin(), content.files.end(), [](const auto& name) { return name == "lock"; });
+    const bool locked = has(content.files, "lock");
+    return content.others.empty() && content.files.size() == (locked ? 1 : 0) && (locked || content.leftovers.empty());
 }
 
 [[noreturn]] void refuse_to_resume(const fs::path& folder, const FolderKind& kind) {
@@ -183,8 +166,10 @@ bool is_unused(const FolderContent& content) {
 
 [[noreturn]] void refuse_to_write(const fs::path& folder, const FolderKind& kind, const FolderContent& content) {
     const bool other_run = &kind != &run_folder && fs::exists(folder / run_folder.mark);
-    const std::string holds = other_run ? run_folder.words
-                                        : (content.others.empty() ? content.files : content.others).front();
+    const auto& names = !content.others.empty()  ? content.others
+                        : !content.files.empty() ? content.files
+                                                 : content.leftovers;
+    const std::string holds = other_run ? run_folder.words : names.front();
     throw Error(ErrorKind::usage, fmt::format("{}: holds {}{}, and is not the folder of {}: expected an empty folder",
                                               folder.string(), holds, other_run ? " already" : "", kind.words));
 }
@@ -238,11 +223,29 @@ Descriptor locked(const fs::path& folder, int flags) {
 
 FolderContent content_of(const fs::path& folder, const FolderKind& kind) {
     FolderContent found;
-    look(folder, "", kind, found);
+    if (fs::is_directory(folder)) {
+        look(folder, "", kind, found);
+    }
     for (auto* names : {&found.files, &found.folders, &found.leftovers, &found.others}) {
         std::sort(names->begin(), names->end());
     }
     return found;
+}
+
+void check_mark(const fs::path& folder, const FolderKind& kind) {
+    const fs::path mark = folder / kind.mark;
+    if (mark.extension() != ".json") {
+        if (!is_marked(mark, kind.format)) {
+            throw Error(ErrorKind::bad_input, fmt::format("{}: is not of {}", mark.string(), kind.words));
+        }
+        return;
+    }
+    const json::Json parsed = json::Field::parse(read_text(mark), mark.string());
+    const json::Field file(parsed, mark.string());
+    if (file.at("format").string() != kind.format) {
+        file.at("format").fail(fmt::format("\"{}\"", kind.format));
+    }
+    (void)file.at("version").integer(1, 1);
 }
 
 std::vector<std::string> notes_on(const FolderContent& content, const FolderKind& kind) {
@@ -270,6 +273,10 @@ TakenFolder take_folder(const fs::path& folder, const FolderKind& kind, FolderMo
         remove_files(folder, taken.before.leftovers, taken.before.folders);
     }
     return taken;
+}
+
+void check_folder_for(const fs::path& folder, const FolderKind& kind) {
+    (void)checked(folder, kind, FolderMode::force);
 }
 
 void make_folder_for(const fs::path& folder, const FolderKind& kind) {

@@ -63,8 +63,13 @@ struct TakenFolder {
 /// `Error(bad_input)` on resume, and nothing was changed; `Error(cannot_write)`: a running program holds it.
 TakenFolder take_folder(const std::filesystem::path& folder, const FolderKind& kind, FolderMode mode);
 
-/// Makes a folder for output that is written over: it does not exist, is empty, or of this kind. Otherwise throws
+/// Throws `Error(bad_input)` unless the mark says that the folder is of this kind, in the version that is written now.
+void check_mark(const std::filesystem::path& folder, const FolderKind& kind);
+
+/// For output that is written over: the folder does not exist, is empty, or is of this kind. Otherwise throws
 /// `Error(usage)`.
+void check_folder_for(const std::filesystem::path& folder, const FolderKind& kind);
+/// The same, and it is made.
 void make_folder_for(const std::filesystem::path& folder, const FolderKind& kind);
 
 /// Removes the files and then the folders that are empty.

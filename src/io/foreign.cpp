@@ -1,6 +1,7 @@
 #include "io/cell_wrap.hpp"
 #include "io/files.hpp"
 #include "io/foreign_source.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
@@ -221,13 +222,13 @@ std::string recognise_format(const std::string& marked) {
         return "vertex";
     }
     if (start.size() == 2 && is_count(start[0]) && start[0].size() == 1) {
-        const bool numbers = start[1].size() == 5 && foreign::to_number(start[1].field(0)).has_value();
+        const bool numbers = start[1].size() == 5 && finite_number(start[1].field(0)).has_value();
         return numbers || (!start[1].text().empty() && start[1].text().starts_with('#')) ? "vertex" : "xyz";
     }
     constexpr int header_lines = 60;
     for (int k = 0; k < header_lines && !lines.at_end(); ++k) {
         const Line line = lines.next("");
-        if (line.size() >= 2 && foreign::to_number(line.field(0)) && line.field(1) == "atoms") {
+        if (line.size() >= 2 && finite_number(line.field(0)) && line.field(1) == "atoms") {
             return "lammps-data";
         }
         const std::string_view word = line.size() > 0 ? line.field(0) : std::string_view();

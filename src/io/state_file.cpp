@@ -86,6 +86,11 @@ constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
 template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
         const std::string& name = moves.at(k).string();
+        for (std::size_t before = 0; before < k; ++before) {
+            if (moves.at(before).string() == name) {
+                moves.at(k).fail("each coordinate once");
+            }
+        }
         bool known = name == "scale";
         if (known && (moves.size() != 1 || !cell.all())) {
             moves.at(k).fail("\"scale\" alone, where every axis is periodic: it is what moves of an isotropic cell");
@@ -169,6 +174,9 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
             const long i = fixed.at(k).integer();
             if (i < 0 || i >= packing.disk_count()) {
                 fixed.at(k).fail(fmt::format("a disk from 0 to {}", packing.disk_count() - 1));
+            }
+            if (packing.fixed[static_cast<std::size_t>(i)] != 0) {
+                fixed.at(k).fail("each disk once");
             }
             packing.fixed[static_cast<std::size_t>(i)] = 1;
         }

@@ -312,6 +312,11 @@ void bind_state(py::module_& module) {
     module.def(
         "count",
         [](const Packing<2>& packing, const std::vector<std::pair<int, int>>& contacts) {
+            if (packing.cell.any()) {
+                throw Error(ErrorKind::bad_input,
+                            "packing is a periodic cell, whose contacts name images, and pairs do "
+                            "not: expected count(state)");
+            }
             std::vector<Contact> list;
             for (const auto& pair : contacts) {
                 list.push_back(contact_of(pair));

@@ -1,5 +1,6 @@
 #include "report/page.hpp"
 
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "linear/factorisation.hpp"
@@ -258,7 +259,7 @@ Json header_json(const std::filesystem::path& directory) {
     }
     object["segments"] = run.at("programme").value();
     const json::Field settings = run.at("settings").at("run");
-    object["level"] = settings.has("certify") ? settings.at("certify").string() : "decisions";
+    object["level"] = settings.at("certify").string();
     return object;
 }
 
@@ -305,7 +306,7 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     data["left_out"] = page.left_out;
     page.html = page_template;
     const std::string place = "@DATA@";
-    page.html.replace(page.html.find(place), place.size(), in_script(json::dumped(data)));
+    page.html.replace(page.html.find(place), place.size(), text::in_script(json::dumped(data)));
     return page;
 }
 

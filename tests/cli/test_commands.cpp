@@ -157,9 +157,9 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
 BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
     const scratch::Folder folder;
     const std::string out = (folder / "run").string();
-    scratch::write(folder / "s.toml",
-                   scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n" +
-                                                                  "[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"),
+                                                       up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n" +
+                                                           "[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
     const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", out});
     expect(outcome, 0);
     for (const char* word :
@@ -199,7 +199,7 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
 
 BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "--json"});
     expect(outcome, 0);
     const json j = json::parse(outcome.out);
@@ -220,7 +220,8 @@ BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
 
 BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
     const scratch::Folder folder;
-    scratch::write(folder / "cap.toml", scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nmax_arcs = 3\n"));
+    scratch::write_scene(folder / "cap.toml",
+                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nmax_arcs = 3\n"));
     const Outcome cap = run({"run", (folder / "cap.toml").string(), "-o", (folder / "cap").string(), "-q"});
     expect(cap, 1, {"failed", "max_arcs"});
     BOOST_TEST(contains(scratch::read(folder / "cap/run.json"), "\"status\": \"failed: "));
@@ -236,8 +237,8 @@ BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
 
 BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml",
-                   scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"up\"\nto = 1.01\n"));
+    scratch::write_scene(folder / "s.toml",
+                         scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"up\"\nto = 1.01\n"));
     const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"});
     expect(outcome, 1, {"s.toml:6", "larger ratio than 1.01"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "failed"));
@@ -246,7 +247,7 @@ BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run)
 BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_remain) {
     const scratch::Folder folder;
     const std::string out = (folder / "run").string();
-    scratch::write(
+    scratch::write_scene(
         folder / "s.toml",
         scene_from(scratch::data("vertex100.txt"),
                    up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));

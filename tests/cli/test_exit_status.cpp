@@ -25,7 +25,7 @@ int status_with_output_to(const std::string& place, const std::vector<std::strin
 
 /// A scene with a short run from the sample of 100 disks.
 fs::path small_scene(const scratch::Folder& folder) {
-    scratch::write(folder / "s.toml", scene_from(vertex, "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(vertex, "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
     return folder / "s.toml";
 }
 

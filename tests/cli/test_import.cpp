@@ -239,8 +239,8 @@ BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
 
 BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml",
-                   scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
+    scratch::write_scene(folder / "s.toml",
+                         scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
     expect(run({"export", (folder / "run").string(), "-o", (folder / "run.xyz").string()}), 0);
     const std::string text = scratch::read(folder / "run.xyz");

@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     const std::string events = scratch::read(folder / "whole/events.jsonl");
     const auto arcs = std::count(events.begin(), events.end(), '\n');
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_o
 BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     for (const int signal : {SIGINT, SIGTERM}) {
         const fs::path out = folder / ("cut" + std::to_string(signal));
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
     const fs::path out = folder / "run";
-    scratch::write(scene, scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex100.txt"), up_6));
     expect(run({"run", scene, "-o", out.string(), "-q"}), 0);
     std::vector<std::string> before;
     for (const char* name : {"events.jsonl", "equilibria.csv", "summary.json", "run.json", "states/last.json"}) {

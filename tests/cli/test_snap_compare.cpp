@@ -216,8 +216,9 @@ BOOST_AUTO_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables) {
 
 BOOST_AUTO_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of_a_run) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"),
-                                                 "[[programme]]\ndo = \"up\"\nequilibria = 2\n", "states_every = 1\n"));
+    scratch::write_scene(folder / "s.toml",
+                         scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n",
+                                    "states_every = 1\n"));
     const std::string out = (folder / "out").string();
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
     const auto ends = [&](const std::string& stiffness) {

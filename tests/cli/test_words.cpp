@@ -9,7 +9,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(the_wrong_kind_of_file_names_the_commands_that_take_it) {
     const scratch::Folder folder;
     const auto path = [&folder](const char* name) { return (folder / name).string(); };
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     expect(run({"import", scratch::data("vertex100.txt"), "-o", path("state.json")}), 0);
     expect(run({"run", path("s.toml"), "-o", path("run"), "-q"}), 0);
     expect(run({"certify", path("state.json"), "-o", path("cert.json")}), 0);
@@ -65,8 +65,8 @@ BOOST_AUTO_TEST_CASE(a_held_coordinate_is_not_counted_as_a_contact_that_carries_
 
 BOOST_AUTO_TEST_CASE(a_run_that_is_stopped_says_how_to_go_on) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex1936.txt"), // longer than anyone waits
-                                                 "[[programme]]\ndo = \"up\"\nequilibria = 100000\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex1936.txt"), // longer than anyone waits
+                                                       "[[programme]]\ndo = \"up\"\nequilibria = 100000\n"));
     const std::string scene = (folder / "s.toml").string();
     // A second signal ends the program at once: `timeout` sends one to the group too, but in the foreground.
     for (const char* seconds : {"1", "8", "60", "600"}) { // on a busy machine it has not begun after one

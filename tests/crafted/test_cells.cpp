@@ -2,6 +2,7 @@
 
 #include "examples.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/contact/contact.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/io/state_file.hpp>

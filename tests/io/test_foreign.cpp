@@ -228,6 +228,33 @@ BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_e
     refused("x,y,r\n1,2,1e999\n", {"finite"});
 }
 
+BOOST_AUTO_TEST_CASE(columns_and_header_lines_come_once_whether_they_are_asked_for_or_not) {
+    const auto refused = [&](const std::string& text, const std::string& where, const std::string& what) {
+        expect_bad_input([&] { read(text); }, {where, what});
+    };
+    refused("x,y,r,name,name\n1,1,1,a,b\n", "FILE:1", "'name' is given twice");
+    refused("# x y r q q\n1 1 1 0 0\n", "FILE:1", "'q' is given twice");
+    refused(replaced(dump, "id type x y z radius", "id type x y z radius type"), "FILE:19", "'type' is given twice");
+    refused(replaced(xyz, "radius:R:1", "radius:R:1:pos.0:R:1"), "FILE:2", "'pos.0' is given twice");
+    refused(replaced(dump, "ITEM: NUMBER OF ATOMS\n1", "ITEM: NUMBER OF ATOMS\n2\nITEM: NUMBER OF ATOMS\n1"), "FILE:5",
+            "once");
+    refused(replaced(data_file, "-0.5 0.5 zlo zhi", "-0.5 0.5 zlo zhi\n-0.5 0.5 zlo zhi"), "FILE:9", "once");
+    refused(replaced(data_file, "1 atom types", "1 atom types\n1 atom types"), "FILE:5", "once");
+    ForeignOptions options;
+    options.columns = {"x", "y", "r", "-", "-"};
+    BOOST_TEST(read("1 1 1 0 0\n", options).packing.disk_count() == 1);
+    options.columns = {"x", "y", "r", "z", "z"};
+    expect_bad_input([&] { read("1 1 1 0 0\n", options); }, {"FILE", "'z' is given twice"});
+}
+
+BOOST_AUTO_TEST_CASE(integers_of_files_are_written_as_integers) {
+    for (const char* id : {"+7", "07", "-0", "7.0", "7e0", "1e99", "0x7", "nan", ""}) {
+        expect_bad_input([&] { read(std::string("id,x,y,r\n") + id + ",1,1,1\n"); },
+                         {"FILE:2", "id of disk 0", "an integer"});
+    }
+    BOOST_TEST(read("id,x,y,r\n7,+1,1,1\n").ids.front() == 7); // a number may have its sign
+}
+
 BOOST_AUTO_TEST_CASE(more_rows_in_a_data_file_than_atoms_are_refused) {
     expect_bad_input([&] { read(scratch::replaced(data_file, "2 atoms", "1 atoms")); }, {"FILE:13"});
 }

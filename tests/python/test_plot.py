@@ -69,6 +69,12 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "0 contacts"):
             isostat.mechanism(state, (*state.contacts[0], (7, 7)))
 
+    def test_pairs_without_images_are_no_contacts_of_a_cell(self):
+        state = isostat.State.read(project / "tests/data/cells/rect_16.json")
+        self.assertEqual(isostat.count(state).contacts, len(state.contacts))
+        with self.assertRaisesRegex(isostat.BadInput, "name images"):
+            isostat.count(state.packing, state.contacts.tolist())
+
     def test_two_disks_have_six_lines(self):
         self.assertEqual(len(lines_of(isostat.plot.packing(two_disks(), np.ones(6)))), 6)
 

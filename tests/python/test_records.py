@@ -1,6 +1,7 @@
 """isostat.load: a run as arrays, finished, killed or going on."""
 
 import json
+import shutil
 import unittest
 from pathlib import Path
 
@@ -50,12 +51,12 @@ class Records(Folder):
 
     def sheared(self, equilibria=2):
         """A run of a cell whose tilt is loaded."""
-        start = project / "examples/cells/tilted-100.json"
+        shutil.copy(project / "examples/cells/tilted-100.json", self.folder)
         return isostat.load(
             self.run_scene(
                 text=f"""
 [packing]
-file = "{start}"
+file = "tilted-100.json"
 [load]
 loaded = "tilt"
 [[programme]]
@@ -88,6 +89,9 @@ states_every = 1
             for name in ("opened", "closed"):
                 (i, j), (mx, my) = event[name], event[name + "_image"]
                 self.assertEqual(f"{i}-{j}" + (f"({mx},{my})" if mx or my else ""), line[name])
+        again = isostat.Run(run.path.parent / "scene.toml", self.folder / "again")
+        self.assertEqual([(arc.opened_image, arc.closed_image) for arc in again.arcs()],
+                         [(tuple(e["opened_image"]), tuple(e["closed_image"])) for e in run.events])
         end = run.states[1]  # what closed last is a contact there
         last = run.events[run.events["equilibrium"] == 1][-1]
         same = (end.contacts == last["closed"]) & (end.images == last["closed_image"])
@@ -170,9 +174,23 @@ states_every = 1
         }
         for name, contact in known.items():
             self.assertEqual(contact_of_name(name), contact)
-        for name in ("3-nowhere", "7-3", "3-3", "3-7(1)", "3-7(1,0,0)", "3-left(1,0)", "3-7 ", "٣-7"):
+        for name in ("3-nowhere", "7-3", "03-7", "+3-7", "held x of grain 03", "3-3", "3-7(1)", "3-7(1,0,0)", "3-left(1,0)", "3-7 ", "٣-7"):
             with self.assertRaises(isostat.BadInput, msg=name):
                 contact_of_name(name)
+
+    def test_columns_and_fields_come_once_and_integers_are_integers(self):
+        out = self.folder / "out"
+        out.mkdir()
+        (out / "run.json").write_text('{"status": "a", "status": "b"}')
+        with self.assertRaisesRegex(isostat.BadInput, "status.*twice"):
+            isostat.load(out).status
+        (out / "run.json").write_text('{"status": "completed"}')
+        for table in ("number,eps2,eps2\n0,1,1", "number,eps2\n4.9,1", "number,eps2\n+4,1", "number,eps2\n1"):
+            (out / "equilibria.csv").write_text(f"# {table}\n")
+            with self.assertRaisesRegex(isostat.BadInput, "equilibria.csv"):
+                isostat.load(out).equilibria
+        (out / "equilibria.csv").write_text("# number,eps2\n4,1\n")
+        self.assertEqual(isostat.load(out).equilibria["number"].tolist(), [4])
 
 
 if __name__ == "__main__":

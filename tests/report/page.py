@@ -6,6 +6,7 @@ Usage: page.py PROGRAM DATA [PICTURES]: the program, the folder tests/data, wher
 import base64
 import csv
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -53,7 +54,8 @@ class Run:
         folder = Path(cls.scratch.name)
         # A name that would change what the browser takes for a script, were it not written with care.
         scene = folder / "<!--<script><img src=x onerror=stop()>.toml"
-        scene.write_text(SCENE.format(start=cls.start, load=cls.load))
+        shutil.copy(cls.start, folder)
+        scene.write_text(SCENE.format(start=Path(cls.start).name, load=cls.load))
         cls.out = folder / "run"
         done = isostat("run", scene, "-o", cls.out, "-q")
         assert done.returncode == 0, done.stderr

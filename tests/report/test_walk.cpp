@@ -16,11 +16,11 @@ namespace {
 
 /// A run with every state stored, a branch included.
 void make_run(const scratch::Folder& folder, const std::string& start) {
-    scratch::write(folder / "s.toml", scene_from(start,
-                                                 "[[programme]]\ndo = \"up\"\nequilibria = 5\n"
-                                                 "[[programme]]\ndo = \"down\"\nfrom = 2\nequilibria = 3\n"
-                                                 "[[programme]]\ndo = \"up\"\nfrom = 1\nto = 1.035\n",
-                                                 "states_every = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(start,
+                                                       "[[programme]]\ndo = \"up\"\nequilibria = 5\n"
+                                                       "[[programme]]\ndo = \"down\"\nfrom = 2\nequilibria = 3\n"
+                                                       "[[programme]]\ndo = \"up\"\nfrom = 1\nto = 1.035\n",
+                                                       "states_every = 1\n"));
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
 }
 
@@ -138,9 +138,6 @@ BOOST_AUTO_TEST_CASE(the_page_of_a_run_without_an_equilibrium_says_so) {
 }
 
 BOOST_AUTO_TEST_CASE(no_name_can_end_the_script_that_holds_the_data) {
-    const std::string safe = in_script(R"({"a": "</script><!--<script>&"})");
-    BOOST_TEST(safe.find_first_of("<>&") == std::string::npos);
-    BOOST_TEST(contains(safe, "\\u003c/script\\u003e\\u003c!--"));
     const scratch::Folder folder;
     make_run(folder, scratch::data("vertex100.txt"));
     const std::string header = scratch::read(folder / "run/run.json");

@@ -68,14 +68,17 @@ struct Plateau {
     int ranks_computed = 0;           ///< eliminations; what is not computed follows from monotony
 };
 
+/// Pairs at gaps up to the largest threshold, in the mean: more are refused.
+inline constexpr int most_pairs_per_disk = 50;
+
 /// \pre finite coordinates. \p thresholds in the unit of length, increasing, any sign (soft packings overlap). Gaps are
 /// compared exactly, with each other and with the thresholds, as the real numbers that the stored doubles define. It
 /// says nothing of a true configuration near the stored one. Throws `Error(bad_input)` for lengths beyond 1e+-100, and
-/// when two disks have the same centre. Cost at n = 10^4 (10^5): sorting and rattlers of all thresholds together 0.1 s
-/// (1.5 s), each rank 0.03 s (0.7 s).
-/// Periodic axes: contacts with images, and pairs with several. Where all are periodic the cell may strain as `strain`
-/// says: `isotropic` is a packing that was jammed at fixed shape, whose one self-stress a pressure balances (h = 0 here
-/// is h = 1 in a fixed cell, and the same contacts). Throws when a disk comes near its own image.
+/// when two disks have the same centre, for more pairs than `most_pairs_per_disk`. Cost at n = 10^4 (10^5): sorting and
+/// rattlers of all thresholds together 0.1 s (1.5 s), each rank 0.03 s (0.7 s). Periodic axes: contacts with images,
+/// and pairs with several. Where all are periodic the cell may strain as `strain` says: `isotropic` is a packing that
+/// was jammed at fixed shape, whose one self-stress a pressure balances (h = 0 here is h = 1 in a fixed cell, and the
+/// same contacts). Throws when a disk comes near its own image.
 Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain = Strain::isotropic);
 
 /// The same for every gap in [first, last] at which the contact list changes, thinned to about `rows` thresholds (0:

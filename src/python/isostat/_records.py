@@ -30,11 +30,32 @@ def _complete_lines(path: Path) -> list[str]:
         text = path.read_text()
     except FileNotFoundError:
         return []
-    return text[: text.rfind("\n") + 1].splitlines()
+    return text.split("\n")[:-1]
 
 
 def _column(name: str) -> tuple[str, type]:
     return name, int if name in _integers or name.endswith(("_i", "_j")) else float
+
+
+def _integer(word: str) -> int:
+    if str(int(word)) != word:
+        raise ValueError(f"{word!r}: expected an integer")
+    return int(word)
+
+
+def _once(pairs: list[tuple[str, object]]) -> dict:
+    names = [name for name, _ in pairs]
+    if twice := {name for name in names if names.count(name) > 1}:
+        raise ValueError(f"the field {twice.pop()!r} comes twice in one object: expected once")
+    return dict(pairs)
+
+
+def _parsed(text: str, where: str) -> dict:
+    """JSON as the library reads it: no name comes twice in one object."""
+    try:
+        return json.loads(text, object_pairs_hook=_once)
+    except ValueError as error:
+        raise BadInput(f"{where}: {error}") from None
 
 
 def contact_of_name(name: str) -> tuple[int, int, int, int]:
@@ -42,13 +63,13 @@ def contact_of_name(name: str) -> tuple[int, int, int, int]:
 
     Walls are j = -1 to -4, held coordinates -9; the second disk is moved by m_x and m_y periods.
     """
-    if match := re.fullmatch(r"(\d+)-(\d+)(?:\((-?\d+),(-?\d+)\))?", name, re.ASCII):
+    if match := re.fullmatch(r"(0|[1-9]\d*)-(0|[1-9]\d*)(?:\((-?\d+),(-?\d+)\))?", name, re.ASCII):
         i, j, mx, my = (int(number or 0) for number in match.groups())
         if i < j or (i == j and (mx or my)):
             return i, j, mx, my
-    if match := re.fullmatch(r"(\d+)-(left|bottom|right|top)", name, re.ASCII):
+    if match := re.fullmatch(r"(0|[1-9]\d*)-(left|bottom|right|top)", name, re.ASCII):
         return int(match[1]), _walls[match[2]], 0, 0
-    if match := re.fullmatch(r"held ([xy]) of grain (\d+)", name, re.ASCII):  # walls: after the last disk
+    if match := re.fullmatch(r"held ([xy]) of grain (0|[1-9]\d*)", name, re.ASCII):  # walls: after the last disk
         return 2 * int(match[2]) + "xy".index(match[1]), -9, 0, 0
     raise BadInput(
         f"events.jsonl: contact '{name}': expected two disks i < j, as 3-7 or 3-8(1,0), a disk and a wall, or a held coordinate"
@@ -66,7 +87,8 @@ class States:
 
     def numbers(self) -> list[int]:
         """Numbers of the equilibria whose states were stored, increasing."""
-        return sorted(int(path.stem[3:]) for path in self._folder.glob("eq_*.json"))
+        names = (re.fullmatch(r"eq_(\d{6,})\.json", path.name) for path in self._folder.glob("eq_*"))
+        return sorted(int(name[1]) for name in names if name)
 
     def __len__(self) -> int:
         return len(self.numbers())
@@ -120,7 +142,7 @@ class Records:
     @functools.cached_property
     def header(self) -> dict:
         """run.json: program, command, scene, settings, status."""
-        return json.loads((self.path / "run.json").read_text())
+        return _parsed((self.path / "run.json").read_text(), str(self.path / "run.json"))
 
     @property
     def status(self) -> str:
@@ -137,17 +159,22 @@ class Records:
         """
         lines = _complete_lines(self.path / "equilibria.csv")
         names = lines[0].lstrip("# ").split(",") if lines else []
-        kinds = np.dtype([_column(name) for name in names])
         rows = csv.reader(io.StringIO("\n".join(lines[1:])))
-        casts = [kinds[name].type for name in names]
-        return np.array(
-            [tuple(cast(x) for cast, x in zip(casts, row)) for row in rows], dtype=kinds
-        )
+        try:
+            kinds = np.dtype([_column(name) for name in names])  # refuses a name that comes twice
+            casts = [_integer if kinds[name].kind == "i" else float for name in names]
+            return np.array(
+                [tuple(cast(x) for cast, x in zip(casts, row, strict=True)) for row in rows],
+                dtype=kinds,
+            )
+        except ValueError as error:
+            raise BadInput(f"{self.path / 'equilibria.csv'}: {error}") from None
 
     @functools.cached_property
     def event_records(self) -> list[dict]:
         """events.jsonl as it stands: one dictionary per arc."""
-        return [json.loads(line) for line in _complete_lines(self.path / "events.jsonl")]
+        file = self.path / "events.jsonl"
+        return [_parsed(line, str(file)) for line in _complete_lines(file)]
 
     @functools.cached_property
     def events(self) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from operator import index
 from typing import Any, Iterable, Sequence
 
 import numpy as np
@@ -16,14 +17,14 @@ def contact_pair(contact: Sequence[Any]) -> tuple[int, int]:
     """(i, j) with the codes of walls, from ``(0, 1)``, ``(0, "left")`` or ``(0, -1)``."""
     i, j = contact
     codes = {name: code for code, name in _walls.items()}
-    return int(i), codes[j] if isinstance(j, str) else int(j)
+    return index(i), codes[j] if isinstance(j, str) else index(j)
 
 
 def _json_contact(contact: Sequence[Any]) -> list[object]:
-    i, j = contact
+    i, j = index(contact[0]), contact[1]
     if isinstance(j, str):
-        return [int(i), j]
-    return [int(i), _walls.get(int(j), int(j))]
+        return [i, j]
+    return [min(i, index(j)), max(i, index(j))] if index(j) >= 0 else [i, _walls.get(index(j), index(j))]
 
 
 def from_arrays(
@@ -95,7 +96,7 @@ def from_arrays(
     for name, value in (("infinitesimal", infinitesimal), ("disk_force", disk_force)):
         if value is not None:
             content[name] = np.asarray(value, dtype=float).tolist()
-    if held := [int(disk) for disk in fixed]:
+    if held := [index(disk) for disk in fixed]:
         content["fixed"] = held
     return State.parse(json.dumps(content), "State.from_arrays")
 

@@ -195,7 +195,7 @@ inline std::optional<State<2>> make_cell(const CellOptions& options, Random& ran
         return {};
     }
     auto state = detail::hard(soft, options);
-    if (!state && options.kind != CellKind::channel && options.shear_force == 0) {
+    if (!state && options.kind != CellKind::channel && options.shear_force == 0 && options.fixed_length == 0) {
         isostat::PreparationOptions preparation;
         preparation.stress = options.force[0];
         preparation.ratio = options.force[1] / options.force[0];

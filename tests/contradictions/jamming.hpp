@@ -133,10 +133,20 @@ class Motions {
 
 } // namespace detail
 
+/// Programmes in double tell nothing then.
+inline bool nearly_singular(const Truth& truth) {
+    constexpr double little = 1e-6;
+    bool weak = truth.singular_value() < little;
+    for (const Real& force : truth.force) {
+        weak = weak || (sign_of(force, truth.force_scale) != 0 && abs(force) < little * truth.force_scale);
+    }
+    return weak;
+}
+
 /// Two answers of which one is proved and the other refuted, in words.
 inline std::vector<std::string> jamming_objections(const State<2>& state, const Truth& truth,
                                                    const isostat::Certification& certified) {
-    if (!state.packing.cell.all() || truth.equilibrium() <= 0) {
+    if (!state.packing.cell.all() || truth.equilibrium() <= 0 || nearly_singular(truth)) {
         return {};
     }
     const detail::Motions motions(state, truth);

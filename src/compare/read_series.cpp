@@ -108,7 +108,7 @@ class FrameTable {
     }
 
     [[nodiscard]] Sides sides_of(const Line& line) const {
-        Sides sides{std::array<double, 4>{}, 0};
+        Sides sides{std::array<double, 4>{}, 0, {}};
         for (std::size_t w = 0; w < 4; ++w) {
             const std::size_t column = required(wall_names[w]);
             (*sides.at)[w] = line.number(column, wall_names[w]) * manifest_.length_factor;
@@ -280,7 +280,7 @@ class Disks {
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
         const double f = manifest_.length_factor;
         const std::array<double, 4> box = header.box.value();
-        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f};
+        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f, {}};
     }
 
     /// Walls, or both axes periodic: as the manifest says. A cell is stated once.

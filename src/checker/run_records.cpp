@@ -217,8 +217,14 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     const Field settings = run.at("settings").at("run");
     records.rule = settings.at("rule").string();
     const std::string ties = settings.has("ties") ? settings.at("ties").string() : "stop";
-    records.chooses = ties == "choose";
-    records.by_class = ties == "class";
+    if (ties != "stop" && ties != "choose") {
+        settings.at("ties").fail("\"stop\" or \"choose\"");
+    }
+    if (ties == "choose") {
+        records.max_choices =
+            settings.has("max_choices") ? settings.at("max_choices").number() : std::numeric_limits<double>::infinity();
+        records.chooses = records.max_choices > 0;
+    }
     const std::string level = settings.has("certify") ? settings.at("certify").string() : "decisions";
     if (level != "decisions" && level != "states" && level != "arcs") {
         settings.at("certify").fail("\"decisions\", \"states\" or \"arcs\"");
@@ -232,8 +238,13 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
+        long choices = 0;
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
+            EventRecord& event = records.events.back();
+            choices += std::count_if(event.ties.begin(), event.ties.end(),
+                                     [](const TieRecord& tie) { return !tie.choice.empty(); });
+            event.choices = choices;
         });
     }
     const std::filesystem::path equilibria = directory / "equilibria.csv"; // its first row comes with their names

@@ -34,6 +34,7 @@ struct EventRecord {
     double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
     std::optional<double> held_at;                                             ///< of power turns
     std::vector<TieRecord> ties;
+    long choices = 0; ///< among the ties, from the first line to this one
 };
 
 /// One line of equilibria.csv, by the names of its header.
@@ -50,8 +51,8 @@ struct EquilibriumLine {
 struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
-    bool chooses = false;                                  ///< ties = "choose"
-    bool by_class = false;                                 ///< ties = "class"
+    bool chooses = false;                                  ///< ties = "choose", and max_choices is not 0
+    double max_choices = 0;                                ///< 0 where nothing is chosen
     std::string status;                                    ///< the word without the reason
     bool certified_states = false, certified_arcs = false; ///< files that its level must have left
     std::vector<EventRecord> events;

@@ -227,10 +227,6 @@ Objections check_ties(const Place& base, const Place& from, const Place& to, con
         if (exchanges_list(tie)) {
             continue; // `check_exchange`
         }
-        if (!tie.choice.empty() && !to.chooses) {
-            return Objection{true,
-                             fmt::format("'{}' of {} is chosen, in a run that chooses nothing", tie.what, tie.contact)};
-        }
         if (tie.what == "rest") {
             if (Objections wrong = check_rest(from, tie, opened, direction)) {
                 return wrong;

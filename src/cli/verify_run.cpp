@@ -56,7 +56,6 @@ Json json_of(const RunVerification& run, const std::string& folder) {
     object["power_turns_checked"] = run.turns_checked;
     object["ties_checked"] = run.ties_checked;
     object["choices_checked"] = run.choices_checked;
-    object["classes_checked"] = run.classes_checked;
     object["equilibria"] = run.equilibria;
     object["equilibria_proved"] = run.equilibria_proved;
     object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
@@ -76,10 +75,6 @@ void print_totals(const RunVerification& run) {
         fmt::print(
             "choices        {} checked: what they are between is not refuted to be tied, which is not \"equal\"\n",
             run.choices_checked);
-    }
-    if (run.classes_checked > 0) {
-        fmt::print("classes        {} checked: at a limit another opens of forces that are proved to vanish together\n",
-                   run.classes_checked);
     }
     fmt::print("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
     for (const std::string& open : run.undecided) {

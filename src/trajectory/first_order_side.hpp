@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A run under `ties = "perturb"` or `"choose"`: what it knows of its radii R_i + eps rho_i besides the base. Private
+/// A run under `ties = "choose"`: what it knows of its radii R_i + eps rho_i besides the base. Private
 /// to the room.
 
 #include "trajectory/ties.hpp"
@@ -30,7 +30,8 @@ template <int Dim> struct LimitLoad {
 /// The first-order side of a run. What of it outlives a vertex is in the state: rho, and what its load means.
 template <int Dim> class FirstOrderSide {
   public:
-    /// rho is made from `seed` unless the state has one. The state must outlive the side. `choose`: see `TiePolicy`.
+    /// rho is made from `seed` unless the state has one. The state must outlive the side. `choose`: see
+    /// `RunOptions::chooses`.
     FirstOrderSide(State<Dim>& state, std::uint64_t seed, bool choose);
 
     /// Gives a vertex its first-order terms. Before any question to its statics.

@@ -160,7 +160,7 @@ Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::vertex(Packing<Dim> packing, s
 
 template <int Dim> LadderOptions Prover<Dim>::ladder() const {
     LadderOptions options;
-    if (options_->ties == TiePolicy::choose) {
+    if (options_->chooses()) {
         options.first_bits = 280;
         options.max_bits = 1120; // tie_bits, and what a bad condition takes
     }

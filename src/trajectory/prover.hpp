@@ -69,7 +69,7 @@ inline Failure not_proved(Failure failure) {
 /// Nothing else touches these, whatever thread the prover works on; one thread at a time.
 template <int Dim> class Prover {
   public:
-    /// `first_order`: under `ties = "perturb"` or `"choose"`, else null. Both must outlive the prover.
+    /// `first_order`: under `ties = "choose"`, else null. Both must outlive the prover.
     Prover(const RunOptions& options, const FirstOrderSide<Dim>* first_order)
         : options_(&options), first_order_(first_order) {}
 

@@ -25,12 +25,10 @@ template <int Dim> void Standing<Dim>::move_to(std::shared_ptr<Vertex<Dim>> to, 
 template <int Dim>
 Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder)
     : prover_(prover), recorder_(recorder), at_(std::move(start.at)),
-      here_{std::move(start.vertex), start.opening, start.kind, std::move(start.chosen)},
+      here_{std::move(start.vertex), start.opening, start.kind},
       tilts_at_start_(here_.vertex->packing.q.begin() +
                           static_cast<std::ptrdiff_t>(here_.vertex->packing.length_at(Dim)),
-                      here_.vertex->packing.q.end()) {
-    here_.by_steps = !here_.settled.empty();
-}
+                      here_.vertex->packing.q.end()) {}
 
 template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
     return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
@@ -55,7 +53,7 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run() {
 
 /// The other rules choose by differences that floating steering does not resolve.
 template <int Dim> bool Rearrangement<Dim>::floats() const {
-    return !at_first_order(options().ties) && options().rule == OpeningRule::most_negative && !here_.by_steps &&
+    return !options().at_first_order() && options().rule == OpeningRule::most_negative && !here_.by_steps &&
            here_.resting.empty();
 }
 
@@ -200,7 +198,9 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::record(Proofs& pro
         if (!proof) {
             break;
         }
-        recorder_.record(*proof, ++arcs_, at_.stress());
+        if (auto failure = recorder_.record(*proof, ++arcs_, at_.stress())) {
+            return located(*failure, where(arcs_));
+        }
         if (auto failure = decide(*proof)) {
             return failure;
         }
@@ -281,8 +281,8 @@ std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& 
         return std::nullopt;
     }
     if (refused->next) {
-        recorder_.record(*refused, ++arcs_, at_.stress());
-        return located(refused->next->failure(), where(arcs_));
+        const auto over = recorder_.record(*refused, ++arcs_, at_.stress());
+        return located(over.value_or(refused->next->failure()), where(arcs_));
     }
     recorder_.count(*refused);
     if (refused->reached && here_.kind == ArcKind::release && !refused->descends) {
@@ -347,7 +347,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return std::nullopt;
     }
     return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
-                  at_first_order(options().ties) ? "the load as it is stored" : "fresh factors and bounds",
+                  options().at_first_order() ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 

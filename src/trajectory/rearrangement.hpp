@@ -24,7 +24,7 @@ template <int Dim> struct Standing {
     std::shared_ptr<Vertex<Dim>> vertex; ///< the last one that was proved
     Opening opening;                     ///< what opens there
     ArcKind kind = ArcKind::limit;       ///< of the arc that it begins
-    /// Why this one opens, where the rule takes another first; lists that were exchanged. Recorded with the arc.
+    /// Why this one opens, and lists that were exchanged. Recorded with the arc.
     std::vector<TieDecision> settled{};
     ContactId fresh_hold{};           ///< of the power turn that ended there
     std::vector<ContactId> resting{}; ///< holds whose multipliers are 0 as far as their turns are located
@@ -47,7 +47,6 @@ template <int Dim> class Rearrangement {
         Opening opening;
         ArcKind kind = ArcKind::limit; ///< of the first arc
         LimitLoad<Dim> at;
-        std::vector<TieDecision> chosen{}; ///< why this one opens, where the rule takes another first
     };
     /// All must outlive the rearrangement.
     Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder);

@@ -60,10 +60,9 @@ template <int Dim> class Run {
     double seconds_before_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
     std::unique_ptr<const FirstOrderSide<Dim>> first_order_ = ///< null: ties end the run
-        at_first_order(recorder_.options.ties)
-            ? std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
-                                                          recorder_.options.ties == TiePolicy::choose)
-            : nullptr;
+        recorder_.options.at_first_order() ? std::make_unique<const FirstOrderSide<Dim>>(
+                                                 state_, recorder_.options.ties_seed, recorder_.options.chooses())
+                                           : nullptr;
     Prover<Dim> prover_{recorder_.options, first_order_.get()};
     std::shared_ptr<Vertex<Dim>> vertex_;
     EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
@@ -252,8 +251,7 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
 
 template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt<Dim>& attempt) {
     prover_.start_at(vertex_->packing);
-    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at, attempt.chosen}, prover_,
-                                     recorder_);
+    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at}, prover_, recorder_);
     auto reached = rearrangement.run();
     attempt.begun = rearrangement.arcs() > 0;
     return reached;

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Ties under `ties = "perturb"` and `"choose"`: the decisions of a vertex at first order in eps. Private to the room.
+/// Ties under `ties = "choose"`: the decisions of a vertex at first order in eps. Private to the room.
 
 #include "trajectory/second_order.hpp"
 

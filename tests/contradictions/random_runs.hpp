@@ -31,7 +31,7 @@ struct RandomRun {
     [[nodiscard]] std::string text() const {
         return fmt::format("{} disks, rule {}, level {}, ties {}, {} segments, states_every {}, killed at {}",
                            start.packing.disk_count(), opening_rule_words[static_cast<std::size_t>(options.rule)],
-                           to_string(options.certify), options.ties == TiePolicy::stop ? "stop" : "perturb",
+                           to_string(options.certify), options.at_first_order() ? "first order" : "stop",
                            segments.size(), states_every, killed_at);
     }
 };
@@ -175,7 +175,8 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell) {
     run.options.max_strain = 1e3;
     run.options.max_arcs = 400;
     if (!in_cell && random.integer(5) == 0) {
-        run.options.ties = TiePolicy::perturb;
+        run.options.ties = TiePolicy::choose;
+        run.options.max_choices = 0;
         run.options.ties_seed = random.bits();
     }
     for (int k = 1 + random.integer(3); k > 0; --k) {

@@ -123,7 +123,7 @@ void compare(const RandomRun& run, const std::vector<Recorded>& records, Results
         const Truth truth(recorded.state);
         BOOST_TEST_REQUIRE(truth.known, truth.why);
         Comparison comparison(recorded, truth, results);
-        run.options.ties == TiePolicy::perturb ? comparison.geometry() : comparison.all();
+        run.options.at_first_order() ? comparison.geometry() : comparison.all();
         ++results.equilibria;
     }
 }

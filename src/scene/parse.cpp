@@ -220,6 +220,7 @@ struct RetiredWord {
     const char* instead;
 };
 constexpr std::array retired_words{
+    RetiredWord{"rule", "steepest", "\"most_negative\", \"least_negative\" or \"least_index\", which verify confirms"},
     RetiredWord{"certify", "plain", "\"decisions\": every run proves the vertices on its way"},
     RetiredWord{"ties", "perturb", "\"choose\" with max_choices = 0"},
     RetiredWord{"ties", "class", "\"stop\", or \"choose\", which settles ties for radii that differ"},

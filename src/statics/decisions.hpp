@@ -58,7 +58,7 @@ struct ZeroHolds {
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 /// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that
 /// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
-/// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`. Where ties
+/// when the first-order terms do not tell either, and for held coordinates that vanish. Where ties
 /// are chosen (C1) a force whose first-order term is not told from 0 opens nothing, and equal keys are ordered by the
 /// infinitesimal loads, then by the names of the contacts.
 template <int Dim>

@@ -276,7 +276,6 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
     Choice<Dim> choice;
     choice.quantity = [&statics](ContactId l) {
         ForceExpression e = statics.infinitesimal_expression(l);
-        e.divisor = ForceExpression::Divisor::part;
         e.divisor_part = statics.slope_expression(l).part;
         return e;
     };

@@ -2,7 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
-#include "statics/rule_key.hpp"
+#include "statics/quotient.hpp"
 
 #include <Eigen/LU>
 

@@ -1,5 +1,6 @@
 // Runs with power turns, held coordinates and ties settled at first order, re-checked from their records; one number or
 // name changed in each kind of record must be found.
+#include "support/course.hpp"
 #include "support/forger.hpp"
 #include "support/mirror.hpp"
 #include "support/mirror_cells.hpp"
@@ -15,6 +16,7 @@
 #include <set>
 
 using namespace isostat;
+using crafted::Ties;
 namespace fs = std::filesystem;
 
 namespace {
@@ -28,7 +30,7 @@ void play(State<2> state, const Segment& segment, Ties ties, std::uint64_t seed,
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     RunOptions options;
-    settle(options, ties);
+    crafted::settle(options, ties);
     options.ties_seed = seed;
     directory.begin_segment(0, segment, 0, 0);
     (void)run_segment<2>(state, segment, 0, options, counters, directory);

@@ -87,7 +87,7 @@ do = "down"
 from = 3
 equilibria = 2
 [run]
-rule = "steepest"
+rule = "least_index"
 rule_seed = 4
 max_arcs = 11
 max_strain = 0.25
@@ -127,7 +127,7 @@ vtk = true
     BOOST_TEST(scene.programme[1].name == "to sigma2/sigma1 = 1");
     BOOST_TEST(*scene.programme[2].from == 3);
     BOOST_TEST((needed_equilibria(scene) == std::vector<int>{3}));
-    BOOST_TEST((scene.run.rule == OpeningRule::steepest));
+    BOOST_TEST((scene.run.rule == OpeningRule::least_index));
     BOOST_TEST(scene.run.rule_seed == 4U);
     BOOST_TEST(scene.run.max_arcs == 11);
     BOOST_TEST(scene.run.max_strain == 0.25);
@@ -242,6 +242,7 @@ BOOST_AUTO_TEST_CASE(words_that_scenes_no_longer_have_are_refused_with_what_to_w
     refuses_scene(head + "[run]\ncertify = \"plain\"\n", {"s.toml:4:", "certify", "plain", "\"decisions\""});
     refuses_scene(head + "[run]\nties = \"perturb\"\n",
                   {"s.toml:4:", "ties", "perturb", "\"choose\"", "max_choices = 0"});
+    refuses_scene(head + "[run]\nrule = \"steepest\"\n", {"s.toml:4:", "rule", "steepest", "\"most_negative\""});
     refuses_scene(head + "[run]\nties = \"class\"\n", {"s.toml:4:", "ties", "class", "\"choose\""});
 }
 

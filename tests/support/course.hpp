@@ -18,6 +18,7 @@ using isostat::RunOptions;
 using isostat::Segment;
 using isostat::SegmentOutcome;
 using isostat::State;
+using isostat::tie_direction;
 using isostat::TieDecision;
 using isostat::TiePolicy;
 

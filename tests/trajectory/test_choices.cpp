@@ -165,6 +165,45 @@ BOOST_AUTO_TEST_CASE(a_square_of_disks_supports_every_load_and_pairs_that_only_b
     BOOST_TEST(std::abs(length[1] - 4) < 1e-12); // the columns are straight still
 }
 
+BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
+    const auto at_most = [](long most) {
+        Course course;
+        CourseRecorder recorder(course);
+        State<2> state = square();
+        Segment segment;
+        segment.equilibria = 3;
+        RunOptions options;
+        options.ties = TiePolicy::choose;
+        options.max_choices = most;
+        course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+        return course;
+    };
+    const auto recorded = [](const Course& course) {
+        long choices = 0;
+        for (const ArcRecord<2>& arc : course.arcs) {
+            for (const TieDecision& tie : arc.perturbed) {
+                choices += tie.choice != TieChoice::none ? 1 : 0;
+            }
+        }
+        return choices;
+    };
+    const Course all = follow_load(square(), +1, 3, Ties::choose);
+    const long choices = all.counters.tally.choices;
+    BOOST_TEST_REQUIRE(choices > 1);
+    const Course as_many = at_most(choices);
+    BOOST_TEST(as_many.end() == all.end());
+    BOOST_TEST(as_many.events == all.events, boost::test_tools::per_element());
+    for (long most = 0; most < choices; ++most) {
+        const Course fewer = at_most(most);
+        BOOST_TEST(fewer.end() == "undecided");
+        BOOST_TEST((most == 0 || mentions(fewer, "max_choices")), why(fewer));
+        BOOST_TEST(recorded(fewer) <= most);
+        BOOST_TEST(fewer.counters.tally.choices == recorded(fewer));
+        BOOST_TEST_REQUIRE(fewer.events.size() < all.events.size());
+        BOOST_TEST((most == 0 || std::equal(fewer.events.begin(), fewer.events.end(), all.events.begin())));
+    }
+}
+
 /// In the first one a gap falls like s^4 to 0 where an arc ends; in the other one its dip is met at the end itself.
 BOOST_AUTO_TEST_CASE(patches_of_equal_disks_are_followed_past_gaps_that_graze_until_they_support_every_load) {
     for (const auto& [disks, seed] : {std::pair(36, 17), std::pair(20, 15)}) {

@@ -54,6 +54,7 @@ template <int Dim> struct EndProof {
     std::optional<Failure> failure; ///< of the vertex, its gaps or its load: then nothing else is there
     std::optional<Result<OpeningDecision>> decision;     ///< none: a gap is negative
     std::optional<Result<Description<Dim>>> description; ///< of an equilibrium only
+    WorkCounts work{};                                   ///< to be counted when it is taken
 };
 
 /// A failure of an arc or at its end, where N = N_f: a rank that is not proved full is no proof that it is smaller, and

@@ -61,7 +61,7 @@ template <int Dim> class Rearrangement {
     [[nodiscard]] bool floats() const;
     std::optional<Failure> follow_arcs();
     [[nodiscard]] std::optional<Failure> cap() const;
-    std::unique_ptr<Steering<Dim>> make_steering();
+    void begin_steering();
     Result<Departure<Dim>> depart();
     std::optional<Failure> relist(const ListExchange& exchange);
     using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
@@ -69,8 +69,20 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof<Dim>& proof);
     [[nodiscard]] std::optional<Failure> flows(const ArcProof<Dim>& proof) const;
-    std::optional<Failure> answer(std::optional<ArcProof<Dim>>& refused, const std::optional<Failure>& failed,
-                                  bool any);
+    /// What becomes of the last arc that was proposed.
+    enum class Answer {
+        agreed,       ///< it is recorded: the next one begins at its end
+        by_steps,     ///< proposed ahead, in vain: it is proposed again, proved before anything follows
+        not_proposed, ///< the rearrangement ends: the arc was not followed to an end
+        revised,      ///< another proposal for the same arc
+        relisted,     ///< another list at its start, with which its end may be regular
+        next_unknown, ///< the rearrangement ends after it: what opens there is not decided
+        set_aside,    ///< a held coordinate that was released stays, and another opens
+        refused       ///< the rearrangement ends: it is not proved
+    };
+    [[nodiscard]] Answer answer(const ArcProof<Dim>* refused, bool proposed) const;
+    std::optional<Failure> act(Answer answer, ArcProof<Dim>* refused, const std::optional<Failure>& not_proposed,
+                               bool any);
     std::optional<Failure> set_aside(const ArcRecord<Dim>& record);
     [[nodiscard]] SteeredEnd<Dim> at_here() const;
     EndProof<Dim> prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end);

@@ -15,7 +15,6 @@ template <int Dim> void Recorder<Dim>::count(const Decision& decision) {
 }
 
 template <int Dim> void Recorder<Dim>::count(const ArcProof<Dim>& proof) {
-    count_all(proof.work);
     for (const Decision& decision : proof.decisions) {
         count(decision);
     }

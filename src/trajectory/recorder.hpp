@@ -19,7 +19,7 @@ template <int Dim> class Recorder {
 
     [[nodiscard]] bool stopped() const { return options.stop != nullptr && options.stop->load(); }
     void count(const Decision& decision);
-    /// Its work and its decisions.
+    /// Its decisions.
     void count(const ArcProof<Dim>& proof);
     /// An arc that happened: numbered, counted and shown. Failure: it rests on more choices than are left; it is not
     /// recorded then.

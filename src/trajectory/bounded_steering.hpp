@@ -4,7 +4,7 @@
 
 #include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
-#include "trajectory/ties.hpp"
+#include "trajectory/ties/ties.hpp"
 
 namespace isostat {
 

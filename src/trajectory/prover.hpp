@@ -3,12 +3,12 @@
 /// Proves what steering proposes, and equilibria from nothing: private to the room.
 
 #include "trajectory/counting.hpp"
-#include "trajectory/first_order_side.hpp"
+#include "trajectory/ties/first_order_side.hpp"
 #include "trajectory/kept_candidates.hpp"
 #include "trajectory/record.hpp"
-#include "trajectory/second_order.hpp"
+#include "trajectory/ties/second_order.hpp"
 #include "trajectory/steering.hpp"
-#include "trajectory/ties.hpp"
+#include "trajectory/ties/ties.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>

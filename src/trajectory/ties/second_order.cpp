@@ -1,4 +1,4 @@
-#include "trajectory/second_order.hpp"
+#include "trajectory/ties/second_order.hpp"
 
 #include "contact/separation.hpp"
 #include "contact/words.hpp"

@@ -2,7 +2,7 @@
 /// \file
 /// Ties under `ties = "choose"`: the decisions of a vertex at first order in eps. Private to the room.
 
-#include "trajectory/second_order.hpp"
+#include "trajectory/ties/second_order.hpp"
 
 namespace isostat {
 

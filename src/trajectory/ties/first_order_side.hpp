@@ -3,7 +3,7 @@
 /// A run under `ties = "choose"`: what it knows of its radii R_i + eps rho_i besides the base. Private
 /// to the room.
 
-#include "trajectory/ties.hpp"
+#include "trajectory/ties/ties.hpp"
 
 #include <isostat/contact/state.hpp>
 

@@ -1,4 +1,4 @@
-#include "trajectory/first_order_side.hpp"
+#include "trajectory/ties/first_order_side.hpp"
 
 #include "contact/words.hpp"
 #include "statics/first_order_backbone.hpp"

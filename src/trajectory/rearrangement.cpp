@@ -81,7 +81,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
                 return failure;
             }
         }
-        Prover<Dim> other(options(), nullptr);
+        Prover<Dim> other = prover_.another();
         std::optional<EndProof<Dim>> end;
         if (ahead_ && steered_to_ && !steered_to_->fresh_hold.valid() && !proofs.ended()) {
             end = prove_end(other, std::move(*steered_to_)); // the last proofs may say that it is none

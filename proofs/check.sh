@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tests/packages.sh
-bash proofs/check_links.sh
+python3 proofs/check_links.py
 bash proofs/check_links_test.sh
 python3 proofs/constants.py --where
 bash proofs/constants_test.sh

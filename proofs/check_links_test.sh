@@ -21,7 +21,7 @@ rot() { # what, expected message, sed script, file
     exit 1
   fi
   local said
-  if said=$(bash proofs/check_links.sh "$copy"); then
+  if said=$(python3 proofs/check_links.py "$copy"); then
     echo "link test '$1': not found"
     exit 1
   fi
@@ -31,7 +31,7 @@ rot() { # what, expected message, sed script, file
   fi
 }
 fresh
-bash proofs/check_links.sh "$copy" >"$copy/said" || { cat "$copy/said"; exit 1; }
+python3 proofs/check_links.py "$copy" >"$copy/said" || { cat "$copy/said"; exit 1; }
 rot "a function is renamed" "has no find_limit_" 's/`find_limit`/`find_limit_`/' proofs/map.md
 rot "a file is moved" "no file src/statics/moved.cpp" 's,src/statics/limit.cpp,src/statics/moved.cpp,' proofs/map.md
 rot "a test is renamed" "has no test case the_rules" 's/`the_rules_choose_what_their_names_say`/`the_rules`/' proofs/map.md

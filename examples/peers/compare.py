@@ -116,7 +116,7 @@ def compare_intervals(isostat, folder):
         run(isostat, "prepare", scene, "-o", state, "--quiet")
         inputs.append((f"prepared {disks}", state))
     state = folder / "vertex100.json"
-    run(isostat, "convert", HERE.parent.parent / "tests" / "data" / "vertex100.txt", "-o", state)
+    run(isostat, "import", HERE.parent.parent / "tests" / "data" / "vertex100.txt", "-o", state)
     inputs.append(("vertex100", state))
     for name, path in inputs:
         answer, seconds = run(isostat, "inspect", path, "--json", ok=(0, 1, 2))

@@ -1,3 +1,5 @@
+#include "contact/own_images.hpp"
+
 #include <isostat/certificate/inspect.hpp>
 
 #include <fmt/format.h>
@@ -9,60 +11,79 @@ namespace isostat {
 
 namespace {
 
-/// N = N_f of full strain, h = k = 0: the forces under an isotropic pressure are unique, and say whether it is jammed
-/// strictly (C7). They are those of the load at one value of the loaded stress, where the tilt bears no shear.
-JammingAnswer strictly(const State<2>& state, const CertificateClaims& claims) {
-    if (state.load.shear[0] != 0 || state.load.loads_tilt() || !claims.load_interval) {
-        return {Verdict::undecided,
-                "k = 0 for full strain; its forces under an isotropic pressure are not those of its "
-                "load at any stress that was looked at"};
+/// The true vertex with every strain of its cell, under a pressure: N = N_f of full strain, h = k = 0 (C7).
+State<2> strained(State<2> state, const std::vector<Contact>& own) {
+    state.packing.cell.keeps_shape = false;
+    state.packing.cell.period_moves.fill(true);
+    state.packing.cell.tilt_moves.fill(true);
+    if (!own.empty()) { // the others move as it does: they are as wide, along the same period
+        state.contacts.push_back(own.front());
     }
-    constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
-    const auto loaded = static_cast<std::size_t>(state.load.loaded_axis);
-    const std::size_t other = 1 - loaded;
-    const auto stress_at = [&](double off) { // lengths of the true vertex: within the radius
-        const double across = state.packing.lattice(other, other) + off;
-        const double along = state.packing.lattice(loaded, loaded) - off;
-        return state.load.stress[other] * state.load.reference_length[loaded] * across /
-               (state.load.reference_length[other] * along);
-    };
-    const double low = stress_at(-claims.vertex->radius) * (1 - rounded);
-    const double high = stress_at(claims.vertex->radius) * (1 + rounded);
-    const LoadEndClaim& from = claims.load_interval->low;
-    const LoadEndClaim& to = claims.load_interval->high;
-    if (!(low > 0)) {
-        return {Verdict::undecided, "k = 0 for full strain; the stress that is not changed is no pressure"};
-    }
-    if ((from.unbounded || from.stress.upper < low) && (to.unbounded || high < to.stress.lower)) {
-        return {Verdict::proved, fmt::format("k = 0 for full strain, and every force of the backbone is positive under "
-                                             "an isotropic pressure (sigma_{} = {:.12g})",
-                                             loaded + 1, high)};
-    }
-    if ((!from.unbounded && high < from.stress.lower) || (!to.unbounded && low > to.stress.upper)) {
-        return {Verdict::refuted, fmt::format("a force is negative under an isotropic pressure (sigma_{} = {:.12g}): "
-                                              "its contact opens alone while the volume falls",
-                                              loaded + 1, high)};
-    }
-    return {Verdict::undecided, "k = 0 for full strain; an isotropic pressure is at the end of the supported interval"};
+    const std::vector<double> infinitesimal = state.load.infinitesimal;
+    state.load = {};
+    state.load.stress.fill(1);
+    state.load.infinitesimal = infinitesimal;
+    state.load.refer_to(state.packing);
+    return state;
 }
 
-/// An isostatic equilibrium has no mechanism while its own cell moves, so none while the cell stays; and it has too few
-/// contacts for a cell that strains in more ways (C6, C7).
-template <int Dim> void judge(const State<Dim>& state, const CertificateClaims& claims, CellInspection& out) {
+/// The forces under an isotropic pressure are unique and say whether it is jammed strictly. It is a pressure where the
+/// stresses are as the stored lengths over the true ones, which are known to the radius: forces are affine between.
+JammingAnswer strictly(const State<2>& state, const std::vector<unsigned char>& zero, double radius) {
+    constexpr double rounded = 0x1p-48; // nine operations, each to 2^-53
+    const double x = state.packing.length(0), y = state.packing.length(1);
+    const auto low = forces_at(state, (1 - radius / x) / (1 + radius / y) * (1 - rounded));
+    const auto high = forces_at(state, (1 + radius / x) / (1 - radius / y) * (1 + rounded));
+    if (!(radius < y) || !low.ok() || !high.ok()) {
+        return {Verdict::undecided, "k = 0 for full strain; its forces under an isotropic pressure are not known"};
+    }
+    JammingAnswer out{Verdict::proved,
+                      "k = 0 for full strain, and every force of the backbone is positive under an isotropic pressure"};
+    for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+        const Interval &a = low.value()[l], &b = high.value()[l];
+        const std::string name = to_string<2>(state.contacts[l]);
+        if (a.upper < 0 && b.upper < 0) {
+            return {Verdict::refuted, fmt::format("the force of {} is negative under an isotropic pressure: it opens "
+                                                  "alone while the volume falls",
+                                                  name)};
+        }
+        if ((l >= zero.size() || zero[l] == 0) && !(a.lower > 0 && b.lower > 0)) {
+            out = {Verdict::undecided,
+                   fmt::format("k = 0 for full strain; the force of {} under an isotropic pressure may be 0", name)};
+        }
+    }
+    return out;
+}
+
+/// An isostatic equilibrium has no mechanism while its own cell moves, so none while the cell stays (C6). What its own
+/// contacts leave of full strain, own images may close (C7). \p own: those of the backbone; \p others: of rattlers.
+void judge(const State<2>& state, const Certification& truth, const std::vector<Contact>& own,
+           const std::vector<Contact>& others, CellInspection& out) {
     const auto moving =
         std::count(state.packing.cell.period_moves.begin(), state.packing.cell.period_moves.end(), true) +
         std::count(state.packing.cell.tilt_moves.begin(), state.packing.cell.tilt_moves.end(), true);
-    const int missing = strain_count<Dim>(Strain::full) - static_cast<int>(moving);
+    const int missing = strain_count<2>(Strain::full) - static_cast<int>(moving);
+    const int closed = own.empty() ? 0 : 1;
     out.collective = {Verdict::proved, "positive forces, and no mechanism: k = 0 at the true vertex"};
     out.local = {Verdict::proved, "it is jammed collectively"};
-    if (missing > 0) {
-        out.strict = {Verdict::refuted,
-                      fmt::format("N is {} short of N_f for full strain: a strain of the cell keeps every contact from "
-                                  "closing while the volume does not grow",
-                                  missing)};
+    if (missing == closed) {
+        out.strict = strictly(strained(state, own), truth.structural_zero, truth.claims.vertex->radius);
+    } else if (missing == 1 && !others.empty()) {
+        out.strict = {Verdict::undecided, fmt::format("N is 1 short of N_f for full strain, and a rattler touches its "
+                                                      "own image ({})",
+                                                      to_string<2>(others.front()))};
     } else {
-        out.strict = strictly(state, claims);
+        out.strict = {Verdict::refuted,
+                      fmt::format("N is {} short of N_f for full strain{}: a strain of the cell keeps every contact "
+                                  "from closing while the volume does not grow",
+                                  missing - closed, own.empty() ? "" : ", own images that touch counted")};
     }
+}
+
+/// With the own images of disks of the list that touch.
+std::vector<Contact> joined(std::vector<Contact> contacts, const std::vector<Contact>& own) {
+    contacts.insert(contacts.end(), own.begin(), own.end());
+    return contacts;
 }
 
 } // namespace
@@ -70,7 +91,11 @@ template <int Dim> void judge(const State<Dim>& state, const CertificateClaims& 
 template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Certification& truth) {
     assert(state.packing.cell.all());
     CellInspection out;
-    out.all = count_strains(state.packing, state.contacts);
+    std::vector<Contact> own = touching_own_images(state.packing);
+    std::erase_if(own, [&](const Contact& pair) {
+        return std::find(state.contacts.begin(), state.contacts.end(), pair) != state.contacts.end();
+    });
+    out.all = count_strains(state.packing, joined(state.contacts, own));
     const bool equilibrium = truth.claims.vertex && truth.claims.forces && truth.claims.gaps;
     const auto& on_disks = state.load.disk_force;
     const bool loaded = std::any_of(on_disks.begin(), on_disks.end(), [](double f) { return f != 0; });
@@ -91,8 +116,13 @@ template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Ce
     const std::vector<int> rattlers = untouched(state.packing.disk_count(), carrying);
     out.backbone_disks = state.packing.disk_count() - static_cast<int>(rattlers.size());
     if (out.backbone_disks > 0) {
-        out.backbone = count_strains(without_disks(state.packing, rattlers), carrying);
-        judge(state, truth.claims, out);
+        const auto rattling = std::stable_partition(own.begin(), own.end(), [&](const Contact& pair) {
+            return std::find(rattlers.begin(), rattlers.end(), pair.i) == rattlers.end();
+        });
+        const std::vector<Contact> others(rattling, own.end());
+        own.erase(rattling, own.end());
+        out.backbone = count_strains(without_disks(state.packing, rattlers), joined(carrying, own));
+        judge(state, truth, own, others, out);
     }
     return out;
 }

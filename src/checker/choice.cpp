@@ -23,9 +23,6 @@ Objections check_member(const Place& place, const TieRecord& tie, std::size_t ch
     if (!rule.tied(other)) {
         return Objection{true, fmt::format("a choice between {}, which are told apart", pair)};
     }
-    if (!tied_at_first_order(tie)) {
-        return Objection{true, fmt::format("a choice between {}, which its first-order terms tell apart", pair)};
-    }
     if (tie.choice == "names") {
         const auto& contacts = place.state->contacts;
         return contacts[chosen] < contacts[other]
@@ -45,12 +42,6 @@ Objections check_member(const Place& place, const TieRecord& tie, std::size_t ch
 }
 
 } // namespace
-
-bool tied_at_first_order(const TieRecord& tie) {
-    const Rational room = (Rational(tie.first_bound) + Rational(tie.other_bound)) * (1 + Rational(0x1p-50)) +
-                          Rational(0x1p-50) * (abs(Rational(tie.first)) + abs(Rational(tie.other)));
-    return abs(Rational(tie.first) - Rational(tie.other)) <= room;
-}
 
 const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::string& what, const std::string& chosen,
                                  const std::string& against) {

@@ -19,8 +19,8 @@ struct ChoiceRule {
 const TieRecord* recorded_choice(const std::vector<TieRecord>& ties, const std::string& what, const std::string& chosen,
                                  const std::string& against);
 
-/// What the records say of the choice of that contact: that the others are not refuted to be tied with it, in the base
-/// and at first order as far as the run knew it, and that the rule takes it. Never that they are equal.
+/// What the records say of the choice of that contact: that the others are not refuted to be tied with it in the base
+/// (`check_ties` asks the same at first order), and that the rule takes it. Never that they are equal.
 Objections check_choice(const Place& place, const std::vector<TieRecord>& ties, std::size_t chosen,
                         const ChoiceRule& rule);
 
@@ -31,8 +31,5 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
 /// A pair that is taken to keep touching when `opened` opens (C4; K25): neither rate nor second derivative of its gap
 /// is told from 0.
 Objections check_rest(const Place& place, const TieRecord& tie, std::size_t opened, int direction);
-
-/// The first-order terms that a record gives are not told apart.
-bool tied_at_first_order(const TieRecord& tie);
 
 } // namespace isostat::checker

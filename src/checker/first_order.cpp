@@ -56,6 +56,14 @@ struct FirstMotion {
 
 } // namespace
 
+double Velocities::Solution::fastest() const {
+    Rational most = 0;
+    for (const Rational& component : middle) {
+        most = std::max<Rational>(most, abs(component));
+    }
+    return most.get_d();
+}
+
 Velocities::Solution Velocities::solve(const std::vector<Rational>& b, const Rational& off) const {
     const Problem& problem = e_.problem;
     Solution result;
@@ -167,6 +175,14 @@ FirstOrder::FirstOrder(const Evidence& evidence, const std::vector<double>& rho)
                                                 : e_.problem.force_factor(static_cast<int>(l)) * grown(c));
     }
     change_ = velocities_.solve(b);
+}
+
+double FirstOrder::speed() const {
+    double most = change_.fastest();
+    for (const double growth : rho_) {
+        most = std::max(most, std::abs(growth));
+    }
+    return most;
 }
 
 Rational FirstOrder::grown(const Contact& pair) const {

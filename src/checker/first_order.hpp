@@ -14,6 +14,7 @@ class Velocities {
     struct Solution {
         std::vector<Rational> middle; ///< per coordinate; 0 where it does not move
         Rational radius;              ///< of every component that moves
+        [[nodiscard]] double fastest() const;
     };
     /// `b` per contact: the rate of F_l, each known to `off`.
     [[nodiscard]] Solution solve(const std::vector<Rational>& b, const Rational& off = 0) const;
@@ -40,6 +41,8 @@ class FirstOrder {
     /// First-order forces at a fixed stress, from the forces there.
     [[nodiscard]] std::vector<Range> forces(const std::vector<Range>& f0) const;
     [[nodiscard]] const Velocities& velocities() const { return velocities_; }
+    /// What first-order gaps are made of: the fastest coordinate, and the growth of the radii.
+    [[nodiscard]] double speed() const;
 
   private:
     [[nodiscard]] Rational grown(const Contact& pair) const;

@@ -264,6 +264,24 @@ void Problem::find_contacts_of(const State<2>& state) {
     column_curvature_ = change.empty() ? 0 : *std::max_element(change.begin(), change.end());
 }
 
+namespace {
+
+/// An own image counts twice.
+int most_touched_of(const std::vector<Contact>& contacts, int disks) {
+    std::vector<int> count(static_cast<std::size_t>(disks), 0);
+    for (const Contact& c : contacts) {
+        if (c.kind != ContactKind::held) {
+            ++count[static_cast<std::size_t>(c.i)];
+        }
+        if (c.kind == ContactKind::disk_disk) {
+            ++count[static_cast<std::size_t>(c.j)];
+        }
+    }
+    return static_cast<int>(std::max_element(count.begin(), count.end()) - count.begin());
+}
+
+} // namespace
+
 void Problem::find_pinned(const State<2>& state) {
     const Cell<2>& cell = state.packing.cell;
     const bool holds = std::any_of(state.contacts.begin(), state.contacts.end(),
@@ -272,6 +290,7 @@ void Problem::find_pinned(const State<2>& state) {
         if (!cell.periodic[a]) {
             continue;
         }
+        most_touched = most_touched < 0 ? most_touched_of(state.contacts, disks) : most_touched;
         Pinned& along = pinned.emplace_back(Pinned{a, {}});
         for (std::size_t l = 0; l < rows.size(); ++l) {
             const Contact& c = state.contacts[l];

@@ -98,6 +98,7 @@ class Problem : public Structure {
         std::vector<int> acting;
     };
     std::vector<Pinned> pinned;
+    int most_touched = -1; ///< there: the disk with the most contacts, the first of them (C9 in proofs/cells.md)
     long fine = 0;
     long spare = 0;
     int digits;           ///< bits beyond the stored ones in which the true vertex is sought

@@ -52,6 +52,29 @@ std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const
     return list;
 }
 
+std::optional<std::vector<Contact>> list_before(std::vector<Contact> list, const std::vector<const EventRecord*>& arcs,
+                                                const Packing<2>& packing) {
+    const auto put_back = [&](const std::string& entered, const std::string& left) {
+        const std::optional<Contact> in = contact_named(entered, packing);
+        const std::optional<Contact> out = contact_named(left, packing);
+        const auto at = in && out ? std::find(list.begin(), list.end(), *in) : list.end();
+        if (at == list.end()) {
+            return false;
+        }
+        *at = *out;
+        return true;
+    };
+    bool all = true;
+    for (auto arc = arcs.rbegin(); all && arc != arcs.rend(); ++arc) {
+        const std::vector<TieRecord>& ties = (*arc)->ties;
+        all = put_back((*arc)->closed, (*arc)->opened);
+        for (auto tie = ties.rbegin(); all && tie != ties.rend(); ++tie) {
+            all = !exchanges_list(*tie) || put_back(tie->contact, tie->against);
+        }
+    }
+    return all ? std::optional(std::move(list)) : std::nullopt;
+}
+
 std::optional<Opening> opening_of(const ArcStart& start, const EventRecord& event) {
     const State<2>& from = start.state;
     const std::optional<Contact> opened = contact_named(event.opened, from.packing);

@@ -27,6 +27,9 @@ struct ArcStart {
 bool exchanges_list(const TieRecord& tie);
 /// The list with which the contact opens; nothing: the record names what cannot be exchanged.
 std::optional<std::vector<Contact>> list_that_opens(const State<2>& state, const EventRecord& event);
+/// The list from which these arcs, with their exchanges, lead to `list`; nothing: they do not.
+std::optional<std::vector<Contact>> list_before(std::vector<Contact> list, const std::vector<const EventRecord*>& arcs,
+                                                const Packing<2>& packing);
 
 /// How the record says that its arc begins, as far as doubles tell; nothing: something is unusual.
 std::optional<Opening> opening_of(const ArcStart& from, const EventRecord& event);

@@ -46,6 +46,10 @@ struct Bounded {
 /// The number found lies within the bound; undecided when the bound is above `loosest`.
 Objections compare(const char* name, const Bounded& said, const Range& found, double loosest);
 
+/// A first-order term with its bound against what was found: the two have a number in common, and the bound is no
+/// larger than `force_tolerance` of `size`, which it is a sum of terms of: a wider one says nothing.
+Objections check_said(const std::string& what, const Bounded& said, const Range& found, double size);
+
 /// The largest magnitude.
 double largest_force(const std::vector<Range>& forces);
 
@@ -84,6 +88,8 @@ struct Place {
 /// structural zero. `near`: factors of the matrix close by, or nothing. `digits`: of the problem.
 Objections make_place(State<2> state, Place& place, const ExactLoad& load = {}, int fresh = -1,
                       std::shared_ptr<const Solver> near = {}, int digits = usual_digits);
+/// The load that a stored state means: where it says so that at which a force vanishes, next to the stored one.
+ExactLoad meant_load(const State<2>& state);
 /// The same vertex with more digits; the old one stays where none is proved. What `make_place` says of it.
 Objections sharpen(Place& place, int digits);
 
@@ -91,6 +97,7 @@ Objections sharpen(Place& place, int digits);
 struct Decision {
     std::string kind;            ///< "tension", "rattler", or empty: an equilibrium
     std::vector<int> candidates; ///< contacts whose (infinitesimal) force is negative
+    std::vector<int> open;       ///< beside them: it may be
 };
 Objections decide(const Place& place, Decision& decision);
 
@@ -103,11 +110,15 @@ Objections check_load_end(const Place& place, const Bounded& stress, std::size_t
 /// The same in a run that settles ties at first order. `said`: of ties, by a record; null: there is none.
 Objections check_limit_at(const Place& place, const Bounded& stress, std::size_t opened, ExactLoad& at_limit,
                           const std::vector<TieRecord>* said);
-Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule);
+Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const RunRecords& run);
 
 /// No overlap at the end of an arc, the potential fell along it, and the record's strain, work and power are those.
 /// `rattles`: grains that carry no finite load moved, under the infinitesimal ones.
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles);
+
+/// The start of the arcs to equilibrium 0: nothing overlaps there, and the contacts are those of start.json, unless the
+/// run chose some of the pairs that touch.
+Objections check_start(const Place& place, const State<2>& given);
 
 /// The pairs that touch at the start of an arc: those that close again on a way of length O(eps) end it there.
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction);
@@ -123,7 +134,7 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line);
 
 /// A stored state against the vertex that was reached. `start`: of the run, which may be as far from its vertex as the
 /// proof that there is one allows.
-Objections check_stored(const Place& place, const State<2>& stored, const std::vector<double>& start);
+Objections check_stored(const Place& place, const State<2>& stored, const std::optional<State<2>>& start);
 /// The forces in its file; none may be there.
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces);
 

@@ -1,5 +1,6 @@
 // The numbers of records against the vertices of a replay.
 #include "checker/gaps.hpp"
+#include "checker/logarithm.hpp"
 #include "checker/newton.hpp"
 #include "checker/replay.hpp"
 
@@ -11,8 +12,6 @@ namespace isostat::checker {
 
 namespace {
 
-/// In both columns of a contact that there is not.
-constexpr double no_contact = -9;
 /// A recorded number against what was found, to `record_tolerance` of `size`.
 Objections compare(const char* name, double recorded, const Range& found, double size) {
     const Rational room = Rational(record_tolerance) * Rational(std::max(size, 1e-300));
@@ -59,6 +58,10 @@ Range work(const Place& from, const Place& to, const Forces& load, double& size)
         size += std::abs(load[j].lower.get_d() * to.coordinate(k).lower.get_d());
     }
     return sum;
+}
+
+std::set<Contact> contact_set(const State<2>& state) {
+    return {state.contacts.begin(), state.contacts.end()};
 }
 
 int rattlers(const Place& place) {
@@ -108,8 +111,8 @@ std::optional<Objections> check_meant(const std::optional<Contact>& columns, con
 
 Objections check_smallest_gap(const Place& place, const EquilibriumLine& line) {
     const std::vector<Gap>& near = place.gaps();
-    const auto pair = contact_of_columns(line.at("min_gap_i"), line.at("min_gap_j"), place.state->packing);
-    const bool none = line.at("min_gap_i") == no_contact && line.at("min_gap_j") == no_contact;
+    const auto pair = contact_of_columns(line.integer("min_gap_i"), line.integer("min_gap_j"), place.state->packing);
+    const bool none = line.integer("min_gap_i") == no_contact && line.integer("min_gap_j") == no_contact;
     if (near.empty()) {
         const bool infinite = std::isinf(line.at("min_gap")) && line.bound("min_gap") == 0;
         return none && infinite ? Objections() : Objection{true, "min_gap is said to be of a pair, but there is none"};
@@ -133,7 +136,7 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
         }
     }
     if (!smallest) {
-        const bool none = std::isinf(line.at("min_force")) && line.at("min_force_i") == no_contact;
+        const bool none = std::isinf(line.at("min_force")) && line.integer("min_force_i") == no_contact;
         return none ? Objections() : Objection{true, "min_force is said of a contact, but none carries a force"};
     }
     const Bounded said{line.at("min_force"), line.at("force_bound")};
@@ -141,7 +144,8 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
     if (Objections wrong = compare("min_force", said, e.forces[*smallest], loosest)) {
         return wrong;
     }
-    const auto named = contact_of_columns(line.at("min_force_i"), line.at("min_force_j"), place.state->packing);
+    const auto named =
+        contact_of_columns(line.integer("min_force_i"), line.integer("min_force_j"), place.state->packing);
     const auto found =
         check_meant(named, place, [&](std::size_t l) { return compare("min_force", said, e.forces[l], loosest); });
     return found ? *found : Objection{true, "min_force is said to be of what is no contact"};
@@ -150,10 +154,10 @@ Objections check_smallest_force(const Place& place, const EquilibriumLine& line)
 Objections check_interval(const Place& place, const EquilibriumLine& line, bool high) {
     const char* name = high ? "sigma2_high" : "sigma2_low";
     const Bounded stress{line.at(name), line.bound(name)};
-    const auto opens = contact_of_columns(line.at(high ? "opens_high_i" : "opens_low_i"),
-                                          line.at(high ? "opens_high_j" : "opens_low_j"), place.state->packing);
-    const bool named = line.at(high ? "opens_high_i" : "opens_low_i") != no_contact ||
-                       line.at(high ? "opens_high_j" : "opens_low_j") != no_contact;
+    const auto opens = contact_of_columns(line.integer(high ? "opens_high_i" : "opens_low_i"),
+                                          line.integer(high ? "opens_high_j" : "opens_low_j"), place.state->packing);
+    const bool named = line.integer(high ? "opens_high_i" : "opens_low_i") != no_contact ||
+                       line.integer(high ? "opens_high_j" : "opens_low_j") != no_contact;
     if (std::isfinite(stress.value) != opens.has_value() || (!opens && named)) {
         return Objection{true, "an end of the supported interval has a contact exactly when it is bounded"};
     }
@@ -187,11 +191,12 @@ Objections check_interval(const Place& place, const EquilibriumLine& line, bool 
     return *found;
 }
 
-/// It is said to stay watched though its first-order gap is negative.
-bool stays_watched(const EventRecord& event, const Contact& pair) {
-    return std::any_of(event.ties.begin(), event.ties.end(), [&](const TieRecord& tie) {
-        return tie.what == "gap" && tie.choice == "watched" && tie.against == to_string<2>(pair);
+/// What the record says of a pair that touches at the end; null: nothing.
+const TieRecord* said_of_gap(const EventRecord& event, const Contact& pair) {
+    const auto tie = std::find_if(event.ties.begin(), event.ties.end(), [&](const TieRecord& t) {
+        return t.what == "gap" && t.against == to_string<2>(pair);
     });
+    return tie == event.ties.end() ? nullptr : &*tie;
 }
 
 /// The way of the arc is of length O(eps): no finite motion.
@@ -199,24 +204,27 @@ bool is_first_order_step(const EventRecord& event) {
     return std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
 }
 
-/// No pair overlaps where an arc ends.
-Objections check_no_overlap(const Place& to, const EventRecord& event) {
-    for (const Gap& gap : to.gaps()) {
-        if (gap.value.has_zero() && to.first) {
-            const Range first = to.first->gap(gap.pair);
-            const bool left = to.chooses && (first.has_zero() || stays_watched(event, gap.pair));
-            if (!first.positive() && !left) {
-                return Objection{first.negative(), fmt::format("{} touch at the end of the arc, first-order gap in {}",
-                                                               to_string<2>(gap.pair), shown(first))};
+/// A pair touches, and would overlap with radii R_i + eps rho_i.
+Objection touches(const Contact& pair, const char* where, const Range& first) {
+    return {first.negative(),
+            fmt::format("{} touch at {}, first-order gap in {}", to_string<2>(pair), where, shown(first))};
+}
+
+/// No pair overlaps. `settled`: what is to be said of pairs that touch, with their first-order gaps.
+template <class Settled> Objections check_no_overlap(const Place& place, const char* where, const Settled& settled) {
+    for (const Gap& gap : place.gaps()) {
+        if (gap.value.has_zero() && place.first) {
+            if (Objections open = settled(gap.pair, place.first->gap(gap.pair))) {
+                return open;
             }
             continue;
         }
         if (gap.value.negative()) {
-            return Objection{true, fmt::format("{} overlap at the end of the arc, gap in {}", to_string<2>(gap.pair),
-                                               shown(gap.value))};
+            return Objection{
+                true, fmt::format("{} overlap at {}, gap in {}", to_string<2>(gap.pair), where, shown(gap.value))};
         }
         if (!gap.value.positive()) {
-            return Objection{false, fmt::format("{} may overlap at the end of the arc", to_string<2>(gap.pair))};
+            return Objection{false, fmt::format("{} may overlap at {}", to_string<2>(gap.pair), where)};
         }
     }
     return {};
@@ -236,8 +244,7 @@ Objections check_power_at_turn(const Place& to, const EventRecord& event) {
 /// v on which the gap of the new contact c closes at the rate 1 and no other changes.
 Objections check_power_at_contact(const Place& to, const EventRecord& event, bool rattles) {
     const auto& contacts = to.state->contacts;
-    const auto slot = std::find_if(contacts.begin(), contacts.end(),
-                                   [&](const Contact& c) { return to_string<2>(c) == event.closed; });
+    const auto slot = std::find(contacts.begin(), contacts.end(), *contact_named(event.closed, to.state->packing));
     const auto l = static_cast<std::size_t>(slot - contacts.begin());
     const std::vector<Range>& forces = rattles ? to.evidence->infinitesimal() : to.evidence->forces;
     const Range& power = forces[l];
@@ -249,19 +256,37 @@ Objections check_power_at_contact(const Place& to, const EventRecord& event, boo
                               force_tolerance * largest_force(forces));
 }
 
-/// The recorded work is that of the finite loads, and the potential falls.
+/// By how much Phi = sum sigma_a ln L_a falls (S5 (b), stability.md). \pre true stresses, without loads on disks
+Range fall_of_phi(const Place& from, const Place& to) {
+    Range fall(Rational(0));
+    for (int a = 0; a < 2; ++a) {
+        const Range stress{Rational(to.state->load.stress[static_cast<std::size_t>(a)])};
+        fall = fall + stress * logarithm(from.length(a) / to.length(a));
+    }
+    return fall;
+}
+
+/// The recorded work is that of the finite loads, if they are dead, and the potential falls, if there is one.
 Objections check_work(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
+    const Load<2>& load = to.state->load;
+    const bool dead = load.kind == LoadKind::nominal;
     double size = 0;
-    const Range done = work(from, to, to.evidence->finite_load, size);
-    if (Objections wrong = compare_if_bounded("work", {event.work, event.work_bound}, done, record_tolerance * size)) {
+    const Range done = dead ? work(from, to, to.evidence->finite_load, size) : Range(Rational(0));
+    if (Objections wrong =
+            !dead ? Objections()
+                  : compare_if_bounded("work", {event.work, event.work_bound}, done, record_tolerance * size)) {
         return wrong;
     }
-    if (is_first_order_step(event)) {
+    const bool potential =
+        dead || rattles || std::all_of(load.disk_force.begin(), load.disk_force.end(), [](double f) { return f == 0; });
+    if (is_first_order_step(event) || !potential) {
         return {}; // no work
     }
     // Rattlers move without any work of the finite load: then the infinitesimal one decides.
     double unused = 0;
-    const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused) : done;
+    const Range decides = rattles ? work(from, to, infinitesimal_load(to.evidence->problem, *to.state), unused)
+                          : dead  ? done
+                                  : fall_of_phi(from, to);
     if (!decides.positive()) {
         return Objection{decides.negative(),
                          fmt::format("the potential does not decrease: work in {}", shown(decides))};
@@ -308,8 +333,10 @@ Objections check_counts(const Place& place, const EquilibriumLine& line) {
             return wrong;
         }
     }
-    if (line.value.count("touching") !=
-        0) { // a run may tell from 0, with more digits, what is 0 as far as is seen here
+    if (line.has("touching") != (place.first != nullptr)) {
+        return Objection{true, "the column 'touching' belongs to runs that settle ties at first order"};
+    }
+    if (line.has("touching")) { // a run may tell from 0, with more digits, what is 0 as far as is seen here
         const auto found = static_cast<int>(place.touching.size());
         if (Objections other = compare("touching", line.integer("touching"), found)) {
             other->wrong = line.integer("touching") > found;
@@ -354,7 +381,10 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
                                                                    {"eps2", strain_of(place, load.loaded_axis), 1},
                                                                    {"L1", place.length(other), box},
                                                                    {"L2", place.length(load.loaded_axis), box}};
-    if (line.value.contains("L3")) { // of a cell whose tilt moves
+    if (line.has("L3") != place.state->packing.cell.tilt_moves[0]) {
+        return Objection{true, "the columns of a third length belong to cells whose tilt moves"};
+    }
+    if (line.has("L3")) {
         const int third = shears ? 0 : 2;
         with_bound.emplace_back("eps3", strain_of(place, third), 1);
         with_bound.emplace_back("L3", place.length(third), box);
@@ -379,24 +409,49 @@ Objections check_measures(const Place& place, const EquilibriumLine& line) {
 } // namespace
 
 Objections check_end(const Place& from, const Place& to, const EventRecord& event, bool rattles) {
-    const Load<2>& load = to.state->load;
     if (Objections wrong = compare_if_bounded("eps2", {event.strain, event.strain_bound},
-                                              strain_of(to, load.loaded_axis), arc_strain_tolerance)) {
+                                              strain_of(to, to.state->load.loaded_axis), arc_strain_tolerance)) {
         return wrong;
     }
-    if (Objections wrong = check_no_overlap(to, event)) {
+    const auto settled = [&](const Contact& pair, const Range& first) -> Objections {
+        const TieRecord* said = said_of_gap(event, pair);
+        const bool left = to.chooses && (first.has_zero() || (said != nullptr && said->choice == "watched"));
+        if (!first.positive() && !left) {
+            return touches(pair, "the end of the arc", first);
+        }
+        return said != nullptr ? Objections() // else a run with more digits may have told the gap from 0
+                               : Objection{false, fmt::format("{} touch at the end of the arc as far as is seen, and "
+                                                              "the record does not name them",
+                                                              to_string<2>(pair))};
+    };
+    if (Objections wrong = check_no_overlap(to, "the end of the arc", settled)) {
         return wrong;
     }
-    if (Objections wrong = event.power_turn             ? check_power_at_turn(to, event)
-                           : is_first_order_step(event) ? Objections()
-                                                        : check_power_at_contact(to, event, rattles)) {
+    if (Objections wrong =
+            event.power_turn ? check_power_at_turn(to, event) : check_power_at_contact(to, event, rattles)) {
         return wrong;
     }
-    return load.kind == LoadKind::nominal ? check_work(from, to, event, rattles) : Objections();
+    return check_work(from, to, event, rattles);
+}
+
+Objections check_start(const Place& place, const State<2>& given) {
+    const auto settled = [&](const Contact& pair, const Range& first) {
+        const bool left = place.chooses && first.has_zero();
+        return first.positive() || left ? Objections() : touches(pair, "the start", first);
+    };
+    if (!place.first && contact_set(given) != contact_set(*place.state)) {
+        return Objection{true, "start.json has other contacts than those with which its arcs lead to equilibrium 0"};
+    }
+    return check_no_overlap(place, "the start", settled);
 }
 
 Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
     if (Objections wrong = check_forces(place)) {
+        return wrong;
+    }
+    // What touches was asked where the arc ended.
+    if (Objections wrong =
+            check_no_overlap(place, "an equilibrium", [](const auto&, const auto&) { return Objections(); })) {
         return wrong;
     }
     for (const auto& check : {check_counts, check_measures, check_smallest_gap, check_smallest_force}) {
@@ -414,37 +469,53 @@ Objections check_equilibrium(const Place& place, const EquilibriumLine& line) {
 
 namespace {
 
-/// First-order terms of a stored state whose radii have a direction.
-Objections check_direction(const Place& place, const RadiusPerturbation& said) {
-    const auto meets = [](const Range& range, const Enclosure& term) {
-        return term.radius >= 0 && range.lower <= Rational(term.value) + Rational(term.radius) &&
-               range.upper >= Rational(term.value) - Rational(term.radius);
-    };
-    if (said.open.size() != place.touching.size() || said.zero.size() != place.ties.size()) {
-        return Objection{true,
-                         fmt::format("{} pairs that touch and {} forces that vanish, found {} and {}", said.open.size(),
-                                     said.zero.size(), place.touching.size(), place.ties.size())};
+/// First-order terms of one list of a stored state against those found, by name.
+Objections check_terms(const char* what, const std::vector<std::pair<Contact, Enclosure>>& said,
+                       const std::vector<Gap>& found, double size) {
+    if (said.size() != found.size()) {
+        return Objection{true, fmt::format("{} of {} {}, found {}", said.size(), what, "in the state", found.size())};
     }
-    for (const auto& [pair, term] : said.open) {
-        const auto found = std::find_if(place.touching.begin(), place.touching.end(),
-                                        [&pair = pair](const Gap& gap) { return gap.pair == pair; });
-        if (found == place.touching.end() || !meets(found->value, term)) {
-            return Objection{true, fmt::format("the first-order gap of {} is {} +- {}, found {}", to_string<2>(pair),
-                                               term.value, term.radius,
-                                               found == place.touching.end() ? "no such pair" : shown(found->value))};
+    for (const auto& [contact, term] : said) {
+        const auto at = std::find_if(found.begin(), found.end(),
+                                     [&contact = contact](const Gap& one) { return one.pair == contact; });
+        const std::string name = fmt::format("the first-order {} of {}", what, to_string<2>(contact));
+        if (at == found.end()) {
+            return Objection{true, name + ": there is no such one"};
         }
-    }
-    for (const auto& [contact, term] : said.zero) {
-        const auto& contacts = place.state->contacts;
-        const auto l =
-            static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), contact) - contacts.begin());
-        if (l == contacts.size() || !meets(place.first_force[l], term)) {
-            return Objection{true, fmt::format("the first-order force of {} is {} +- {}, found {}",
-                                               to_string<2>(contact), term.value, term.radius,
-                                               l == contacts.size() ? "no such contact" : shown(place.first_force[l]))};
+        if (Objections wrong = check_said(name, {term.value, term.radius}, at->value, size)) {
+            return wrong;
         }
     }
     return {};
+}
+
+/// Of a stored state whose radii have a direction. Its exact load is that where `load_zero` vanishes, if one does.
+Objections check_direction(const Place& place, const RadiusPerturbation& said) {
+    std::vector<Gap> zero;
+    bool moves = false; // a force that vanishes at the exact load, and not at others
+    for (const int l : place.ties) {
+        const auto index = static_cast<std::size_t>(l);
+        zero.push_back({place.state->contacts[index], place.first_force[index]});
+        moves = moves || !place.evidence->slopes()[index].has_zero();
+    }
+    const double size = largest_force(place.first_force);
+    if (Objections wrong = check_terms("gap", said.open, place.touching, place.first->speed())) {
+        return wrong;
+    }
+    if (Objections wrong = check_terms("force", said.zero, zero, size)) {
+        return wrong;
+    }
+    const bool at_limit = moves && (place.load.shift.lower != 0 || place.load.shift.upper != 0);
+    const auto named =
+        std::find_if(zero.begin(), zero.end(), [&](const Gap& one) { return one.pair == said.load_zero; });
+    if ((said.load_zero.i >= 0) != at_limit || (at_limit && named == zero.end())) {
+        return Objection{true, fmt::format("load_zero is {}: {} vanishes at the exact load",
+                                           said.load_zero.i < 0 ? "missing" : to_string<2>(said.load_zero),
+                                           at_limit ? "another force" : "no force")};
+    }
+    return at_limit ? check_said("stress_rate", {said.stress_rate.value, said.stress_rate.radius}, place.load.rate,
+                                 largest_force({place.load.rate}))
+                    : Objections();
 }
 
 /// The doubles of a stored state against the vertex that was reached. Where they are farther from it than doubles of a
@@ -482,11 +553,8 @@ Objections check_coordinates(const Place& place, const State<2>& stored, bool gi
 
 } // namespace
 
-Objections check_stored(const Place& place, const State<2>& stored, const std::vector<double>& start) {
-    const auto as_set = [](const State<2>& state) {
-        return std::set<Contact>(state.contacts.begin(), state.contacts.end());
-    };
-    if (as_set(stored) != as_set(*place.state)) {
+Objections check_stored(const Place& place, const State<2>& stored, const std::optional<State<2>>& start) {
+    if (contact_set(stored) != contact_set(*place.state)) {
         return Objection{true, "the stored state has other contacts"};
     }
     const Packing<2>& here = place.state->packing;
@@ -510,7 +578,7 @@ Objections check_stored(const Place& place, const State<2>& stored, const std::v
             return wrong;
         }
     }
-    return check_coordinates(place, stored, stored.packing.q == start);
+    return check_coordinates(place, stored, start && stored.packing.q == start->packing.q);
 }
 
 Objections check_stored_forces(const Place& place, const std::vector<double>& forces) {

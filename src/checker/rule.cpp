@@ -22,13 +22,10 @@ Objections check_turn(const Place& place, const EventRecord& event, bool rattles
     const Velocities velocities(e);
     const Velocities::Solution motion = velocities.opening(held, 1);
     const auto k = static_cast<std::size_t>(place.state->contacts[held].i);
-    Rational fastest = 0;
-    for (const Rational& v : motion.middle) {
-        fastest = std::max<Rational>(fastest, abs(v));
-    }
-    if (abs(motion.middle[k]) + motion.radius < fastest * Rational(1 - turn_tolerance)) {
+    const double fastest = motion.fastest();
+    if (abs(motion.middle[k]) + motion.radius < Rational(fastest) * Rational(1 - turn_tolerance)) {
         return Objection{true, fmt::format("{} is held, but another coordinate is {} times as fast", event.closed,
-                                           Rational(fastest / abs(motion.middle[k])).get_d())};
+                                           fastest / std::abs(motion.middle[k].get_d()))};
     }
     return {};
 }
@@ -97,9 +94,37 @@ Objections check_order(const Place& place, const std::string& kind, std::size_t 
     return {};
 }
 
+/// The rule `random` opens that candidate, in the order of contacts: splitmix64 of the seed and the steps before.
+std::size_t drawn(std::uint64_t seed, long step, std::size_t candidates) {
+    std::uint64_t z = seed + 0x9e3779b97f4a7c15ULL * static_cast<std::uint64_t>(step);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return (z ^ (z >> 31)) % candidates;
+}
+
+/// Which candidates there were is not known where holds may have been released and turned back where they stood, or
+/// radii are R_i + eps rho_i.
+Objections check_draw(const Place& place, const EventRecord& event, std::size_t opened, std::uint64_t seed,
+                      const std::vector<int>& candidates) {
+    const auto& contacts = place.state->contacts;
+    const auto before = std::count_if(candidates.begin(), candidates.end(),
+                                      [&](int l) { return contacts[static_cast<std::size_t>(l)] < contacts[opened]; });
+    const std::size_t place_drawn = drawn(seed, event.step, candidates.size());
+    if (place_drawn == static_cast<std::size_t>(before)) {
+        return {};
+    }
+    const bool known = !place.first && std::none_of(contacts.begin(), contacts.end(),
+                                                    [](const Contact& c) { return c.kind == ContactKind::held; });
+    return Objection{known,
+                     fmt::format("{} opens, number {} of {} candidates: the rule 'random' draws {}", event.opened,
+                                 before, candidates.size(), place_drawn),
+                     true};
+}
+
 } // namespace
 
-Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const std::string& rule) {
+Objections check_rule(const Place& place, const EventRecord& event, std::size_t opened, const RunRecords& run) {
+    const std::string& rule = run.rule;
     if (event.stress != place.stress()) {
         return Objection{
             true, fmt::format("the stress is {}, and was {} in the same rearrangement", event.stress, place.stress())};
@@ -133,9 +158,19 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             return wrong;
         }
     }
+    for (const int l : decision.open) { // what is less negative does not open, whatever its sign
+        const auto other = static_cast<std::size_t>(l);
+        if (rule != "most_negative" || place.is_held(other) || !(forces[opened].upper < forces[other].lower)) {
+            return Objection{false, fmt::format("the sign of the force of {} is not known: {}", e.name(other),
+                                                shown(forces[other]))};
+        }
+    }
     if (Objections wrong = compare_if_bounded("force", {event.force, event.force_bound}, forces[opened],
                                               force_tolerance * largest_force(forces))) {
         return wrong;
+    }
+    if (rule == "random" && run.rule_seed) {
+        return check_draw(place, event, opened, *run.rule_seed, decision.candidates);
     }
     if (rule != "most_negative" && rule != "least_negative" && rule != "least_index") {
         return Objection{false, fmt::format("the rule '{}' is not checked, only that the force is negative", rule),

@@ -37,6 +37,9 @@ struct EventRecord {
     long choices = 0; ///< among the ties, from the first line to this one
 };
 
+/// In both columns of a contact that there is not.
+inline constexpr int no_contact = -9;
+
 /// One line of equilibria.csv, by the names of its header.
 struct EquilibriumLine {
     std::string where;
@@ -44,21 +47,25 @@ struct EquilibriumLine {
     [[nodiscard]] double at(const char* name) const { return value.at(name); }
     /// Of the column with that name.
     [[nodiscard]] double bound(const char* name) const { return value.at(std::string(name) + "_bound"); }
-    /// Throws `Error(bad_input)` when it is none.
-    [[nodiscard]] int integer(const char* name) const;
+    /// Of a column of integers.
+    [[nodiscard]] int integer(const char* name) const { return static_cast<int>(at(name)); }
+    [[nodiscard]] bool has(const char* name) const { return value.contains(name); }
 };
 
 struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
+    std::optional<std::uint64_t> rule_seed;                ///< of the rule `random`
     bool chooses = false;                                  ///< ties = "choose", and max_choices is not 0
     double max_choices = 0;                                ///< 0 where nothing is chosen
-    std::string status;                                    ///< the word without the reason
+    std::string status, reason;                            ///< the word, and what follows it
+    std::string program;                                   ///< that wrote it
+    int segments = 0;                                      ///< of the programme
     bool certified_states = false, certified_arcs = false; ///< files that its level must have left
     std::vector<EventRecord> events;
     std::vector<EquilibriumLine> equilibria;
     std::filesystem::path states;
-    std::vector<double> start; ///< coordinates of start.json; may be far from the true vertex, until the first arc
+    std::optional<State<2>> start; ///< start.json; may be far from the true vertex, until the first arc
     /// The stored state of an equilibrium, with its forces, if there is one.
     [[nodiscard]] std::optional<StateFile<2>> stored(int equilibrium) const;
 };
@@ -69,12 +76,14 @@ enum class LastLine { complete, may_be_cut };
 /// Throws `Error(bad_input)`.
 RunRecords read_records(const std::filesystem::path& directory, LastLine last = LastLine::complete);
 
-/// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk);
-/// nothing for anything else.
-std::optional<Contact> contact_named(const std::string& name, const Packing<2>& packing);
+/// "12-40", "12-40(0,-1)" (an image), "3-left", "held x of grain 4" (the walls are the grain after the last disk), each
+/// in the one spelling that records have; nothing for anything else.
+std::optional<Contact> contact_spelt(std::string_view name);
+/// The same, of a packing.
+std::optional<Contact> contact_named(std::string_view name, const Packing<2>& packing);
 
 /// The two columns of a contact in equilibria.csv; nothing for "none". They do not name the image: `may_be`.
-std::optional<Contact> contact_of_columns(double i, double j, const Packing<2>& packing);
+std::optional<Contact> contact_of_columns(int i, int j, const Packing<2>& packing);
 /// The pair of such columns, whichever image it is with.
 bool may_be(const Contact& columns, const Contact& pair);
 

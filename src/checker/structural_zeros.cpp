@@ -9,8 +9,8 @@ namespace {
 /// Contacts matched to degrees of freedom that they touch, by augmenting paths.
 class Matching {
   public:
-    explicit Matching(const Problem& problem)
-        : contacts_of_(problem.contacts_of), contact_of_(contacts_of_.size(), -1), dof_of_(problem.rows.size(), -1) {
+    Matching(const std::vector<std::vector<int>>& contacts_of, std::size_t contacts)
+        : contacts_of_(contacts_of), contact_of_(contacts_of_.size(), -1), dof_of_(contacts, -1) {
         for (std::size_t j = 0; j < contact_of_.size(); ++j) {
             seen_.assign(dof_of_.size(), false);
             perfect_ = augment(j) && perfect_;
@@ -43,18 +43,39 @@ class Matching {
     bool perfect_ = true;
 };
 
-} // namespace
+/// The pattern with the disk of most contacts pinned: its degrees of freedom stand for those of the pinned one (C9).
+std::vector<std::vector<int>> with_another_pin(const Problem& problem) {
+    std::vector<std::vector<int>> contacts_of = problem.contacts_of;
+    for (const Problem::Pinned& along : problem.pinned) {
+        const int dof = problem.dof_of[2 * static_cast<std::size_t>(problem.most_touched) + along.axis];
+        if (dof >= 0) { // else it is the pinned disk
+            contacts_of[static_cast<std::size_t>(dof)] = along.acting;
+        }
+    }
+    return contacts_of;
+}
 
-std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load) {
-    const Matching matching(problem);
+bool acts_on_disks(const Problem& problem, const Forces& load) {
+    for (std::size_t j = 0; j < load.size(); ++j) {
+        if (problem.coordinate_of[j] < 2 * problem.disks && (load[j].lower != 0 || load[j].upper != 0)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// As many as there are by this pattern.
+std::optional<std::vector<int>> zeros_of(const std::vector<std::vector<int>>& contacts_of, std::size_t contacts,
+                                         const Forces& load) {
+    const Matching matching(contacts_of, contacts);
     if (!matching.perfect()) {
         return {};
     }
-    std::vector<std::vector<std::size_t>> touched(problem.rows.size());
+    std::vector<std::vector<std::size_t>> touched(contacts);
     std::vector<std::size_t> reached;
     std::vector<bool> loaded(load.size(), false);
     for (std::size_t j = 0; j < load.size(); ++j) {
-        for (const int l : problem.contacts_of[j]) {
+        for (const int l : contacts_of[j]) {
             touched[static_cast<std::size_t>(l)].push_back(j);
         }
         if (load[j].lower != 0 || load[j].upper != 0) {
@@ -80,6 +101,16 @@ std::optional<std::vector<int>> structural_zeros(const Problem& problem, const F
     }
     std::sort(zeros.begin(), zeros.end());
     return zeros;
+}
+
+} // namespace
+
+std::optional<std::vector<int>> structural_zeros(const Problem& problem, const Forces& load) {
+    std::optional<std::vector<int>> zeros;
+    if (!problem.pinned.empty() && !acts_on_disks(problem, load)) {
+        zeros = zeros_of(with_another_pin(problem), problem.rows.size(), load);
+    }
+    return zeros ? zeros : zeros_of(problem.contacts_of, problem.rows.size(), load);
 }
 
 } // namespace isostat::checker

@@ -1,5 +1,6 @@
 // First-order decisions that records name.
 #include "checker/choice.hpp"
+#include "checker/index.hpp"
 #include "checker/limit.hpp"
 #include "checker/recorded_arc.hpp"
 
@@ -7,12 +8,25 @@
 
 namespace isostat::checker {
 
+Objections check_said(const std::string& what, const Bounded& said, const Range& found, double size) {
+    const auto [value, bound] = said;
+    if (found.lower > Rational(value) + Rational(bound) || found.upper < Rational(value) - Rational(bound)) {
+        return Objection{true, fmt::format("{} is {} +- {}, found in {}", what, value, bound, shown(found))};
+    }
+    const double loosest = force_tolerance * std::max(size, largest_force({found}));
+    if (bound > loosest) {
+        return Objection{false, fmt::format("{} is {} +- {}: a bound that says too little (at most {:.3g} is accepted)",
+                                            what, value, bound, loosest)};
+    }
+    return {};
+}
+
 namespace {
 
-/// One pair was chosen by name to close before another, after ways that are equal as far as the run knew.
+/// One pair was chosen by name to close before another, after ways that are not told apart.
 bool chosen_step(const EventRecord& event, const Contact& chosen, const Contact& other) {
     const TieRecord* tie = recorded_choice(event.ties, "step", to_string<2>(chosen), to_string<2>(other));
-    return tie != nullptr && tie->choice == "names" && chosen < other && tied_at_first_order(*tie);
+    return tie != nullptr && tie->choice == "names" && chosen < other;
 }
 
 std::optional<std::size_t> position(const Place& place, const std::string& name) {
@@ -24,50 +38,55 @@ std::optional<std::size_t> position(const Place& place, const std::string& name)
     return {};
 }
 
+std::vector<Gap>::const_iterator touching_pair(const Place& place, const std::string& name) {
+    return std::find_if(place.touching.begin(), place.touching.end(),
+                        [&name](const Gap& gap) { return to_string<2>(gap.pair) == name; });
+}
+
+/// A first-order term, and the size of what it is a sum of.
+struct Term {
+    Range value;
+    double size;
+};
+
 /// First-order gap of a pair that touches.
-std::optional<Range> first_gap(const Place& place, const std::string& name) {
-    for (const Gap& gap : place.touching) {
-        if (to_string<2>(gap.pair) == name) {
-            return gap.value;
-        }
-    }
-    return {};
+std::optional<Term> first_gap(const Place& place, const std::string& name) {
+    const auto gap = touching_pair(place, name);
+    return gap == place.touching.end() ? std::nullopt : std::optional(Term{gap->value, place.first->speed()});
 }
 
 /// First-order length of the way on which a pair that touches closes; nothing when it does not close.
-std::optional<Range> first_way(const Place& from, const std::string& name, std::size_t opened, int direction) {
-    for (const Gap& gap : from.touching) {
-        if (to_string<2>(gap.pair) == name) {
-            const Velocities& velocities = from.first->velocities();
-            const Range rate = velocities.gap_rate(gap.pair, velocities.opening(opened, direction));
-            return rate.negative() ? std::optional<Range>(gap.value / (Range(Rational(0)) - rate)) : std::nullopt;
-        }
+std::optional<Term> first_way(const Place& from, const std::string& name, std::size_t opened, int direction) {
+    const auto gap = touching_pair(from, name);
+    if (gap == from.touching.end()) {
+        return {};
     }
-    return {};
+    const Velocities& velocities = from.first->velocities();
+    const Range rate = Range(Rational(0)) - velocities.gap_rate(gap->pair, velocities.opening(opened, direction));
+    return rate.positive() ? std::optional(Term{gap->value / rate, from.first->speed() / rate.lower.get_d()})
+                           : std::nullopt;
 }
 
 /// At the limit where `opened` opens: first-order term of a force that is 0 all along, or of the stress at which it is
 /// 0.
-std::optional<Range> first_limit(const Place& from, const std::string& name, std::size_t opened, bool all_along) {
+std::optional<Term> first_limit(const Place& from, const std::string& name, std::size_t opened, bool all_along) {
     const auto l = position(from, name);
     const auto& slopes = from.evidence->slopes();
-    if (!l || !from.first || slopes[opened].has_zero()) {
+    if (!l || !from.first || slopes[opened].has_zero() || slopes[*l].has_zero() != all_along) {
         return {};
     }
-    const Range first = from.first->forces(forces_after(from, step_to_limit(from, opened)))[*l];
+    const std::vector<Range> there = forces_after(from, step_to_limit(from, opened));
+    const std::vector<Range> first = from.first->forces(there);
+    const double size = largest_force(first);
     if (all_along) {
-        return first;
+        return there[*l].has_zero() ? std::optional(Term{first[*l], size}) : std::nullopt;
     }
-    return slopes[*l].has_zero() ? std::nullopt : std::optional<Range>(limit_rate(first, slopes[*l]));
+    return Term{limit_rate(first[*l], slopes[*l]), size / std::abs(slopes[*l].lower.get_d())};
 }
 
-/// A recorded enclosure and a proved one have a number in common.
-bool meets(const Range& range, const Rational& value, double bound) {
-    return range.lower <= value + Rational(bound) && range.upper >= value - Rational(bound);
-}
-
-bool is_finite(double value, double bound) {
-    return std::isfinite(value) && std::isfinite(bound) && bound >= 0;
+/// What becomes of a force or a gap that vanishes in the base, by the sign of its first-order term (C1).
+std::string left_as(const std::string& what, const Range& first) {
+    return first.positive() ? "" : what == "gap" && first.negative() ? "watched" : "zero";
 }
 
 /// An arc whose ties are looked at.
@@ -75,11 +94,12 @@ struct Arc {
     const Place& base; ///< where it starts, with the list that was reached
     const Place& from; ///< the same with the list that opens
     const Place& to;
+    const EventRecord& event;
     std::size_t opened;
     int direction;
 
     /// The first-order term of one name in one kind of decision; nothing: there is no such term.
-    [[nodiscard]] std::optional<Range> term(const std::string& what, const std::string& name) const {
+    [[nodiscard]] std::optional<Term> term(const std::string& what, const std::string& name) const {
         if (what == "gap") {
             return first_gap(to, name);
         }
@@ -90,38 +110,120 @@ struct Arc {
             return first_limit(base, name, opened, what != "limit");
         }
         const auto l = position(to, name);
-        return l && to.first ? std::optional<Range>(to.first_force[*l]) : std::nullopt;
+        const bool tied = l && to.first && (what != "force" || contains(to.ties, *l));
+        return tied ? std::optional(Term{to.first_force[*l], largest_force(to.first_force)}) : std::nullopt;
     }
 
-    /// Left at 0: not refuted to vanish in the base; a gap is not told from 0 at first order either, as far as the run
-    /// knew.
-    [[nodiscard]] bool stays_zero(const TieRecord& tie) const {
-        if (tie.what == "gap") { // `term` asks of pairs that touch
-            return std::abs(tie.other) <= tie.other_bound;
-        }
-        const bool all_along = tie.what == "zero all along";
-        const Place& place = all_along ? base : to;
-        const auto l = position(place, tie.contact);
-        return l && (all_along ? place.evidence->slopes() : place.evidence->forces)[*l].has_zero();
-    }
-
-    [[nodiscard]] Objections check_term(const TieRecord& tie, const std::string& name, double value,
-                                        double bound) const {
-        const std::optional<Range> range = term(tie.what, name);
-        if (!range) {
+    [[nodiscard]] Objections check_term(const TieRecord& tie, const std::string& name, const Bounded& said) const {
+        const std::optional<Term> found = term(tie.what, name);
+        if (!found) {
             return Objection{
                 true, fmt::format("a first-order decision '{}' about {}, of which there is none", tie.what, name)};
         }
-        // Keys of held coordinates and of the rule least_negative are kept with the other sign.
-        const bool either = tie.what == "opening";
-        if (!is_finite(value, bound) ||
-            !(meets(*range, Rational(value), bound) || (either && meets(*range, Rational(-value), bound)))) {
-            return Objection{true, fmt::format("the first-order term of {} ('{}') is {} +- {}, found in {}", name,
-                                               tie.what, value, bound, shown(*range))};
+        const std::string what = fmt::format("the first-order term of {} ('{}')", name, tie.what);
+        Objections wrong = check_said(what, said, found->value, found->size);
+        if (wrong && tie.what == "opening") { // keys of the rule least_negative are kept with the other sign
+            wrong = check_said(what, {-said.value, said.bound}, found->value, found->size);
         }
-        return {};
+        return wrong;
+    }
+
+    /// What is left at 0, or watched, or is told from 0, by the sign of the term: as found, and as recorded.
+    [[nodiscard]] Objections check_left(const TieRecord& tie) const {
+        const bool gap = tie.what == "gap";
+        const Rational value(gap ? tie.other : tie.first);
+        const std::string& name = gap ? tie.against : tie.contact;
+        const std::string recorded =
+            left_as(tie.what, Range::around(value, Rational(gap ? tie.other_bound : tie.first_bound)));
+        const std::string found = left_as(tie.what, term(tie.what, name)->value);
+        if (tie.choice == found && tie.choice == recorded) {
+            return {};
+        }
+        return Objection{tie.choice != found && tie.choice != recorded,
+                         fmt::format("'{}' of {} is left as '{}', but by its first-order term as '{}'", tie.what, name,
+                                     tie.choice, tie.choice == found ? recorded : found)};
+    }
+
+    /// What the rule chose between: first-order terms do not tell the two apart, by the record and as found.
+    [[nodiscard]] Objections check_tied(const TieRecord& tie) const {
+        const Rational room = (Rational(tie.first_bound) + Rational(tie.other_bound)) * (1 + Rational(0x1p-50)) +
+                              Rational(0x1p-50) * (abs(Rational(tie.first)) + abs(Rational(tie.other)));
+        const bool recorded = abs(Rational(tie.first) - Rational(tie.other)) <= room;
+        const bool found = (term(tie.what, tie.contact)->value - term(tie.what, tie.against)->value).has_zero();
+        return recorded && found
+                   ? Objections()
+                   : Objection{!recorded, fmt::format("a choice '{}' between {} and {}, which their first-order terms "
+                                                      "tell apart",
+                                                      tie.what, tie.contact, tie.against)};
+    }
+
+    [[nodiscard]] Objections check(const TieRecord& tie) const {
+        const bool alone =
+            tie.what == "force" || tie.what == "zero all along" || (tie.what == "step" && tie.against.empty());
+        const bool gap = tie.what == "gap";
+        const bool ends = gap || tie.what == "step"; // they are of what ends the arc
+        if (alone != tie.against.empty() || (ends && tie.contact != event.closed) ||
+            (gap && (tie.first != 0 || tie.first_bound != 0))) {
+            return Objection{true, fmt::format("a first-order decision '{}' of {} and {}: there is no such one here",
+                                               tie.what, tie.contact, tie.against)};
+        }
+        if (Objections wrong = gap ? Objections() : check_term(tie, tie.contact, {tie.first, tie.first_bound})) {
+            return wrong;
+        }
+        if (Objections wrong = alone ? Objections() : check_term(tie, tie.against, {tie.other, tie.other_bound})) {
+            return wrong;
+        }
+        if (gap || (alone && tie.what != "step")) {
+            return to.chooses ? check_left(tie) : Objections();
+        }
+        const bool chosen = tie.choice == "names" || (tie.choice == "infinitesimal loads" && tie.what != "step");
+        if (chosen && !alone) {
+            return check_tied(tie);
+        }
+        return tie.choice.empty() ? Objections()
+                                  : Objection{true, fmt::format("'{}' of {} is chosen by '{}', which chooses no such "
+                                                                "thing",
+                                                                tie.what, tie.contact, tie.choice)};
+    }
+
+    /// Going back, a pair that touches at the end does not overlap; one that overlaps at first order touched all along,
+    /// or only grazes here (C1 g): else it closed before.
+    [[nodiscard]] Objections check_back(const Gap& pair, bool stays) const {
+        const std::string name = to_string<2>(pair.pair);
+        if (stays) {
+            const bool overlapped = std::any_of(from.touching.begin(), from.touching.end(),
+                                                [](const Gap& gap) { return !gap.value.positive(); });
+            return !pair.value.negative() || overlapped
+                       ? Objections()
+                       : Objection{true,
+                                   fmt::format("{} overlap at first order, after a step before which none did", name)};
+        }
+        const Velocities& velocities = to.first->velocities();
+        const Velocities::Solution motion = velocities.opening(opened, +1);
+        const Range rate = velocities.gap_rate(pair.pair, motion);
+        const bool watched = pair.value.negative();
+        if (!rate.has_zero()) {
+            return rate.negative() || watched
+                       ? Objection{!to.is_held(opened),
+                                   fmt::format("{} touch at the end of the arc and {} before: the rate of their gap is "
+                                               "in {} on the way back, their first-order gap in {}",
+                                               name, rate.negative() ? "overlap" : "close", shown(rate),
+                                               shown(pair.value))}
+                       : Objections();
+        }
+        const Range bend = velocities.bend(pair.pair, opened, motion);
+        return bend.negative() ? Objections(Objection{true, fmt::format("{} overlap before the end of the arc: the "
+                                                                        "second derivative of their gap is in {}",
+                                                                        name, shown(bend))})
+                               : Objections();
     }
 };
+
+/// What second derivatives of gaps are sums of.
+double bend_size(const Place& place, const Velocities::Solution& motion) {
+    const auto& radius = place.state->packing.radius;
+    return motion.fastest() * motion.fastest() / *std::min_element(radius.begin(), radius.end());
+}
 
 } // namespace
 
@@ -130,8 +232,7 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
         return Objection{true,
                          fmt::format("{} enters the list for {} ('{}'): {}", tie.contact, tie.against, tie.what, what)};
     };
-    const auto pair = std::find_if(place.touching.begin(), place.touching.end(),
-                                   [&](const Gap& gap) { return to_string<2>(gap.pair) == tie.contact; });
+    const auto pair = touching_pair(place, tie.contact);
     const auto leaves = position(place, tie.against);
     if (!place.chooses || !leaves || *leaves == opened || pair == place.touching.end() || place.is_held(opened)) {
         return wrong("no such exchange is possible");
@@ -143,7 +244,8 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
         return wrong("the rate of its gap is in " + shown(rate));
     }
     const Range bend = velocities.bend(pair->pair, opened, motion);
-    const Range share = velocities.gap_rate(pair->pair, velocities.opening(*leaves, +1));
+    const Velocities::Solution other = velocities.opening(*leaves, +1);
+    const Range share = velocities.gap_rate(pair->pair, other);
     const bool overlaps = tie.what == "second order"; // else it rests
     const Range& first = overlaps ? bend : rate;
     if (bend.positive() || (bend.negative() && !overlaps) || share.negative()) {
@@ -154,18 +256,13 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
                                             "told from 0",
                                             tie.contact, tie.what, shown(bend), shown(share))};
     }
-    if (!is_finite(tie.first, tie.first_bound) || !is_finite(tie.other, tie.other_bound) ||
-        !meets(first, Rational(tie.first), tie.first_bound) || !meets(share, Rational(tie.other), tie.other_bound)) {
-        return wrong(fmt::format("{} {} +- {} found in {}, share {} +- {} found in {}",
-                                 overlaps ? "second derivative" : "rate", tie.first, tie.first_bound, shown(first),
-                                 tie.other, tie.other_bound, shown(share)));
-    }
-    return {};
+    const double size = overlaps ? bend_size(place, motion) : motion.fastest();
+    Objections late = check_said(overlaps ? "second derivative" : "rate", {tie.first, tie.first_bound}, first, size);
+    return late ? late : check_said("share", {tie.other, tie.other_bound}, share, other.fastest());
 }
 
 Objections check_rest(const Place& place, const TieRecord& tie, std::size_t opened, int direction) {
-    const auto pair = std::find_if(place.touching.begin(), place.touching.end(),
-                                   [&](const Gap& gap) { return to_string<2>(gap.pair) == tie.contact; });
+    const auto pair = touching_pair(place, tie.contact);
     if (pair == place.touching.end() || tie.choice != "zero" || tie.against != place.evidence->name(opened)) {
         return Objection{true, fmt::format("{} is taken to keep touching, but does not touch where {} opens",
                                            tie.contact, tie.against)};
@@ -179,7 +276,8 @@ Objections check_rest(const Place& place, const TieRecord& tie, std::size_t open
                                            "derivative in {}",
                                            tie.contact, shown(rate), shown(bend))};
     }
-    return {};
+    Objections late = check_said("second derivative", {tie.first, tie.first_bound}, bend, bend_size(place, motion));
+    return late ? late : check_said("rate", {tie.other, tie.other_bound}, rate, motion.fastest());
 }
 
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction) {
@@ -222,33 +320,20 @@ Objections check_step(const Place& place, const EventRecord& event, std::size_t 
 
 Objections check_ties(const Place& base, const Place& from, const Place& to, const EventRecord& event,
                       std::size_t opened, int direction) {
-    const Arc arc{base, from, to, opened, direction};
+    const Arc arc{base, from, to, event, opened, direction};
     for (const TieRecord& tie : event.ties) {
         if (exchanges_list(tie)) {
             continue; // `check_exchange`
         }
-        if (tie.what == "rest") {
-            if (Objections wrong = check_rest(from, tie, opened, direction)) {
-                return wrong;
-            }
-            continue;
+        if (Objections wrong = tie.what == "rest" ? check_rest(from, tie, opened, direction) : arc.check(tie)) {
+            return wrong;
         }
-        if (tie.choice == "zero" && !arc.stays_zero(tie)) {
-            return Objection{true, fmt::format("'{}' of {} is left at 0, but does not vanish", tie.what, tie.contact)};
-        }
-        if (tie.choice == "watched" && (tie.what != "gap" || tie.other > tie.other_bound)) {
-            return Objection{true, fmt::format("'{}' of {} stays watched, but does not overlap at first order",
-                                               tie.what, tie.against)};
-        }
-        if (tie.what != "gap") {
-            if (Objections wrong = arc.check_term(tie, tie.contact, tie.first, tie.first_bound)) {
-                return wrong;
-            }
-        }
-        if (!tie.against.empty()) {
-            if (Objections wrong = arc.check_term(tie, tie.against, tie.other, tie.other_bound)) {
-                return wrong;
-            }
+    }
+    const bool stays =
+        std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+    for (const Gap& pair : to.touching) {
+        if (Objections wrong = arc.check_back(pair, stays)) {
+            return wrong;
         }
     }
     return {};

@@ -4,6 +4,7 @@
 #include "checker/replay.hpp"
 #include "checker/run_folder.hpp"
 #include "checker/way.hpp"
+#include "io/folders.hpp"
 #include "io/record_digests.hpp"
 
 #include <isostat/checker/verify.hpp>
@@ -27,29 +28,38 @@ class Replay {
         : records_(records), result_(result), witnesses_(records.directory / witness_records), lookahead_(records) {
         result.arcs = static_cast<int>(records.events.size());
         result.equilibria = static_cast<int>(records.equilibria.size());
-        reached_.resize(records.equilibria.size());
+        reached_.resize(records.equilibria.size() + 1);
     }
 
     void run(const std::function<void(const VerificationProgress&)>& progress) {
         progress_ = progress;
-        for (std::size_t k = 0; k < records_.equilibria.size(); ++k) {
-            const EquilibriumLine& line = records_.equilibria[k];
-            if (!expect(line.integer("number") == static_cast<int>(k), line.where,
+        const auto rows = static_cast<int>(records_.equilibria.size());
+        for (int k = 0; k < rows || (k == rows && event_ < records_.events.size()); ++k) {
+            if (k == rows) {
+                open_row();
+            }
+            const EquilibriumLine& line = line_of(k);
+            if (!expect(line.integer("number") == k, line.where,
                         fmt::format("the number is {}, expected {}", line.integer("number"), k))) {
                 return;
             }
             const RunVerification before = result_;
-            k == 0 ? start(line) : equilibrium(line);
-            if (stopped() && k > 0) {
-                again(static_cast<int>(k), before);
+            reach(line);
+            if (stopped()) {
+                again(k, before);
             }
             if (stopped()) {
                 return;
             }
-            report(static_cast<int>(k), static_cast<int>(k) + 1, true);
+            report(k, std::min(k + 1, rows), true);
+        }
+        if (rows == 0 && records_.events.empty()) {
+            leave("equilibria.csv", "no equilibrium was reached");
         }
         if (event_ < records_.events.size()) {
-            leave(records_.events[event_].where, "arcs after the last equilibrium are not checked");
+            const EventRecord& next = records_.events[event_];
+            expect(false, next.where,
+                   fmt::format("an arc towards equilibrium {}: expected {}", next.equilibrium, rows));
         }
     }
 
@@ -63,6 +73,33 @@ class Replay {
         return holds;
     }
     void leave(const std::string& where, const std::string& why) { result_.undecided.push_back(where + ": " + why); }
+
+    [[nodiscard]] bool is_row(int number) const { return number < result_.equilibria; }
+    [[nodiscard]] const EquilibriumLine& line_of(int number) const {
+        return is_row(number) ? records_.equilibria[static_cast<std::size_t>(number)] : open_row_;
+    }
+    /// Arcs after the last equilibrium lead to none. They begin at the last one whose interval ends at their load: a
+    /// programme may go back to an earlier one.
+    void open_row() {
+        const auto arcs =
+            std::count_if(records_.events.begin() + static_cast<std::ptrdiff_t>(event_), records_.events.end(),
+                          [this](const EventRecord& event) { return event.equilibrium == result_.equilibria; });
+        const EventRecord& first = records_.events[event_];
+        const auto ends_there = [&first](const EquilibriumLine& line) {
+            const auto is_at = [&](const char* name) {
+                const double room = line.bound(name) + record_tolerance * std::abs(first.stress);
+                return std::abs(line.at(name) - first.stress) <= room;
+            };
+            return is_at("sigma2_low") || is_at("sigma2_high");
+        };
+        const auto from = std::find_if(records_.equilibria.rbegin(), records_.equilibria.rend(), ends_there);
+        const int last = result_.equilibria - 1;
+        open_row_.where = first.where;
+        open_row_.value = {
+            {"number", result_.equilibria},
+            {"previous", from == records_.equilibria.rend() ? last : last - (from - records_.equilibria.rbegin())},
+            {"arcs", static_cast<double>(arcs)}};
+    }
 
     void report(int equilibrium, int equilibria, bool closed) {
         if (progress_) {
@@ -120,6 +157,12 @@ class Replay {
         }
     }
 
+    /// The same at the load that its file means.
+    void go_to_stored(State<2> state, const std::string& where) {
+        const ExactLoad load = meant_load(state);
+        go_to(std::move(state), where, load);
+    }
+
     /// What contradicts a row, or an arc towards it, is looked at again in small steps: steps in double may have led to
     /// another vertex of the same contacts. It is believed only where every arc from the last stored state on is proved
     /// to end where it was found to.
@@ -136,7 +179,7 @@ class Replay {
         }
         if (!stopped() && result_.undecided.size() > before.undecided.size()) {
             leave(
-                records_.equilibria[static_cast<std::size_t>(number)].where,
+                line_of(number).where,
                 fmt::format(
                     "steps in double ended where the records seem wrong ({}), but not provably at the ends of the arcs",
                     seen));
@@ -152,15 +195,13 @@ class Replay {
             result_ = before;
             event_ = reached_[static_cast<std::size_t>(*row)].first_event;
             arcs_here_ = 0;
-            equilibrium(records_.equilibria[static_cast<std::size_t>(*row)]);
+            reach(line_of(*row));
         }
         pace_ = Pace::fast;
         return !stopped() && result_.undecided.size() == before.undecided.size();
     }
 
-    [[nodiscard]] int previous_of(int number) const {
-        return records_.equilibria[static_cast<std::size_t>(number)].integer("previous");
-    }
+    [[nodiscard]] int previous_of(int number) const { return line_of(number).integer("previous"); }
 
     /// The events of one rearrangement, which must be numbered in order.
     std::vector<const EventRecord*> events_of(const EquilibriumLine& line) {
@@ -181,32 +222,71 @@ class Replay {
         return events;
     }
 
-    /// Equilibrium 0 is taken as it is stored; how it was reached is not replayed.
-    void start(const EquilibriumLine& line) {
-        if (!events_of(line).empty()) {
-            leave(line.where, "the arcs from the start to equilibrium 0 are not checked");
+    void reach(const EquilibriumLine& line) {
+        const std::vector<const EventRecord*> events = events_of(line);
+        const int number = line.integer("number");
+        if (!stopped()) {
+            number == 0 ? begin(line, events) : depart(line);
         }
-        std::optional<StateFile<2>> file = records_.stored(0);
-        if (expect(file.has_value(), line.where, "states/eq_000000.json, the start of the replay, is missing") &&
-            !stopped()) {
-            State<2>& stored = file->state;
-            if (stored.perturbation && stored.perturbation->load_zero.i >= 0) {
-                leave(line.where, "the exact load of equilibrium 0 is not replayed");
+        for (const EventRecord* event : events) {
+            if (here_.state && !stopped() && !arc(*event)) {
+                here_ = {};
             }
-            go_to(std::move(stored), line.where, {});
+            ++arcs_here_;
+            report(number, number, false);
+        }
+        if (!is_row(number) || stopped()) {
+            return;
+        }
+        if (here_.state && number > 0 && events.empty()) {
+            reload(line);
+        }
+        if (!here_.state) {
+            resume(line);
+        }
+        if (!stopped()) {
             close(line);
         }
     }
 
-    void equilibrium(const EquilibriumLine& line) {
-        const std::vector<const EventRecord*> events = events_of(line);
-        const int previous = line.integer("previous");
-        if (!expect(previous >= 0 && previous < line.integer("number"), line.where,
-                    fmt::format("previous is {}, expected an equilibrium before", previous)) ||
-            stopped()) {
+    /// Equilibrium 0 is the start as it is stored, or arcs lead to it from start.json. Of pairs that touch there the
+    /// list holds those with which these arcs end at that of the equilibrium.
+    void begin(const EquilibriumLine& line, const std::vector<const EventRecord*>& arcs) {
+        std::optional<StateFile<2>> file = records_.stored(0);
+        if (!expect(file.has_value() || !is_row(0), line.where,
+                    "states/eq_000000.json, the start of the replay, is missing")) {
             return;
         }
-        before_ = &records_.equilibria[static_cast<std::size_t>(previous)];
+        if (arcs.empty()) {
+            go_to_stored(std::move(file->state), line.where);
+            return;
+        }
+        if (!records_.start) {
+            leave(line.where, "the arcs from the start are not checked: there is no start.json");
+            return;
+        }
+        State<2> start = *records_.start;
+        if (file) {
+            auto list = list_before(std::move(file->state.contacts), arcs, start.packing);
+            if (!expect(list.has_value(), line.where, "its arcs do not lead to the contacts of equilibrium 0")) {
+                return;
+            }
+            start.contacts = std::move(*list);
+            start.perturbation = start.perturbation ? start.perturbation : file->state.perturbation;
+        }
+        go_to_stored(std::move(start), line.where);
+        if (here_.state) {
+            judged(check_start(here_, *records_.start), line.where);
+        }
+    }
+
+    void depart(const EquilibriumLine& line) {
+        const int previous = line.integer("previous");
+        if (!expect(previous >= 0 && previous < line.integer("number"), line.where,
+                    fmt::format("previous is {}, expected an equilibrium before", previous))) {
+            return;
+        }
+        before_ = &line_of(previous);
         if (here_number_ != previous || !here_.state) {
             here_ = {};
             const Reached& from = reached_[static_cast<std::size_t>(previous)];
@@ -215,22 +295,6 @@ class Replay {
             } else {
                 leave(line.where, "the equilibrium before was not reached by the replay");
             }
-        }
-        for (const EventRecord* event : events) {
-            if (here_.state && !stopped() && !arc(*event)) {
-                here_ = {};
-            }
-            ++arcs_here_;
-            report(line.integer("number"), line.integer("number"), false);
-        }
-        if (here_.state && events.empty() && !stopped()) {
-            reload(line);
-        }
-        if (!here_.state && !stopped()) {
-            resume(line);
-        }
-        if (!stopped()) {
-            close(line);
         }
     }
 
@@ -299,7 +363,7 @@ class Replay {
                                 : stays                  ? stay(next, event, *change)
                                 : pace_ == Pace::certain ? arrive_certainly(next, event, *change)
                                 : pace_ == Pace::slow    ? arrive_slowly(next, event, *change)
-                                                         : arrive(next, event, *change, false);
+                                                         : arrive_somehow(next, event, *change);
         if (!check_arrival(base.state ? base : here_, next, event, *change, open)) {
             return false;
         }
@@ -332,8 +396,9 @@ class Replay {
             !expect(!closed_before, event.where, event.closed + " closes, but is closed already") ||
             !expect(event.power_turn == (closed->kind == ContactKind::held), event.where,
                     fmt::format("power_turn is {}, but {} is what ends the arc", event.power_turn, event.closed)) ||
-            !expect((event.arc == 1) == (event.kind == "limit"), event.where,
-                    fmt::format("the kind is '{}' of arc {}: the first one, and no other, starts at a limit",
+            !expect((event.arc == 1 && event.equilibrium > 0) == (event.kind == "limit"), event.where,
+                    fmt::format("the kind is '{}' of arc {}: the first one from an equilibrium, and no other, starts "
+                                "at a limit",
                                 event.kind, event.arc))) {
             return {};
         }
@@ -370,11 +435,13 @@ class Replay {
 
     /// Does the limit, or the rule, open what the record says? At a limit `change` gets its exact load.
     Objections check_opening(const EventRecord& event, Change& change) {
+        if (event.kind != "limit") {
+            return check_rule(here_, event, change.position, records_);
+        }
         const double here = here_.stress();
         const bool up = event.stress > here || (event.stress == here && before_->at("sigma2_high") == here);
         const double bound = before_->bound(up ? "sigma2_high" : "sigma2_low");
-        return event.kind == "limit" ? check_limit(here_, event, bound, change.position, change.load)
-                                     : check_rule(here_, event, change.position, records_.rule);
+        return check_limit(here_, event, bound, change.position, change.load);
     }
 
     /// A coordinate of a rattler is let go by the infinitesimal loads, as its contacts are.
@@ -433,6 +500,12 @@ class Replay {
         return std::move(arrival.open);
     }
 
+    /// In small steps where the others find none.
+    Objections arrive_somehow(Place& next, const EventRecord& event, const Change& change) {
+        Objections open = arrive(next, event, change, false);
+        return next.state ? open : arrive(next, event, change, true);
+    }
+
     /// The same in small steps, if these find an end.
     Objections arrive_slowly(Place& next, const EventRecord& event, const Change& change) {
         Objections open = arrive(next, event, change, true);
@@ -482,10 +555,8 @@ class Replay {
     /// Where the replay was lost, a stored state takes it up again.
     void resume(const EquilibriumLine& line) {
         std::optional<StateFile<2>> file = records_.stored(line.integer("number"));
-        if (file && file->state.perturbation && file->state.perturbation->load_zero.i >= 0) {
-            leave(line.where, "not reached by the replay, and its exact load is not that of the stored state");
-        } else if (file) {
-            go_to(std::move(file->state), line.where, {});
+        if (file) {
+            go_to_stored(std::move(file->state), line.where);
         } else {
             leave(line.where, "not reached by the replay, and no state is stored");
         }
@@ -508,8 +579,12 @@ class Replay {
         const std::string state = fmt::format("states/eq_{:06}.json", number);
         const bool row = judged(asked([&] { return check_equilibrium(here_, line); }), line.where);
         const bool row_and_files =
-            row && same_file(state) && (number + 1 < result_.equilibria || same_file("states/last.json")) &&
-            (!records_.certified_states || judged(check_certificate(records_, here_, line), line.where));
+            row && same_file(state, line) && (number + 1 < result_.equilibria || same_file("states/last.json", line)) &&
+            (records_.certified_states
+                 ? judged(check_certificate(records_, here_, line), line.where)
+                 : expect(line.integer("certified") == -1, line.where,
+                          fmt::format("certified is {} at a level without certificates: expected -1",
+                                      line.integer("certified"))));
         result_.equilibria_proved += row_and_files ? 1 : 0;
         reached.state = *here_.state;
         reached.load = here_.load;
@@ -518,13 +593,15 @@ class Replay {
     }
 
     /// A state file, where there is one, holds the equilibrium that was reached, and its forces.
-    bool same_file(const std::string& name) {
+    bool same_file(const std::string& name, const EquilibriumLine& line) {
         const std::filesystem::path path = records_.directory / name;
         if (!std::filesystem::exists(path)) {
             return true;
         }
         const StateFile<2> file = read_any_state<2>(path);
-        return judged(check_stored(here_, file.state, records_.start), name) &&
+        return expect(file.state.equilibrium == line.integer("number"), name,
+                      fmt::format("equilibrium is {}, expected {}", file.state.equilibrium, line.integer("number"))) &&
+               judged(check_stored(here_, file.state, records_.start), name) &&
                judged(check_stored_forces(here_, file.forces), name);
     }
 
@@ -537,6 +614,7 @@ class Replay {
     Lookahead lookahead_;
     Place here_; ///< empty: lost
     int here_number_ = -1;
+    EquilibriumLine open_row_;                ///< of arcs after the last equilibrium
     const EquilibriumLine* before_ = nullptr; ///< where the rearrangement started
     std::size_t event_ = 0;
     struct Reached {
@@ -556,11 +634,13 @@ RunVerification verify_run(const std::filesystem::path& directory,
                            const std::function<void(const VerificationProgress&)>& progress) {
     require_floating_point();
     RunVerification result;
+    (void)content_of(directory, run_folder); // no link leads out of it, no pipe is read
     if (is_running(directory)) {
         result.finished = false;
         return result;
     }
     const RunRecords records = read_records(directory);
+    result.notes = files_apart(records);
     if (const Objections damage = check_folder(directory, records)) {
         result.wrong = damage->text;
     } else {
@@ -573,7 +653,7 @@ RunVerification verify_run(const std::filesystem::path& directory,
     }
     if (!result.wrong.empty()) {
         result.verdict = Verdict::refuted;
-    } else if (result.undecided.empty() && result.equilibria > 0) {
+    } else if (result.undecided.empty()) {
         result.verdict = Verdict::proved;
     }
     return result;

@@ -8,6 +8,7 @@
 
 #include <charconv>
 #include <fstream>
+#include <limits>
 
 namespace isostat::checker {
 
@@ -55,21 +56,27 @@ std::optional<Witness> Witnesses::of(long step) const {
     const std::string where = fmt::format("{}:{}", file_.string(), found->second.second);
     const json::Json parsed = Field::parse(text, where);
     const Field line(parsed, where);
+    line.only({"step", "grains", "centres", "end"});
+    if (line.at("step").integer() != step) {
+        line.at("step").fail(fmt::format("{}, as the line begins", step));
+    }
     if (!line.has("end")) {
         return {};
     }
+    constexpr int most = std::numeric_limits<int>::max();
     Witness witness;
     if (line.has("grains")) {
         const Field list = line.at("grains");
         witness.grains.emplace();
         for (std::size_t k = 0; k < list.size(); ++k) {
-            witness.grains->push_back(static_cast<int>(list.at(k).integer()));
+            witness.grains->push_back(list.at(k).integer(0, most));
         }
     }
     const Field centres = line.at("centres");
     for (std::size_t k = 0; k < centres.size(); ++k) {
         const Field centre = centres.at(k);
-        witness.centres.push_back({static_cast<int>(centre.at("held").integer()), numbers(centre.at("q"))});
+        centre.only({"held", "q"});
+        witness.centres.push_back({centre.at("held").integer(-1, most), numbers(centre.at("q"))});
     }
     witness.end = numbers(line.at("end"));
     return witness;

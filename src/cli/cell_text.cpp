@@ -1,5 +1,7 @@
 #include "cli/cell_text.hpp"
 
+#include "cli/terminal.hpp"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -31,7 +33,7 @@ std::string marked(int value, const Counting& c) {
 }
 
 void print_answer(const char* title, const JammingAnswer& answer) {
-    fmt::print("{:<24} {}: {}\n", title, to_string(answer.verdict), answer.reason);
+    say("{:<24} {}: {}\n", title, to_string(answer.verdict), answer.reason);
 }
 
 } // namespace
@@ -62,11 +64,11 @@ std::string cell_words(const Packing<2>& packing) {
 }
 
 void print_counts(const std::string& title, const StrainCounts& counts) {
-    fmt::print("{:<24} {:>7} {:>7} {:>7} {:>6} {:>6}\n", title, "N_f", "N", "rank", "h", "k");
+    say("{:<24} {:>7} {:>7} {:>7} {:>6} {:>6}\n", title, "N_f", "N", "rank", "h", "k");
     for (std::size_t k = 0; k < strains.size(); ++k) {
         const Counting& c = counts[k];
-        fmt::print("  {:<22} {:>7} {:>7} {:>7} {:>6} {:>6}\n", to_string(strains[k]), c.dof_count, c.contact_count,
-                   c.rank, marked(c.hyperstaticity, c), marked(c.mechanisms, c));
+        say("  {:<22} {:>7} {:>7} {:>7} {:>6} {:>6}\n", to_string(strains[k]), c.dof_count, c.contact_count, c.rank,
+            marked(c.hyperstaticity, c), marked(c.mechanisms, c));
     }
 }
 
@@ -74,9 +76,9 @@ void print_cell(const CellInspection& cell) {
     print_counts("all disks", cell.all);
     if (cell.backbone) {
         print_counts(fmt::format("backbone, {} disks", cell.backbone_disks), *cell.backbone);
-        fmt::print("{:<24} {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}\n",
-                   "contacts needed", contacts_for_bulk_modulus<2>(cell.backbone_disks),
-                   contacts_for_all_moduli<2>(cell.backbone_disks), (*cell.backbone)[0].contact_count);
+        say("{:<24} {} for a bulk modulus, {} for all moduli (Goodrich et al., by counting); here {}\n",
+            "contacts needed", contacts_for_bulk_modulus<2>(cell.backbone_disks),
+            contacts_for_all_moduli<2>(cell.backbone_disks), (*cell.backbone)[0].contact_count);
     }
     print_answer("jammed locally", cell.local);
     print_answer("jammed collectively", cell.collective);

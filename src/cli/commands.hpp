@@ -33,6 +33,9 @@ struct RunArguments {
 };
 int run(const RunArguments& arguments);
 
+/// Of an ensemble.
+inline constexpr int most_samples = 1'000'000;
+
 struct EnsembleArguments {
     Common common;
     std::string scene, output;
@@ -78,12 +81,6 @@ struct ReportArguments {
 };
 int report(const ReportArguments& arguments);
 
-struct ConvertArguments {
-    Common common;
-    std::string input, output;
-};
-int convert(const ConvertArguments& arguments);
-
 struct VerifyArguments {
     Common common;
     std::string certificate; ///< or the folder of a run
@@ -124,6 +121,7 @@ struct ImportArguments {
     std::string cell; ///< what of a cell moves: "rectangular" or "tilted"; none: as the file is
     std::uint64_t seed = 1;
     double jitter = 0;
+    bool far = false; ///< disks may move by more than their radius
 };
 /// A packing made elsewhere -> the vertex next to it, as a state. 0: certified; 1: there is none with the contacts of
 /// the file; 2: undecided.
@@ -135,6 +133,7 @@ struct SnapArguments {
     ForeignArguments foreign;
     std::string contacts, contact_columns; ///< of a dump of style local; none: the pairs that overlap
     std::string stress, load, cell;        ///< cell: as of `ImportArguments`
+    std::string reference_length;          ///< "L1,L2"; empty: the lengths of the frame
     double stiffness = 0;                  ///< > 0: force = stiffness x overlap where the file says none
     std::uint64_t seed = 1;
     bool exchange = false;

@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
@@ -27,7 +28,7 @@ Json number(double value) {
 }
 
 void print_json(const Json& object) {
-    fmt::print("{}\n", json::dumped(object));
+    say_json(json::dumped(object) + "\n");
 }
 
 namespace {
@@ -103,7 +104,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         if (progress.stage != stage) {
             stage = progress.stage;
             line.clear();
-            fmt::print("preparation: {}\n", stage);
+            say("preparation: {}\n", stage);
             std::fflush(stdout);
         }
         line.show(fmt::format("preparation: {}: {:3.0f} % {}", progress.stage, 100 * progress.fraction, progress.text));
@@ -118,11 +119,11 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
         prepared = std::move(*report.candidate);
     }
     if (!quiet) {
-        fmt::print("{:<22} {:>9} {:>10} {:>9} {:>10} {:>10}\n", "stage", "seconds", "iterations", "contacts", "phi",
-                   "residual");
+        say("{:<22} {:>9} {:>10} {:>9} {:>10} {:>10}\n", "stage", "seconds", "iterations", "contacts", "phi",
+            "residual");
         for (const PreparationStage& done : report.stages) {
-            fmt::print("{:<22} {:>9.2f} {:>10} {:>9} {:>10.6f} {:>10.2e}{}\n", done.name, done.seconds, done.iterations,
-                       done.contacts, done.solid_fraction, done.residual, done.completed ? "" : "  (goal not reached)");
+            say("{:<22} {:>9.2f} {:>10} {:>9} {:>10.6f} {:>10.2e}{}\n", done.name, done.seconds, done.iterations,
+                done.contacts, done.solid_fraction, done.residual, done.completed ? "" : "  (goal not reached)");
         }
         std::fflush(stdout);
     }

@@ -1,8 +1,11 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/ranges.hpp"
 #include "cli/read_packing.hpp"
+#include "cli/terminal.hpp"
 #include "compare/report.hpp"
+#include "io/folders.hpp"
 
 #include <isostat/compare/compare.hpp>
 #include <isostat/core/error.hpp>
@@ -24,7 +27,10 @@ namespace {
 /// Equilibrium 0 of a run, or a state file.
 State<2> start_of(const std::string& reference) {
     const std::filesystem::path path = reference;
-    return read_any_state<2>(std::filesystem::is_directory(path) ? path / "states" / "eq_000000.json" : path).state;
+    if (std::filesystem::is_directory(path)) {
+        (void)content_of(path, run_folder);
+    }
+    return read_any_state<2>(std::filesystem::is_directory(path) ? path / state_name(0) : path).state;
 }
 
 std::string shown(double x) {
@@ -32,9 +38,8 @@ std::string shown(double x) {
 }
 
 void print_frames(const compare::Comparison& comparison) {
-    fmt::print("{:>5} {:>9} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}\n", "frame",
-               "sigma2", "unbalanced", "N", "N_f", "h", "k", "rattlers", "distance", "law", "rest", "stiff", "exact",
-               "status");
+    say("{:>5} {:>9} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}\n", "frame", "sigma2",
+        "unbalanced", "N", "N_f", "h", "k", "rattlers", "distance", "law", "rest", "stiff", "exact", "status");
     for (const compare::FrameResult& f : comparison.frames) {
         const std::string place = f.expected < 0          ? "-"
                                   : f.found == f.expected ? fmt::format("{}", f.expected)
@@ -42,11 +47,10 @@ void print_frames(const compare::Comparison& comparison) {
                                                           : fmt::format("{}/{}", f.expected, f.found);
         const std::string local = f.local.empty() ? "" : fmt::format("; from the frame before: {}", f.local);
         const std::string arc = f.nearest_arc.empty() ? "" : "; " + f.nearest_arc;
-        fmt::print("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}{}{}\n",
-                   f.frame, f.sigma2, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count,
-                   f.counting.hyperstaticity, f.counting.mechanisms, f.rattlers, shown(f.distance), shown(f.law),
-                   shown(f.rest), shown(f.stiffness), place, to_string(f.status), f.reason.empty() ? "" : ": ",
-                   f.reason, local, arc);
+        say("{:>5} {:>9.6g} {:>10} {:>5} {:>5} {:>3} {:>3} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6}  {}{}{}{}{}\n", f.frame,
+            f.sigma2, shown(f.unbalanced), f.counting.contact_count, f.counting.dof_count, f.counting.hyperstaticity,
+            f.counting.mechanisms, f.rattlers, shown(f.distance), shown(f.law), shown(f.rest), shown(f.stiffness),
+            place, to_string(f.status), f.reason.empty() ? "" : ": ", f.reason, local, arc);
     }
 }
 
@@ -58,7 +62,7 @@ void print_local(const std::vector<compare::FrameResult>& frames) {
         same += f.local == "same" ? 1 : 0;
     }
     if (asked > 0) {
-        fmt::print("local: {} of {} frames are where the exact run from the frame before ends\n", same, asked);
+        say("local: {} of {} frames are where the exact run from the frame before ends\n", same, asked);
     }
 }
 
@@ -66,8 +70,7 @@ void print_bundle(const compare::Bundle& bundle) {
     if (bundle.members.size() < 2) {
         return;
     }
-    fmt::print(
-        "\nbundle: {} exact runs from the same start come through {} equilibria; the first {} are common to all\n",
+    say("\nbundle: {} exact runs from the same start come through {} equilibria; the first {} are common to all\n",
         bundle.members.size(), bundle.nodes.size(), bundle.common);
 }
 
@@ -85,21 +88,20 @@ void print_loads(const compare::Comparison& comparison, const compare::Departure
                       ? fmt::format(" {:.7g}", e.sigma2)
                       : "";
     }
-    fmt::print("  sigma2 {:.7g} -> {:.7g}; limits of the exact run between:{}\n", from, to,
-               limits.empty() ? " none" : limits);
+    say("  sigma2 {:.7g} -> {:.7g}; limits of the exact run between:{}\n", from, to, limits.empty() ? " none" : limits);
 }
 
 void print_ends(const compare::Comparison& comparison, double stiffness) {
     if (stiffness > 0) {
-        fmt::print("\n{:>5} {:>10} {:>10} {:>12} {:>11}  {}   (predictions)\n", "exact", "from", "to", "soft limit",
-                   "K for 1e-3", "opens");
+        say("\n{:>5} {:>10} {:>10} {:>12} {:>11}  {}   (predictions)\n", "exact", "from", "to", "soft limit",
+            "K for 1e-3", "opens");
         for (const compare::PathEquilibrium& e : comparison.path) {
-            fmt::print("{:>5} {:>10.6f} {:>10.6f} {:>12.6f} {:>11}  {}\n", e.number, e.low, e.high, e.soft_limit,
-                       shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string<2>(e.opens));
+            say("{:>5} {:>10.6f} {:>10.6f} {:>12.6f} {:>11}  {}\n", e.number, e.low, e.high, e.soft_limit,
+                shown(e.stiffness_needed), e.opens.i < 0 ? "-" : to_string<2>(e.opens));
         }
     }
     if (!comparison.path_end.empty()) {
-        fmt::print("\nthe exact run ends: {}\n", comparison.path_end);
+        say("\nthe exact run ends: {}\n", comparison.path_end);
     }
     print_bundle(comparison.bundle);
     std::array<int, compare::frame_statuses> counts{};
@@ -113,19 +115,22 @@ void print_ends(const compare::Comparison& comparison, double stiffness) {
                                 to_string(static_cast<compare::FrameStatus>(s)));
         }
     }
-    fmt::print("\n{} frames: {}\n", comparison.frames.size(), text);
+    say("\n{} frames: {}\n", comparison.frames.size(), text);
     print_local(comparison.frames);
     if (const auto& d = comparison.departure) {
-        fmt::print("FIRST DEPARTURE: frames {} -> {}: {}: {}\n", d->from < 0 ? "-" : std::to_string(d->from), d->to,
-                   d->reason, d->words);
+        say("FIRST DEPARTURE: frames {} -> {}: {}: {}\n", d->from < 0 ? "-" : std::to_string(d->from), d->to, d->reason,
+            d->words);
         print_loads(comparison, *d);
-        fmt::print("  opened{}; closed{}\n", compare::names_of(d->opened), compare::names_of(d->closed));
+        say("  opened{}; closed{}\n", compare::names_of(d->opened), compare::names_of(d->closed));
     }
 }
 
 } // namespace
 
 int compare_series(const CompareArguments& a) {
+    if (!a.output.empty()) {
+        check_folder_for(a.output, comparison_folder);
+    }
     compare::SeriesReader reader(a.series);
     const compare::Series& series = reader.series();
     compare::CompareOptions options;
@@ -133,10 +138,15 @@ int compare_series(const CompareArguments& a) {
     options.local = a.local;
     options.nearest_arc = a.nearest_arc;
     if (!a.frames.empty()) {
-        const auto [first, last] = parse_range(a.frames, "--frames");
-        constexpr double most = std::numeric_limits<int>::max();
-        options.frames = {static_cast<int>(std::ceil(std::clamp(first, 0.0, most))),
-                          static_cast<int>(std::clamp(last, -1.0, most))};
+        const std::vector<std::string> ends = parse_list(a.frames, ':');
+        const auto frame = [](const std::string& word) {
+            return ranges::integer_in(word, 0, std::numeric_limits<int>::max()).value_or(-1);
+        };
+        if (ends.size() != 2 || frame(ends[0]) < 0 || frame(ends[1]) < frame(ends[0])) {
+            throw Error(ErrorKind::usage,
+                        fmt::format("--frames is '{}': expected A:B, two integers with 0 <= A <= B", a.frames));
+        }
+        options.frames = {static_cast<int>(frame(ends[0])), static_cast<int>(frame(ends[1]))};
     }
     if (!a.reference.empty()) {
         options.start = start_of(a.reference);
@@ -155,7 +165,7 @@ int compare_series(const CompareArguments& a) {
         note = compare::write_comparison(a.output, series, comparison);
     }
     if (a.common.json) {
-        fmt::print("{}", compare::comparison_json(series, comparison));
+        say_json(compare::comparison_json(series, comparison));
     } else {
         if (!a.common.quiet) {
             print_frames(comparison);
@@ -163,7 +173,7 @@ int compare_series(const CompareArguments& a) {
         print_ends(comparison, a.common.quiet ? 0 : series.linear_stiffness());
     }
     if (!note.empty()) {
-        fmt::print(stderr, "isostat: {}\n", note);
+        say(stderr, "isostat: {}\n", note);
     }
     return comparison.status;
 }

@@ -4,6 +4,7 @@
 #include "cli/progress.hpp"
 #ifdef ISOSTAT_WITH_MPI
 #include "cli/mpi/sample_queue.hpp"
+#include "cli/terminal.hpp"
 #endif
 
 #include "ensemble/ensemble.hpp"
@@ -93,12 +94,11 @@ class Board {
         }
         line_.clear();
         if (done_ == 1) {
-            fmt::print("{:>8} {:<12} {:>10} {:>8} {:>9} {:>8} {:>8}\n", "seed", "status", "equilibria", "arcs",
-                       "seconds", "elapsed", "rest");
+            say("{:>8} {:<12} {:>10} {:>8} {:>9} {:>8} {:>8}\n", "seed", "status", "equilibria", "arcs", "seconds",
+                "elapsed", "rest");
         }
-        fmt::print("{:>8} {:<12} {:>10} {:>8} {:>9.2f} {:>8} {:>8} {}\n", sample.seed, to_string(sample.status),
-                   sample.equilibria, sample.arcs, sample.seconds, clock_text(elapsed()), clock_text(rest()),
-                   sample.reason);
+        say("{:>8} {:<12} {:>10} {:>8} {:>9.2f} {:>8} {:>8} {}\n", sample.seed, to_string(sample.status),
+            sample.equilibria, sample.arcs, sample.seconds, clock_text(elapsed()), clock_text(rest()), sample.reason);
         std::fflush(stdout);
     }
     /// A finished sample of an earlier call.
@@ -215,9 +215,9 @@ void print_outcome(const std::filesystem::path& path, const std::vector<Sample>&
     for (const auto& [word, count] : counts) {
         words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, word);
     }
-    fmt::print("{} samples: {}; {} equilibria, {} of them proved, {} arcs\n"
-               "tables: equilibria.csv, increments.csv, samples.csv in {}\n",
-               samples.size(), words, equilibria, proved, arcs, path.string());
+    say("{} samples: {}; {} equilibria, {} of them proved, {} arcs\n"
+        "tables: equilibria.csv, increments.csv, samples.csv in {}\n",
+        samples.size(), words, equilibria, proved, arcs, path.string());
 }
 
 int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& header, SampleQueue& queue) {
@@ -241,9 +241,9 @@ int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& head
         }
     };
     if (!quiet) {
-        fmt::print("{} samples, seeds {} to {}, {} at a time{}\n", header.samples, header.first_seed,
-                   header.first_seed + static_cast<std::uint64_t>(header.samples) - 1, jobs * queue.ranks(),
-                   queue.ranks() > 1 ? fmt::format(" on {} ranks", queue.ranks()) : "");
+        say("{} samples, seeds {} to {}, {} at a time{}\n", header.samples, header.first_seed,
+            header.first_seed + static_cast<std::uint64_t>(header.samples) - 1, jobs * queue.ranks(),
+            queue.ranks() > 1 ? fmt::format(" on {} ranks", queue.ranks()) : "");
         std::fflush(stdout);
     }
     work(directory.samples(), queue, jobs, &board);
@@ -255,12 +255,12 @@ int run_and_merge(const EnsembleArguments& arguments, const EnsembleHeader& head
     }
     for (const Sample& sample : samples) {
         if (sample.status != SampleStatus::completed) {
-            fmt::print(stderr, "isostat: seed {}: {}: {}\n", sample.seed, to_string(sample.status), sample.reason);
+            say(stderr, "isostat: seed {}: {}: {}\n", sample.seed, to_string(sample.status), sample.reason);
         }
     }
     const int status = exit_status(samples);
     if (status == interrupted) {
-        fmt::print(stderr, "isostat: to go on: the same command with --resume\n");
+        say(stderr, "isostat: to go on: the same command with --resume\n");
     }
     return status;
 }

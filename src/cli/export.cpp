@@ -1,6 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
+#include "io/folders.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -8,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -17,6 +18,11 @@ namespace isostat::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What the first lines of a file in this format have.
+std::string mark_of(const std::string& format) {
+    return format == "xyz" ? "\nLattice=\"" : format == "csv" ? "\nid,x,y,r\n" : " of isostat ";
+}
 
 std::string format_of(const ExportArguments& a) {
     if (!a.format.empty()) {
@@ -40,20 +46,15 @@ std::vector<fs::path> states_of(const std::string& input) {
         return {input};
     }
     std::vector<fs::path> files;
-    const fs::path folder = fs::path(input) / "states";
-    if (fs::is_directory(folder)) {
-        for (const auto& entry : fs::directory_iterator(folder)) {
-            const std::string name = entry.path().filename().string();
-            if (name.starts_with("eq_") && name.ends_with(".json")) {
-                files.push_back(entry.path());
-            }
+    for (const std::string& name : content_of(input, run_folder).files) {
+        if (name.starts_with("states/eq_")) {
+            files.push_back(fs::path(input) / name);
         }
     }
     if (files.empty()) {
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: has no states/eq_*.json: expected the folder of a run, or a state", input));
     }
-    std::sort(files.begin(), files.end());
     return files;
 }
 
@@ -79,6 +80,9 @@ std::string series_text(const std::vector<fs::path>& files) {
 int export_states(const ExportArguments& arguments) {
     const std::string format = format_of(arguments);
     std::vector<fs::path> files = states_of(arguments.input);
+    for (const fs::path& file : files) {
+        check_output(arguments.output, mark_of(format), {file});
+    }
     std::string text;
     if (format == "xyz") {
         text = series_text(files);
@@ -90,11 +94,11 @@ int export_states(const ExportArguments& arguments) {
                 ? csv_text(packing)
                 : lammps_data_text(packing, fmt::format("{} of {}", files.front().filename().string(), program_name()));
     }
-    write_atomically(arguments.output, text);
+    write_output(arguments.output, text, mark_of(format));
     if (arguments.common.json) {
         print_json(Json{{"file", arguments.output}, {"format", format}, {"states", files.size()}});
     } else {
-        fmt::print("{}: {}, {} state{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s");
+        say("{}: {}, {} state{}\n", arguments.output, format, files.size(), files.size() == 1 ? "" : "s");
     }
     return done;
 }

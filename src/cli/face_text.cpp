@@ -1,5 +1,6 @@
 #include "cli/face_text.hpp"
 
+#include "cli/terminal.hpp"
 #include "preparation/force_face.hpp"
 
 #include <fmt/format.h>
@@ -36,11 +37,10 @@ Result<ForceFace> face_of(const State<2>& state) {
 void print_ends(const ForceFace& face) {
     for (std::size_t l = 0; l < face.pairs.size(); ++l) {
         if (takes_part(face, l)) {
-            fmt::print("  force {:<16} from {:.6g} to {:.6g}\n", to_string<2>(face.pairs[l]), face.least[l],
-                       face.most[l]);
+            say("  force {:<16} from {:.6g} to {:.6g}\n", to_string<2>(face.pairs[l]), face.least[l], face.most[l]);
         }
     }
-    fmt::print("  (the run found that these touch; the ends are computed in double, not proved)\n");
+    say("  (the run found that these touch; the ends are computed in double, not proved)\n");
 }
 
 Json face_json(const Result<ForceFace>& result) {
@@ -77,18 +77,18 @@ void print_face(const State<2>& state) {
         return;
     }
     if (!state.perturbation->open.empty()) {
-        fmt::print("touching besides         {}: {} self-stresses, the forces above are one choice of many\n",
-                   fmt::join(names_of(state.perturbation->open), ", "), state.perturbation->open.size());
+        say("touching besides         {}: {} self-stresses, the forces above are one choice of many\n",
+            fmt::format("{}", fmt::join(names_of(state.perturbation->open), ", ")), state.perturbation->open.size());
         const Result<ForceFace> face = face_of(state);
         if (face.ok()) {
             print_ends(face.value());
         } else {
-            fmt::print("  {}: {}\n", to_string(face.failure().kind), face.failure().message());
+            say("  {}: {}\n", to_string(face.failure().kind), face.failure().message());
         }
     }
     if (!state.perturbation->zero.empty()) {
-        fmt::print("left at force 0          {}: an equilibrium of the finite loads, whatever infinitesimal ones do\n",
-                   fmt::join(names_of(state.perturbation->zero), ", "));
+        say("left at force 0          {}: an equilibrium of the finite loads, whatever infinitesimal ones do\n",
+            fmt::format("{}", fmt::join(names_of(state.perturbation->zero), ", ")));
     }
 }
 

@@ -3,6 +3,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
 
@@ -27,6 +28,9 @@ using crafted::Genericity;
 using crafted::GenericitySample;
 
 /// The unperturbed packing: its contacts, and what is known of h and k.
+constexpr const char* genericity_head =
+    "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
+
 struct Original {
     Packing<2> packing;
     std::vector<Contact> contacts;
@@ -192,27 +196,26 @@ void print_row(const Genericity& result, double size) {
         used += fmt::format("{}{} {}", used.empty() ? "" : ", ", rung, count);
     }
     if (result.proved == 0) {
-        fmt::print("{:>8.1e} {:>7} {:>5} {:>9} {:>6}\n", size, 0, result.ties, result.undecided, result.failed);
+        say("{:>8.1e} {:>7} {:>5} {:>9} {:>6}\n", size, 0, result.ties, result.undecided, result.failed);
         return;
     }
-    fmt::print("{:>8.1e} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} "
-               "{:>9.2e} | {}\n",
-               size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
-               result.lists.front().samples, within(result), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
-               force[1], gap[0], gap[1], sigma[0], used);
+    say("{:>8.1e} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} "
+        "{:>9.2e} | {}\n",
+        size, result.proved, result.ties, result.undecided, result.failed, result.lists.size(),
+        result.lists.front().samples, within(result), fmt::format("{}..{}", rattlers[0], rattlers[2]), force[0],
+        force[1], gap[0], gap[1], sigma[0], used);
 }
 
 void print_head(const GenericityArguments& a, const Original& original) {
     const char* bound = original.exact == Verdict::proved ? "=" : "<=";
-    fmt::print("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
-               original.contacts.size(), original.title, bound, original.hyperstaticity, bound, original.mechanisms);
-    fmt::print("radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}\n\n",
-               a.keep_equal ? ", the same u for equal radii" : "",
-               a.tilt ? "; tilt plus size u times the first period" : "", a.samples, a.seed,
-               a.seed + static_cast<std::uint64_t>(a.samples) - 1);
-    fmt::print("{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
-               "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
-               "min gap", "median", "min sigma", "arithmetic");
+    say("{}: {} disks, N = {} ({}), h {} {}, k {} {}\n", a.file, original.packing.disk_count(),
+        original.contacts.size(), original.title, bound, original.hyperstaticity, bound, original.mechanisms);
+    say("radius times 1 + size u, u uniform in [-1, 1){}{}; {} samples, seeds {} to {}\n\n",
+        a.keep_equal ? ", the same u for equal radii" : "", a.tilt ? "; tilt plus size u times the first period" : "",
+        a.samples, a.seed, a.seed + static_cast<std::uint64_t>(a.samples) - 1);
+    say("{:>8} {:>7} {:>5} {:>9} {:>6} | {:>6} {:>7} {:>9} {:>8} | {:>9} {:>9} {:>9} {:>9} {:>9} | {}\n", "size",
+        "h=k=0", "tie", "undecided", "failed", "lists", "largest", "within", "rattlers", "min force", "median",
+        "min gap", "median", "min sigma", "arithmetic");
 }
 
 /// The most frequent contact lists of one size.
@@ -220,8 +223,8 @@ void print_lists(const GenericityArguments& a, const Original& original, const G
     for (std::size_t k = 0; k < result.lists.size() && k < static_cast<std::size_t>(a.lists) &&
                             result.lists[k].samples > std::max(1, a.samples / 20);
          ++k) {
-        fmt::print("size {:.0e}: {} samples {}\n", size, result.lists[k].samples,
-                   list_text(result.lists[k].contacts, original.contacts));
+        say("size {:.0e}: {} samples {}\n", size, result.lists[k].samples,
+            list_text(result.lists[k].contacts, original.contacts));
     }
 }
 
@@ -237,7 +240,7 @@ void print_failures(const Genericity& result, double size) {
         }
     }
     for (const auto& [kind, reason] : reasons) {
-        fmt::print("size {:.0e}: {} times {}, first {}\n", size, reason.first, kind, reason.second);
+        say("size {:.0e}: {} times {}, first {}\n", size, reason.first, kind, reason.second);
     }
 }
 
@@ -263,6 +266,7 @@ Json report(const GenericityArguments& a, const Original& original, Json results
 } // namespace
 
 int genericity(const GenericityArguments& a) {
+    check_output(a.csv, genericity_head, {a.file});
     const Original original = read_original(a.file);
     crafted::GenericityOptions options;
     options.samples = a.samples;
@@ -275,7 +279,7 @@ int genericity(const GenericityArguments& a) {
         print_head(a, original);
     }
     Json results = Json::array();
-    std::string csv = "size,seed,result,h,k,carrying,rattlers,min_force,min_gap,sigma_min,within_original\n";
+    std::string csv = genericity_head;
     std::vector<Genericity> all;
     bool every = true;
     for (const double size : a.sizes) {
@@ -291,11 +295,10 @@ int genericity(const GenericityArguments& a) {
         }
     }
     if (!a.csv.empty()) {
-        write_atomically(a.csv, csv);
+        write_output(a.csv, csv, genericity_head);
     }
     if (text) {
-        fmt::print(
-            "\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 "
+        say("\nh=k=0: proved of the true vertex, with every force > 0 and every other gap > 0; tie: more gaps are 0 "
             "than "
             "N_f, to double-double;\nlists: distinct networks of force-carrying contacts, and samples in the most "
             "frequent; within: the force "

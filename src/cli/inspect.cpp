@@ -2,6 +2,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/face_text.hpp"
+#include "cli/rounding.hpp"
+#include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 
 #include <isostat/certificate/inspect.hpp>
@@ -20,24 +22,22 @@ namespace isostat::cli {
 namespace {
 
 void print_counting(const State<2>& state, const Counting& c) {
-    fmt::print("disks                    {}\n", state.packing.disk_count());
+    say("disks                    {}\n", state.packing.disk_count());
     const bool periodic = state.packing.cell.any();
-    fmt::print("{:<25}{}, solid fraction {:.6f}\n", periodic ? "cell" : "box",
-               periodic ? cell_words(state.packing)
-                        : fmt::format("{} x {}", state.packing.length(0), state.packing.length(1)),
-               state.packing.solid_fraction());
-    fmt::print("load                     sigma = ({}, {}){}, {}\n", state.load.stress[0], state.load.stress[1],
-               state.load.shear[0] != 0 ? fmt::format(", shear {}", state.load.shear[0]) : "",
-               state.load.kind != LoadKind::nominal ? "true stresses"
-               : state.packing.cell.keeps_shape     ? "along y; on the size of the cell, it scales all forces alike"
-               : periodic                           ? "nominal (constant forces on the periods)"
-                                                    : "nominal (constant wall forces)");
-    fmt::print("degrees of freedom N_f   {}\n", c.dof_count);
-    fmt::print("contacts N               {}\n", c.contact_count);
-    fmt::print("rank, stored coordinates {} ({})\n", c.rank,
-               c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
-    fmt::print("self-stresses h          {}\n", c.hyperstaticity);
-    fmt::print("mechanisms k             {}\n", c.mechanisms);
+    say("{:<25}{}, solid fraction {:.6f}\n", periodic ? "cell" : "box",
+        periodic ? cell_words(state.packing) : fmt::format("{} x {}", state.packing.length(0), state.packing.length(1)),
+        state.packing.solid_fraction());
+    say("load                     sigma = ({}, {}){}, {}\n", state.load.stress[0], state.load.stress[1],
+        state.load.shear[0] != 0 ? fmt::format(", shear {}", state.load.shear[0]) : "",
+        state.load.kind != LoadKind::nominal ? "true stresses"
+        : state.packing.cell.keeps_shape     ? "along y; on the size of the cell, it scales all forces alike"
+        : periodic                           ? "nominal (constant forces on the periods)"
+                                             : "nominal (constant wall forces)");
+    say("degrees of freedom N_f   {}\n", c.dof_count);
+    say("contacts N               {}\n", c.contact_count);
+    say("rank, stored coordinates {} ({})\n", c.rank, c.rank_exact == Verdict::proved ? "exact" : "proved lower bound");
+    say("self-stresses h          {}\n", c.hyperstaticity);
+    say("mechanisms k             {}\n", c.mechanisms);
 }
 
 /// The smallest finite force that is no structural zero lies in it.
@@ -56,16 +56,15 @@ void print_forces(const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
     const CertificateClaims& claims = inspection.truth.claims;
     if (claims.load_interval) {
-        fmt::print("supported interval       from {}\n", end_text(claims.load_interval->low));
-        fmt::print("                         to   {}\n", end_text(claims.load_interval->high));
+        say("supported interval       from {}\n", end_text(claims.load_interval->low));
+        say("                         to   {}\n", end_text(claims.load_interval->high));
     } else {
-        fmt::print("supported interval       undecided\n");
+        say("supported interval       undecided\n");
     }
     if (r.backbone > 0) {
         const Interval smallest = smallest_force(inspection);
-        fmt::print("smallest force           {} in {} (every force known to {})\n",
-                   with_bound(smallest.lower, smallest.upper), to_string<2>(r.min_force_contact),
-                   rounded_up(r.force_bound, 2));
+        say("smallest force           {} in {} (every force known to {})\n", with_bound(smallest.lower, smallest.upper),
+            to_string<2>(r.min_force_contact), rounded_up(r.force_bound, 2));
     }
 }
 
@@ -80,27 +79,27 @@ int carrying_count(const Inspection<2>& inspection) {
 
 void print_inspection(const Inspection<2>& inspection) {
     const EquilibriumRecord<2>& r = inspection.record;
-    fmt::print("rattlers                 {}\n", inspection.rattlers.size());
-    fmt::print("force-carrying contacts  {}\n", carrying_count(inspection));
+    say("rattlers                 {}\n", inspection.rattlers.size());
+    say("force-carrying contacts  {}\n", carrying_count(inspection));
     if (inspection.equilibrium) {
         print_forces(inspection);
     }
     if (inspection.truth.claims.gaps) {
-        fmt::print("smallest gap             {}\n",
-                   !std::isfinite(r.min_gap)
-                       ? "there is no other pair"
-                       : fmt::format("at least {} ({})", rounded_down(r.min_gap, 6),
-                                     r.min_gap_contact.i < 0 ? "no other pair is near"
-                                                             : "nearest: " + to_string<2>(r.min_gap_contact)));
+        say("smallest gap             {}\n",
+            !std::isfinite(r.min_gap)
+                ? "there is no other pair"
+                : fmt::format("at least {} ({})", rounded_down(r.min_gap, 6),
+                              r.min_gap_contact.i < 0 ? "no other pair is near"
+                                                      : "nearest: " + to_string<2>(r.min_gap_contact)));
     }
     if (inspection.truth.claims.vertex) {
-        fmt::print("largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
-        fmt::print("smallest singular value  at least {}\n", rounded_down(r.sigma_min_bound, 3));
-        fmt::print("decided by               {}\n", to_string(r.decided_by));
+        say("largest gap of a contact at most {}\n", rounded_up(r.gap_residual, 2));
+        say("smallest singular value  at least {}\n", rounded_down(r.sigma_min_bound, 3));
+        say("decided by               {}\n", to_string(r.decided_by));
     }
-    fmt::print("isostatic equilibrium    {}{}{}\n", to_string(r.verdict), inspection.remark.empty() ? "" : ": ",
-               inspection.remark);
-    fmt::print("stable                   {}\n", to_string(inspection.stable));
+    say("isostatic equilibrium    {}{}{}\n", to_string(r.verdict), inspection.remark.empty() ? "" : ": ",
+        inspection.remark);
+    say("stable                   {}\n", to_string(inspection.stable));
 }
 
 Json counting_json(const std::string& file, const State<2>& state, const Counting& c) {
@@ -170,8 +169,8 @@ void add_inspection(Json& object, const Inspection<2>& inspection) {
 /// The forces one by one, when a load was asked for.
 void print_forces_at(const InspectArguments& arguments, const State<2>& state, const Certification& truth) {
     for (std::size_t l = 0; arguments.at && l < truth.finite.size(); ++l) {
-        fmt::print("force {:<18} {}\n", to_string<2>(state.contacts[l]),
-                   with_bound(truth.finite[l].lower, truth.finite[l].upper));
+        say("force {:<18} {}\n", to_string<2>(state.contacts[l]),
+            with_bound(truth.finite[l].lower, truth.finite[l].upper));
     }
 }
 
@@ -198,9 +197,16 @@ int inspect(const InspectArguments& arguments) {
         state.load.loaded_stress() = *arguments.at;
         file.forces.clear(); // of another load
     }
-    const Result<Inspection<2>> result = inspect_vertex(state);
+    Result<Inspection<2>> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
-    const auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
+    auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
+    const Untold untold = untold_by(imported_rounding(state), state, truth);
+    if (result.ok()) {
+        withhold(untold, result.value());
+    }
+    if (cell) {
+        withhold(untold, *cell);
+    }
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
         Json object = counting_json(arguments.file, state, truth.counting);
@@ -210,6 +216,7 @@ int inspect(const InspectArguments& arguments) {
             object["verdict"] = refuted ? "refuted" : "undecided";
             object["remark"] = result.failure().message();
         }
+        add_untold(object, untold, truth.verdict);
         object["true_configuration"] = true_vertex_json(truth);
         object["forces"] = forces_json(state, truth);
         if (cell) {
@@ -223,8 +230,7 @@ int inspect(const InspectArguments& arguments) {
         if (result.ok()) {
             print_inspection(result.value());
         } else {
-            fmt::print("isostatic equilibrium    {}: {}\n", refuted ? "refuted" : "undecided",
-                       result.failure().message());
+            say("isostatic equilibrium    {}: {}\n", refuted ? "refuted" : "undecided", result.failure().message());
         }
         print_true_vertex(truth);
         if (cell) {

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/terminal.hpp"
 #include "crafted/enclosed_bases.hpp"
 
 #include <isostat/core/error.hpp>
@@ -49,21 +50,19 @@ std::vector<std::size_t> visible(const crafted::EnclosedVector& vector) {
 void print_enclosed(const crafted::ExactPacking& packing, const crafted::Inspection& inspection) {
     const crafted::EnclosedBases bases = crafted::enclose_bases(packing, inspection, vectors_in_text);
     if (bases.verdict != Verdict::proved) {
-        fmt::print("bases                  too large to be exact, and no enclosure was proved\n");
+        say("bases                  too large to be exact, and no enclosure was proved\n");
         return;
     }
     const auto print = [](const char* kind, const std::vector<crafted::EnclosedVector>& vectors,
                           const std::vector<std::string>& names, std::size_t count) {
         for (std::size_t v = 0; v < vectors.size(); ++v) {
-            fmt::print("{} {} of {}: every component within {:.1e}, those beyond it:", kind, v + 1, count,
-                       vectors[v].radius);
+            say("{} {} of {}: every component within {:.1e}, those beyond it:", kind, v + 1, count, vectors[v].radius);
             const auto components = visible(vectors[v]);
             for (std::size_t k = 0; k < components.size() && k < longest; ++k) {
-                fmt::print(" {}: {:.12g}{}", names[components[k]], vectors[v].value[components[k]],
-                           k + 1 < components.size() ? "," : "");
+                say(" {}: {:.12g}{}", names[components[k]], vectors[v].value[components[k]],
+                    k + 1 < components.size() ? "," : "");
             }
-            fmt::print("{}\n",
-                       components.size() > longest ? fmt::format(" and {} more", components.size() - longest) : "");
+            say("{}\n", components.size() > longest ? fmt::format(" and {} more", components.size() - longest) : "");
         }
     };
     print("self-stress", bases.self_stresses, contact_names(inspection), bases.free_contacts.size());
@@ -106,14 +105,14 @@ int inspect_packing(const InspectArguments& arguments) {
         }
         print_json(out);
     } else {
-        fmt::print("{}\n", crafted::to_text(inspection, file.packing));
+        say_lines(crafted::to_text(inspection, file.packing) + "\n");
         if (inspection.bases_exact != Verdict::proved) {
             print_enclosed(file.packing, inspection);
         }
     }
     const std::vector<std::string> differences = crafted::check_expected(inspection, file, arguments.file);
     for (const std::string& difference : differences) {
-        fmt::print(stderr, "{}\n", difference);
+        say(stderr, "{}\n", difference);
     }
     if (!differences.empty()) {
         return failed;

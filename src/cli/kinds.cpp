@@ -28,8 +28,7 @@ struct Kind {
 const Kind scene{"a scene, which says what to compute", {"run", "plan", "prepare", "ensemble"}};
 const Kind packing{"a crafted packing", {"inspect", "import", "genericity", "plateau", "snap"}};
 const Kind series{"the manifest of a series", {"compare"}};
-const Kind state{"a state",
-                 {"inspect", "certify", "report", "export", "convert", "snap", "plateau", "genericity", "import"}};
+const Kind state{"a state", {"inspect", "certify", "report", "export", "snap", "plateau", "genericity", "import"}};
 const Kind dump{"a LAMMPS dump", {"plateau", "import", "snap"}};
 const Kind data{"a LAMMPS data file", {"plateau", "import", "snap"}};
 const Kind xyz{"extended XYZ", {"plateau", "import", "snap"}};
@@ -101,7 +100,7 @@ std::string other_use(const std::string& command, const fs::path& file) {
     if (kind == nullptr || std::find(kind->commands.begin(), kind->commands.end(), command) != kind->commands.end()) {
         return "";
     }
-    return fmt::format("\n{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,
+    return fmt::format("{} is {}: for isostat {}, not for {}{}", file.string(), kind->words,
                        fmt::join(kind->commands, ", "), command,
                        kind == &state && command == "run" ? "; a scene with [packing] file = ... runs it" : "");
 }

@@ -3,13 +3,18 @@
 #include "cli/interrupt.hpp"
 #include "cli/kinds.hpp"
 #include "cli/manual.hpp"
+#include "cli/ranges.hpp"
+#include "cli/terminal.hpp"
 #include "core/memory.hpp"
+#include "core/text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -18,22 +23,14 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <iostream>
 #include <new>
 #include <numeric>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace {
-
-/// CLI11's own names the largest double in three hundred digits.
-const CLI::Validator positive(
-    [](const std::string& text) {
-        double value = 0;
-        return CLI::detail::lexical_cast(text, value) && value > 0 ? "" : "is " + text + ": expected a positive number";
-    },
-    "> 0");
 
 using namespace isostat::cli;
 
@@ -41,13 +38,7 @@ using namespace isostat::cli;
 std::string quoted(int argc, char** argv) {
     std::string line;
     for (int k = 0; k < argc; ++k) {
-        const std::string word = argv[k]; // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-        const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$`!*?[](){}<>|&;#~") == std::string::npos;
-        std::string safe = word;
-        for (std::size_t at = safe.find('\''); at != std::string::npos; at = safe.find('\'', at + 4)) {
-            safe.replace(at, 1, "'\\''");
-        }
-        line += (k == 0 ? "" : " ") + (plain ? word : "'" + safe + "'");
+        line += (k == 0 ? "" : " ") + isostat::text::shell(argv[k]); // NOLINT(*-pointer-arithmetic)
     }
     return line;
 }
@@ -57,7 +48,7 @@ void add_threads(CLI::App& command, Common& common) {
         .add_option("--threads", common.threads,
                     "cores for independent work (default: all that this process may use); results have the same bits "
                     "for any number")
-        ->check(CLI::Range(1, 1024))
+        ->check(ranges::integer(1, 1024))
         ->type_name("N");
 }
 
@@ -72,7 +63,6 @@ struct Program {
     CertifyArguments certify_arguments;
     PlanArguments plan_arguments;
     ReportArguments report_arguments;
-    ConvertArguments convert_arguments;
     VerifyArguments verify_arguments;
     PlateauArguments plateau_arguments;
     GenericityArguments genericity_arguments;
@@ -101,7 +91,6 @@ struct Program {
         add_certify();
         add_plan();
         add_report();
-        add_convert();
         add_import();
         add_export();
         add_snap();
@@ -167,7 +156,8 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
-        command.add_flag("--force", a.force, "delete the run that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")
+            ->excludes(resume);
         add_threads(command, a.common);
         does(command, a, run, true);
     }
@@ -190,15 +180,18 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-S,--samples", a.samples, "number of samples")
             ->required()
-            ->check(CLI::Range(1, 1'000'000))
+            ->check(ranges::integer(1, most_samples))
             ->type_name("S");
         command.add_option("-o,--output", a.output, "folder of the ensemble")->required()->type_name("DIR");
         command.add_option("-j,--jobs", a.jobs, "samples at a time (default: one per core; under mpirun one per rank)")
-            ->check(CLI::Range(1, 10'000))
+            ->check(ranges::integer(1, 10'000))
             ->type_name("J");
-        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")->type_name("SEED");
+        command.add_option("--first-seed", a.first_seed, "seed of the first sample (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed))
+            ->type_name("SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
-        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")
+            ->excludes(resume);
         does(command, a, ensemble, true);
     }
 
@@ -215,6 +208,7 @@ struct Program {
                 "          isostat inspect examples/packings/triangular_patch_3x3.toml");
         command.add_option("file", a.file, "state file, or vertex text")->required()->type_name("FILE");
         command.add_option("--at", a.at, "under this sigma_2 instead of that of the state; prints every force")
+            ->check(ranges::number(-ranges::largest, ranges::largest))
             ->type_name("SIGMA2");
         add_threads(command, a.common);
         does(command, a, inspect, false);
@@ -269,18 +263,9 @@ struct Program {
             .add_option("--stiffness", a.stiffness,
                         "of a run: also where grains of this stiffness (force / overlap) would leave each structure, "
                         "predicted: soft_limits.csv")
-            ->check(positive)
+            ->check(ranges::number(ranges::smallest, ranges::largest))
             ->type_name("K");
         does(command, a, report, true);
-    }
-
-    void add_convert() {
-        ConvertArguments& a = convert_arguments;
-        CLI::App& command = add("convert", "vertex text (or a state file) -> state file",
-                                "Example: isostat convert tests/data/vertex100.txt -o start.json");
-        command.add_option("input", a.input, "vertex text or state file")->required()->type_name("FILE");
-        command.add_option("-o,--output", a.output, "state file to write")->required()->type_name("STATE.json");
-        does(command, a, convert, false);
     }
 
     void add_verify() {
@@ -361,8 +346,13 @@ struct Program {
             "thresholds is proved isostatic, at a threshold, or by the forces of a LAMMPS dump of style local or a "
             "table. A "
             "crafted packing (TOML) is\n"
-            "rounded to doubles and keeps its contacts and its load. With --jitter a state is taken as well.\n"
+            "rounded to doubles and keeps its contacts and its load; a vertex text keeps them too. With --jitter a "
+            "state is taken as well.\n"
             "In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.\n"
+            "Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so "
+            "that "
+            "they may be 0 in its\n"
+            "packing, they are named and the answer is undecided, here and when inspect or certify read the state.\n"
             "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
             "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
             "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
@@ -379,16 +369,19 @@ struct Program {
         command.add_option("--contact-columns", a.contact_columns, "columns of that file: two ids and the force")
             ->type_name("I,J,FORCE");
         command.add_option("--threshold", a.threshold, "pairs with this gap or less are the contacts")
+            ->check(ranges::number(-ranges::largest, ranges::largest))
             ->excludes(contacts);
         command.add_option("--stress", a.stress, "sigma_1 and sigma_2 (default 1,1, or those of a state)")
             ->type_name("S1,S2");
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
-        command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)");
+        command.add_option("--seed", a.seed, "of the infinitesimal loads and of the jitter (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed));
         command.add_option("--jitter", a.jitter, "radii R_i (1 + jitter rho_i), rho_i in [-1, 1) at random")
-            ->check(CLI::Range(0.0, 0.1));
+            ->check(ranges::number(0, 0.1));
         command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
             ->type_name("FILE.csv");
+        command.add_flag("--far", a.far, "disks with a force may move by more than their radius");
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
@@ -424,13 +417,19 @@ struct Program {
         command.add_option("--load", a.load, "nominal: dead wall forces; true: stress x present length")
             ->check(CLI::IsMember({"nominal", "true"}));
         command
+            .add_option("--reference-length", a.reference_length,
+                        "lengths that nominal stresses press on (default: those of the frame; a series has those of "
+                        "its first frame)")
+            ->type_name("L1,L2");
+        command
             .add_option("--stiffness", a.stiffness,
                         "force / overlap: forces that the file does not say are compared with the exact ones too")
             ->type_name("K")
-            ->check(positive);
+            ->check(ranges::number(ranges::smallest, ranges::largest));
         command.add_flag("--exchange", a.exchange,
                          "where the list has no vertex: the one downhill, which need not be the only one near");
-        command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)");
+        command.add_option("--seed", a.seed, "of the infinitesimal loads (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed));
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
@@ -463,7 +462,7 @@ struct Program {
             .add_option(
                 "--bundle", a.bundle,
                 "exact runs from the start: other rules of opening, rattlers that rest elsewhere (default 16; 0: none)")
-            ->check(CLI::Range(0, 10000));
+            ->check(ranges::integer(0, 10'000));
         command.add_flag(
             "--local", a.local,
             "besides, the exact run from every frame to the next one: a score that a departure does not spoil");
@@ -513,13 +512,17 @@ struct Program {
                         "periods move")
             ->required()
             ->type_name("FILE");
-        command.add_option("--samples", a.samples, "samples per size (default 100)");
+        command.add_option("--samples", a.samples, "samples per size (default 100)")
+            ->check(ranges::integer(1, 1'000'000'000));
         command.add_option("--size", a.sizes, "largest relative change of a radius; several: 1e-2,1e-6 (default 1e-6)")
-            ->delimiter(',');
-        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)");
-        command.add_option("--stress", a.stress, "isotropic stress (default 1)");
+            ->delimiter(',')
+            ->check(ranges::number(0, 1));
+        command.add_option("--seed", a.seed, "sample s uses seed + s (default 1)")
+            ->check(ranges::integer(0, ranges::largest_seed));
+        command.add_option("--stress", a.stress, "isotropic stress (default 1)")
+            ->check(ranges::number(ranges::smallest, ranges::largest));
         command.add_option("--lists", a.lists, "frequent contact lists to show (default 10)")
-            ->check(CLI::NonNegativeNumber);
+            ->check(ranges::integer(0, 1'000'000'000));
         command.add_flag("--keep-equal", a.keep_equal, "disks of equal radius stay equal");
         command.add_flag("--tilt", a.tilt, "perturb the tilt of the cell too, by size u times its first period");
         command.add_option("--csv", a.csv, "write one row per sample to this file")->type_name("FILE.csv");
@@ -537,8 +540,11 @@ struct Program {
             "are compared exactly,\n"
             "for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is "
             "isostatic are proved at\n"
-            "every threshold, not only at those of the table.\n"
-            "Exit status 0: isostatic at some threshold, proved; 1: at none; 2: undecided.\n"
+            "every threshold, not only at those of the table. The answer is that of the widest range on a logarithmic "
+            "scale; thresholds\n"
+            "between gaps that the digits of the file do not tell apart do not count.\n"
+            "Exit status 0: the widest range is isostatic, proved; 1: it is not; 2: undecided, or no range is wider "
+            "than the digits tell.\n"
             "Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box\n"
             "          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1");
         command.add_option("file", a.file, "packing")->required()->type_name("FILE");
@@ -548,7 +554,7 @@ struct Program {
                         "overlap to a tenth of the smallest radius)")
             ->type_name("A:B");
         command.add_option("--rows", a.rows, "rows of the table; 0: every change of the contact list")
-            ->check(CLI::NonNegativeNumber);
+            ->check(ranges::integer(0, 1'000'000'000));
         command.add_option("--csv", a.csv, "write the table to this file")->type_name("FILE.csv");
         command
             .add_option("--cell", a.strain,
@@ -599,9 +605,22 @@ std::string use_of_input(const CLI::App& app) {
     return files.empty() ? "" : other_use(command.get_name(), files.front()->results().front());
 }
 
-int complain(isostat::ErrorKind kind, const std::string& message) {
-    std::cerr << "isostat: " << message << '\n';
+/// `use` stands on a line of its own.
+int complain(isostat::ErrorKind kind, const std::string& message, const std::string& use = "") {
+    say(stderr, "isostat: {}\n", message);
+    if (!use.empty()) {
+        say(stderr, "{}\n", use);
+    }
     return isostat::Error(kind, "").exit_status();
+}
+
+/// What CLI11 prints: the help that was asked for, or what is wrong with the command line.
+int explain(const CLI::App& app, const CLI::ParseError& error) {
+    std::ostringstream help, trouble;
+    const int status = app.exit(error, help, trouble);
+    say_lines(help.str());
+    say_lines(trouble.str(), stderr);
+    return status == 0 ? done : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
 }
 
 int run_program(int argc, char** argv) {
@@ -613,7 +632,7 @@ int run_program(int argc, char** argv) {
     try {
         program.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return program.app.exit(error) == 0 ? done : isostat::Error(isostat::ErrorKind::usage, "").exit_status();
+        return explain(program.app, error);
     }
     isostat::require_floating_point();
     ignore_file_size_signals();
@@ -623,7 +642,7 @@ int run_program(int argc, char** argv) {
         if (error.kind() != isostat::ErrorKind::bad_input) {
             throw;
         }
-        throw isostat::Error(error.kind(), error.what() + use_of_input(program.app));
+        return complain(error.kind(), error.what(), use_of_input(program.app));
     }
 }
 
@@ -640,7 +659,7 @@ int answered(const std::function<int()>& work) {
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(ErrorKind::cannot_write, error.what());
     } catch (const std::exception& error) {
-        if (std::ferror(stdout) != 0) { // fmt::print says what the system said
+        if (std::ferror(stdout) != 0) { // `say` tells what the system said
             return complain(ErrorKind::cannot_write, std::string("standard output: ") + error.what());
         }
         return complain(ErrorKind::internal, std::string("unexpected failure: ") + error.what());
@@ -649,10 +668,19 @@ int answered(const std::function<int()>& work) {
     }
 }
 
+/// A file that is opened later must not become what the program prints to.
+void open_standard_descriptors() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(descriptor, F_GETFD) < 0) { // NOLINT(cppcoreguidelines-pro-type-vararg)
+            (void)::open("/dev/null", O_RDWR);  // NOLINT(cppcoreguidelines-pro-type-vararg): it gets the lowest number
+        }
+    }
+}
+
 /// An answer that did not get out is none.
 int delivered(int status) {
     errno = 0;
-    const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.flush().good();
+    const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
     const int error = errno;
     const int failure = isostat::Error(isostat::ErrorKind::cannot_write, "").exit_status();
     if (written || status == failure) {
@@ -665,6 +693,7 @@ int delivered(int status) {
 } // namespace
 
 int main(int argc, char** argv) {
+    open_standard_descriptors();
     isostat::keep_freed_memory();
     isostat::say_when_memory_ends();
     const int status = delivered(answered([&] { return run_program(argc, argv); }));

@@ -1,5 +1,7 @@
 #include "cli/manual.hpp"
 
+#include "core/text.hpp"
+
 #include <fmt/format.h>
 
 #include <vector>
@@ -7,20 +9,6 @@
 namespace isostat::cli {
 
 namespace {
-
-/// Text that man shows as it is.
-std::string escaped(const std::string& text) {
-    std::string safe;
-    bool begins = true; // of a line: "." and "'" would be macros
-    for (const char c : text) {
-        if (begins && (c == '.' || c == '\'')) {
-            safe += "\\&";
-        }
-        safe += c == '\\' ? "\\e" : c == '-' ? "\\-" : std::string(1, c);
-        begins = c == '\n';
-    }
-    return safe;
-}
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App*) { return true; });
@@ -56,21 +44,21 @@ std::string options_text(const CLI::App& app) {
     std::string text;
     for (const CLI::Option* option : options_of(app)) {
         const bool takes = option->get_items_expected_max() > 0;
-        text += fmt::format(".TP\n\\fB{}\\fR{}\n{}{}\n", escaped(name_of(*option)),
-                            takes ? " \\fI" + escaped(type_of(*option)) + "\\fR" : "",
-                            escaped(option->get_description()), option->get_required() ? " (needed)" : "");
+        text += fmt::format(".TP\n\\fB{}\\fR{}\n{}{}\n", text::man(name_of(*option)),
+                            takes ? " \\fI" + text::man(type_of(*option)) + "\\fR" : "",
+                            text::man(option->get_description()), option->get_required() ? " (needed)" : "");
     }
     return text;
 }
 
 std::string synopsis(const CLI::App& command) {
-    std::string text = fmt::format("\\fBisostat {}\\fR", escaped(command.get_name()));
+    std::string text = fmt::format("\\fBisostat {}\\fR", text::man(command.get_name()));
     bool optional = false;
     for (const CLI::Option* option : options_of(command)) {
         if (option->get_positional()) {
-            text += fmt::format(" \\fI{}\\fR", escaped(type_of(*option)));
+            text += fmt::format(" \\fI{}\\fR", text::man(type_of(*option)));
         } else if (option->get_required()) {
-            text += fmt::format(" \\fB{}\\fR \\fI{}\\fR", escaped(name_of(*option)), escaped(type_of(*option)));
+            text += fmt::format(" \\fB{}\\fR \\fI{}\\fR", text::man(name_of(*option)), text::man(type_of(*option)));
         } else {
             optional = true;
         }
@@ -82,15 +70,15 @@ std::string synopsis(const CLI::App& command) {
 
 std::string man_page(const CLI::App& app, const std::string& version) {
     std::string text = fmt::format(".TH ISOSTAT 1 \"\" \"{}\" \"User Commands\"\n.SH NAME\nisostat \\- {}\n", version,
-                                   escaped(app.get_description()));
+                                   text::man(app.get_description()));
     text += ".SH SYNOPSIS\n\\fBisostat\\fR \\fICOMMAND\\fR [options]\n.SH OPTIONS\n" + options_text(app);
     text += ".SH COMMANDS\n";
     for (const CLI::App* command : commands_of(app)) {
-        text += fmt::format(".SS {0}\n{1}.PP\n{2}.\n.PP\n.nf\n{3}\n.fi\n{4}", escaped(command->get_name()),
-                            synopsis(*command), escaped(command->get_description()), escaped(command->get_footer()),
+        text += fmt::format(".SS {0}\n{1}.PP\n{2}.\n.PP\n.nf\n{3}\n.fi\n{4}", text::man(command->get_name()),
+                            synopsis(*command), text::man(command->get_description()), text::man(command->get_footer()),
                             options_text(*command));
     }
-    return text + fmt::format(".SH EXIT STATUS\n.nf\n{}\n.fi\n", escaped(app.get_footer()));
+    return text + fmt::format(".SH EXIT STATUS\n.nf\n{}\n.fi\n", text::man(app.get_footer()));
 }
 
 std::string bash_completion(const CLI::App& app) {

@@ -1,13 +1,13 @@
 #include "cli/members.hpp"
 
+#include "cli/commands.hpp"
+#include "cli/ranges.hpp"
 #include "ensemble/ensemble.hpp"
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 
 #include <isostat/core/error.hpp>
-
-#include <charconv>
-#include <limits>
 
 namespace isostat::cli {
 
@@ -19,21 +19,27 @@ bool is_ensemble(const fs::path& directory) {
 
 std::vector<Member> members_of(const fs::path& directory) {
     const std::string path = (directory / "ensemble.json").string();
+    (void)content_of(directory, ensemble_folder);
+    check_mark(directory, ensemble_folder);
     const json::Json parsed = json::Field::parse(read_text(path), path);
     const json::Field file(parsed, path);
     EnsembleHeader header;
-    constexpr int most = std::numeric_limits<int>::max();
-    header.samples = file.at("samples").integer(1, most);
-    const std::string& seed = file.at("first_seed").string();
-    const auto [stop, error] = std::from_chars(seed.data(), seed.data() + seed.size(), header.first_seed);
-    if (error != std::errc() || stop != seed.data() + seed.size()) {
+    header.samples = file.at("samples").integer(1, most_samples);
+    const auto seed = ranges::integer_in(file.at("first_seed").string(), 0, ranges::largest_seed);
+    if (!seed) {
         file.at("first_seed").fail("a seed");
     }
+    header.first_seed = static_cast<std::uint64_t>(*seed);
     const SampleFolders folders(directory, header);
     std::vector<Member> members;
     for (std::size_t k = 0; k < static_cast<std::size_t>(header.samples); ++k) {
         const fs::path folder = folders.folder(k);
-        members.push_back({folders.seed(k), folder, fs::exists(folder / "run.json")});
+        const bool begun = fs::exists(folder / run_folder.mark);
+        if (begun || members.empty() || members.back().begun) {
+            members.push_back({folders.seed(k), folder, begun});
+        } else {
+            ++members.back().further;
+        }
     }
     return members;
 }

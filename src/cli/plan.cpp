@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -34,10 +35,10 @@ void print_settings(const Scene& scene) {
         const bool new_step = setting.section == "[programme]" && setting.key == "do";
         if (setting.section != section || new_step) {
             section = setting.section;
-            fmt::print("\n[{}]\n", section);
+            say("\n[{}]\n", section);
         }
         const std::string assignment = fmt::format("{} = {}", setting.key, setting.value);
-        fmt::print("{:<44} # {}\n", assignment, setting.line > 0 ? fmt::format("line {}", setting.line) : "default");
+        say("{:<44} # {}\n", assignment, setting.line > 0 ? fmt::format("line {}", setting.line) : "default");
     }
 }
 
@@ -54,20 +55,22 @@ int plan(const PlanArguments& arguments) {
     }
     const std::vector<PlanEntry> entries = make_plan(scene);
     for (const bool used : {true, false}) {
-        fmt::print("{}# {}\n", used ? "" : "#\n", used ? "used:" : "left out:");
+        say("# {}\n", used ? "used:" : "left out:");
         for (const PlanEntry& entry : entries) {
             if (entry.used == used) {
-                fmt::print("#   {:<7} {}: {}\n", entry.kind, entry.name, entry.reason);
+                say("#   {:<7} {}: {}\n", entry.kind, entry.name, entry.reason);
             }
         }
+        say("#\n");
     }
     if (!scene.programme.empty()) {
-        fmt::print("#\n# programme:\n");
+        say("# programme:\n");
         for (std::size_t s = 0; s < scene.programme.size(); ++s) {
-            fmt::print("#   {}. {}\n", s + 1, describe(scene.programme[s]));
+            say("#   {}. {}\n", s + 1, describe(scene.programme[s]));
         }
+        say("#\n");
     }
-    fmt::print("#\n# {} with every default:\n", scene.file);
+    say("# {} with every default:\n", scene.file);
     print_settings(scene);
     return done;
 }

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/terminal.hpp"
 #include "io/files.hpp"
 
 #include <isostat/core/error.hpp>
@@ -14,11 +15,11 @@ namespace isostat::cli {
 
 namespace {
 
-/// A long computation must not end in a file that cannot be written: tries to make one beside it first.
-void check_writable(const std::filesystem::path& output) {
-    const std::filesystem::path trial = output.string() + ".trial";
-    write_atomically(trial, "\n");
-    std::filesystem::remove(trial);
+/// A long computation must not end in a file that cannot be written: asks, and tries to make one beside it first.
+void check_writable(const PrepareArguments& a) {
+    check_output(a.output, "\"isostat-state\"", {a.scene});
+    check_output(a.output + ".failed.json", "\"isostat-packing\"", {a.scene});
+    check_directory_of(a.output);
 }
 
 } // namespace
@@ -32,11 +33,11 @@ int prepare(const PrepareArguments& arguments) {
                                 "radii_file",
                                 arguments.scene, scene.start.string()));
     }
-    check_writable(arguments.output);
+    check_writable(arguments);
     const bool quiet = arguments.common.quiet || arguments.common.json;
     const auto prepared = prepare_start(scene, arguments.common.command, quiet, arguments.output + ".failed.json");
     if (!prepared.ok()) {
-        fmt::print(stderr, "isostat: {}\n", prepared.failure().message());
+        say(stderr, "isostat: {}\n", prepared.failure().message());
         if (arguments.common.json) {
             print_json(Json{{"status", to_string(prepared.failure().kind)}, {"reason", prepared.failure().message()}});
         }
@@ -54,8 +55,8 @@ int prepare(const PrepareArguments& arguments) {
         object["solid_fraction"] = number(state.packing.solid_fraction());
         print_json(object);
     } else if (!quiet) {
-        fmt::print("{}: {} disks, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),
-                   state.contacts.size(), state.packing.solid_fraction());
+        say("{}: {} disks, {} contacts, solid fraction {:.6f}\n", arguments.output, state.packing.disk_count(),
+            state.contacts.size(), state.packing.solid_fraction());
     }
     return done;
 }

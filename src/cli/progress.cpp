@@ -1,5 +1,7 @@
 #include "cli/progress.hpp"
 
+#include "cli/terminal.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -20,13 +22,13 @@ void StatusLine::show(const std::string& text) {
     }
     last_ = now;
     shown_ = true;
-    fmt::print(stderr, "\r{:<{}}", text.substr(0, width), width);
+    say(stderr, "\r{:<{}}", text.substr(0, width), width);
     std::fflush(stderr);
 }
 
 void StatusLine::clear() {
     if (shown_) {
-        fmt::print(stderr, "\r\033[K");
+        say(stderr, "\r\033[K");
         std::fflush(stderr);
         shown_ = false;
     }
@@ -55,11 +57,10 @@ void RunTable::on_segment(int number, const Segment& /*goal*/, int made, const S
     line_.clear();
     if (!header_shown_) {
         header_shown_ = true;
-        fmt::print("{:>7} {:>13} {:>12} {:>6} {:>2} {:>8} {:<13} {:>8} {:>8}\n", "equil", from.load.ratio_name(),
-                   from.load.strain_name(), "arcs", "h", "margin", "precision", "elapsed", "rest");
+        say("{:>7} {:>13} {:>12} {:>6} {:>2} {:>8} {:<13} {:>8} {:>8}\n", "equil", from.load.ratio_name(),
+            from.load.strain_name(), "arcs", "h", "margin", "precision", "elapsed", "rest");
     }
-    fmt::print("segment {} of {}: {}\n", number + 1, programme_.size(),
-               programme_[static_cast<std::size_t>(number)].name);
+    say("segment {} of {}: {}\n", number + 1, programme_.size(), programme_[static_cast<std::size_t>(number)].name);
     std::fflush(stdout);
 }
 
@@ -106,9 +107,9 @@ void RunTable::on_equilibrium(const EquilibriumRecord<2>& record, const State<2>
     const double ratio = record.stress / record.sigma1;
     const double rest = here_ == 0 ? NAN : elapsed / here_ * remaining(ratio);
     line_.clear();
-    fmt::print("{:>7} {:>13.9f} {:>12.5e} {:>6} {:>2} {:>8.1e} {:<13} {:>8} {:>8}\n", record.number, ratio,
-               record.strain[static_cast<std::size_t>(state.load.loaded_axis)], record.arcs, record.hyperstaticity,
-               record.margin, to_string(record.decided_by), clock_text(record.seconds), clock_text(rest));
+    say("{:>7} {:>13.9f} {:>12.5e} {:>6} {:>2} {:>8.1e} {:<13} {:>8} {:>8}\n", record.number, ratio,
+        record.strain[static_cast<std::size_t>(state.load.loaded_axis)], record.arcs, record.hyperstaticity,
+        record.margin, to_string(record.decided_by), clock_text(record.seconds), clock_text(rest));
     std::fflush(stdout);
 }
 

@@ -1,5 +1,8 @@
 #include "cli/read_packing.hpp"
 
+#include "cli/ranges.hpp"
+#include "cli/rounding.hpp"
+#include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
 
@@ -10,7 +13,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -18,27 +21,10 @@ namespace isostat::cli {
 
 namespace {
 
-std::optional<double> number_in(const std::string& text) {
-    double value = 0;
-    const char* const end = text.data() + text.size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && stop == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
+constexpr std::int64_t most_frames = 1'000'000'000'000'000;
 
 [[noreturn]] void usage(const std::string& option, const std::string& value, const std::string& expected) {
     throw Error(ErrorKind::usage, fmt::format("{} is '{}': expected {}", option, value, expected));
-}
-
-std::vector<std::string> split(const std::string& text, char at) {
-    std::vector<std::string> out(1);
-    for (const char c : text) {
-        if (c == at) {
-            out.emplace_back();
-        } else {
-            out.back() += c;
-        }
-    }
-    return out;
 }
 
 ForeignOptions options_of(const ForeignArguments& a) {
@@ -53,7 +39,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
         const std::string& text = radius ? a.radius : a.diameter;
         SizeStatement size;
         size.meaning = radius ? SizeMeaning::radius : SizeMeaning::diameter;
-        if (const auto value = number_in(text)) {
+        if (const auto value = ranges::number_in(text)) {
             if (!(*value > 0)) {
                 usage(radius ? "--radius" : "--diameter", text, "a positive number or the name of a column");
             }
@@ -65,7 +51,7 @@ ForeignOptions options_of(const ForeignArguments& a) {
     }
     out.walls = a.walls == "box" ? ForeignWalls::box : (a.walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::none);
     if (!a.box.empty()) {
-        const auto axes = split(a.box, ',');
+        const auto axes = parse_list(a.box);
         if (axes.size() != 2) {
             usage("--box", a.box, "XLO:XHI,YLO:YHI");
         }
@@ -76,17 +62,16 @@ ForeignOptions options_of(const ForeignArguments& a) {
         }
     }
     if (a.frame != "last") {
-        const auto frame = number_in(a.frame);
-        if (!frame || *frame < 0 || *frame != std::floor(*frame) || *frame > 1e15) {
-            usage("--frame", a.frame, "a number from 0, or last");
+        out.frame = ranges::integer_in(a.frame, 0, most_frames);
+        if (!out.frame) {
+            usage("--frame", a.frame, "an integer from 0, or last");
         }
-        out.frame = static_cast<long>(*frame);
     }
     if (!a.columns.empty()) {
-        out.columns = split(a.columns, ',');
+        out.columns = parse_list(a.columns);
     }
     if (!a.select.empty()) {
-        const auto words = split(a.select, '=');
+        const auto words = parse_list(a.select, '=');
         if (words.size() != 2 || words[0].empty() || words[1].empty()) {
             usage("--select", a.select, "COLUMN=VALUE, for instance type=1");
         }
@@ -99,15 +84,46 @@ ForeignOptions options_of(const ForeignArguments& a) {
     return out;
 }
 
+/// What the digits of --box, --radius and --diameter leave open of a gap.
+double rounding_of(const ForeignArguments& a) {
+    Digits sides, sizes;
+    for (const std::string& axis : parse_list(a.box)) {
+        for (const std::string& side : parse_list(axis, ':')) {
+            sides.see(side);
+        }
+    }
+    sizes.see(a.radius);
+    sizes.see(a.diameter);
+    return rounding_of_gaps(0, sides.rounding(), a.radius.empty() ? sizes.rounding() / 2 : sizes.rounding());
+}
+
+/// What the doubles of a file of this program leave open of a gap.
+double rounding_of(const Packing<2>& packing) {
+    double largest = packing.max_radius();
+    for (const double x : packing.q) {
+        largest = std::max(largest, std::abs(x));
+    }
+    const double rounding = 0x1p-53 * largest;
+    return rounding_of_gaps(rounding, rounding, rounding);
+}
+
 } // namespace
 
-std::vector<std::string> parse_list(const std::string& text) {
-    return split(text, ',');
+std::vector<std::string> parse_list(const std::string& text, char at) {
+    std::vector<std::string> out(1);
+    for (const char c : text) {
+        if (c == at) {
+            out.emplace_back();
+        } else {
+            out.back() += c;
+        }
+    }
+    return out;
 }
 
 std::array<double, 2> parse_range(const std::string& text, const std::string& option) {
-    const auto ends = split(text, ':');
-    const auto low = number_in(ends[0]), high = ends.size() == 2 ? number_in(ends[1]) : std::nullopt;
+    const auto ends = parse_list(text, ':');
+    const auto low = ranges::number_in(ends[0]), high = ends.size() == 2 ? ranges::number_in(ends[1]) : std::nullopt;
     if (!low || !high || *low > *high) {
         usage(option, text, "A:B, two numbers with A <= B");
     }
@@ -121,8 +137,8 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const bool own = format == "state" || format == "vertex" || format == "packing";
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
-        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes),
-                std::move(foreign.ids)};
+        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes), std::move(foreign.ids),
+                foreign.rounding + rounding_of(arguments)};
     }
     if (options.size || options.box || options.select || !arguments.walls.empty() || !options.columns.empty() ||
         options.frame || options.not_periodic || options.periodic) {
@@ -133,16 +149,15 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     }
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
-        ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}};
+        ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}, 0};
+        out.rounding = rounding_of(out.packing);
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;
     }
-    ReadPacking out{format == "state"
-                        ? (arguments.cells ? parse_any_state<2>(text, file) : parse_state<2>(text, file)).state.packing
-                        : parse_vertex_text(text, file).packing,
-                    format,
-                    {},
-                    {}};
+    const State<2> state = format != "state" ? parse_vertex_text(text, file)
+                           : arguments.cells ? parse_any_state<2>(text, file).state
+                                             : parse_state<2>(text, file).state;
+    ReadPacking out{state.packing, format, {}, {}, std::max(rounding_of(state.packing), imported_rounding(state))};
     out.notes.emplace_back("the contact list of the file is not used");
     return out;
 }

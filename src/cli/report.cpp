@@ -3,6 +3,7 @@
 #include "cli/members.hpp"
 #include "cli/progress.hpp"
 #include "cli/soft_limits.hpp"
+#include "cli/terminal.hpp"
 #include "report/run_report.hpp"
 
 #include <isostat/core/error.hpp>
@@ -44,7 +45,7 @@ Json json_of(const std::string& input, const ReportResult& result) {
 
 void print_notes(const ReportResult& result) {
     for (const std::string& note : result.notes) {
-        fmt::print(stderr, "isostat: {}\n", note);
+        say(stderr, "isostat: {}\n", note);
     }
 }
 
@@ -71,8 +72,8 @@ int report_ensemble(const ReportArguments& arguments) {
     int status = done;
     const auto begin = std::chrono::steady_clock::now();
     if (!quiet) {
-        fmt::print("{:>8} {:>11} {:>7} {:>8} {:>12} {:>12} {:>6}\n", "seed", "equilibria", "proved", "arcs",
-                   "ratio at end", "eps2", "files");
+        say("{:>8} {:>11} {:>7} {:>8} {:>12} {:>12} {:>6}\n", "seed", "equilibria", "proved", "arcs", "ratio at end",
+            "eps2", "files");
     }
     for (std::size_t k = 0; k < members.size(); ++k) {
         const Member& member = members[k];
@@ -83,12 +84,15 @@ int report_ensemble(const ReportArguments& arguments) {
                                                          : fs::path(arguments.output) / member.folder.filename();
         try {
             if (!member.begun) {
-                throw Error(ErrorKind::bad_input, "was not begun: `isostat ensemble --resume`");
+                throw Error(
+                    ErrorKind::bad_input,
+                    fmt::format("was not begun{}: `isostat ensemble --resume`",
+                                member.further > 0 ? fmt::format(", nor were {} after it", member.further) : ""));
             }
             const ReportResult result = report_run(member.folder, output, options);
             line.clear();
             if (!quiet) {
-                fmt::print("{}\n", totals(member, result));
+                say("{}\n", totals(member, result));
             }
             print_notes(result);
             list.push_back(json_of(member.folder.string(), result));
@@ -97,7 +101,7 @@ int report_ensemble(const ReportArguments& arguments) {
                 throw;
             }
             line.clear();
-            fmt::print(stderr, "isostat: seed {}: {}\n", member.seed, error.what());
+            say(stderr, "isostat: seed {}: {}\n", member.seed, error.what());
             status = error.exit_status();
         }
     }
@@ -143,9 +147,9 @@ int report(const ReportArguments& arguments) {
         return done;
     }
     if (!arguments.common.quiet) {
-        fmt::print("{}\n", result.text);
+        say_lines(result.text + "\n");
         for (const fs::path& file : result.files) {
-            fmt::print("{}\n", file.string());
+            say("{}\n", file.string());
         }
     }
     print_notes(result);

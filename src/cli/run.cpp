@@ -2,6 +2,7 @@
 #include "cli/common.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "core/work.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
@@ -12,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace isostat::cli {
@@ -63,7 +65,9 @@ void record_work(const std::filesystem::path& path) {
     const auto work = work_done();
     for (std::size_t k = 0; k < work_kinds; ++k) {
         const char* name = to_string(static_cast<Work>(k));
-        const long before = counts.contains(name) && counts[name].is_number_integer() ? counts[name].get<long>() : 0;
+        constexpr long most = 1L << 53; // the file may say anything
+        const long said = counts.contains(name) && counts[name].is_number_integer() ? counts[name].get<long>() : 0;
+        const long before = said >= 0 && said < most ? said : 0;
         counts[name] = before + work[k];
     }
     Json object;
@@ -94,24 +98,25 @@ void draw(const Scene& scene, const RunDirectory& directory, bool quiet) {
     if (quiet) {
         return;
     }
-    fmt::print("\n{}\n", report.text);
+    say_lines("\n" + report.text + "\n");
     for (const std::string& note : report.notes) {
-        fmt::print("{}\n", note);
+        if (std::count(directory.notes().begin(), directory.notes().end(), note) == 0) {
+            say("{}\n", note);
+        }
     }
-    fmt::print("figures: {}\n", (directory.path() / "figures").string());
+    say("figures: {}\n", (directory.path() / "figures").string());
 }
 
 /// Says what is worth knowing of how a run begins.
 void announce(const std::optional<State<2>>& from_file) {
     if (const double moved = from_file ? moved_to_grid(*from_file) : 0; moved > 0) {
-        fmt::print("start: coordinates of what can move are put on a grid, each moved by at most {}\n",
-                   rounded_up(moved, 3));
+        say("start: coordinates of what can move are put on a grid, each moved by at most {}\n", rounded_up(moved, 3));
     }
 }
 
 /// The last line of a run that has its say.
 std::string last_line(const SceneEnding& ending, const RunCounters& counters) {
-    return fmt::format("{}{}{}: {} arcs, {} equilibria, {}\n", to_string(ending.status),
+    return fmt::format("{}{}{}: {} arcs, {} equilibria, {}", to_string(ending.status),
                        ending.reason.empty() ? "" : ": ", ending.reason, counters.steps, counters.equilibria,
                        clock_text(counters.seconds));
 }
@@ -119,13 +124,13 @@ std::string last_line(const SceneEnding& ending, const RunCounters& counters) {
 /// What went otherwise than asked, on standard error. `open`: as `left_open` says it.
 void complain(const RunArguments& arguments, const SceneEnding& ending, const std::string& open) {
     if (!open.empty()) {
-        fmt::print(stderr, "isostat: {}: {}\n", arguments.output, open);
+        say(stderr, "isostat: {}: {}\n", arguments.output, open);
     }
     if (ending.status != RunStatus::completed) {
-        fmt::print(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
+        say(stderr, "isostat: {}: {}: {}\n", arguments.output, to_string(ending.status), ending.reason);
     }
     if (ending.status == RunStatus::interrupted) {
-        fmt::print(stderr, "isostat: to go on: isostat run {} -o {} --resume\n", arguments.scene, arguments.output);
+        say(stderr, "isostat: to go on: isostat run {} -o {} --resume\n", arguments.scene, arguments.output);
     }
 }
 
@@ -154,8 +159,11 @@ int run(const RunArguments& arguments) {
     }
     if (!quiet && arguments.resume) {
         const auto& point = directory.checkpoint();
-        fmt::print("resuming {} (it was {}) {}\n", arguments.output, directory.previous_status(),
-                   point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
+        say("resuming {} (it was {}) {}\n", arguments.output, directory.previous_status(),
+            point ? fmt::format("after equilibrium {}", point->state.equilibrium) : "from its start");
+    }
+    for (const std::string& note : directory.notes()) {
+        say(stderr, "isostat: {}: {}\n", arguments.output, note);
     }
     const auto start = start_of(scene, from_file, directory, arguments.common.command, quiet);
     if (!quiet) {
@@ -171,9 +179,9 @@ int run(const RunArguments& arguments) {
     }
     directory.finish(ending.status, ending.reason);
     if (arguments.common.json) {
-        fmt::print("{}", directory.summary());
+        say_json(directory.summary());
     } else if (!quiet) {
-        fmt::print("{}", last_line(ending, counters));
+        say("{}\n", last_line(ending, counters));
     }
     const std::string open = left_open(counters);
     complain(arguments, ending, open);

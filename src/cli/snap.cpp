@@ -1,6 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/rounding.hpp"
 #include "cli/soft_list.hpp"
+#include "cli/terminal.hpp"
 #include "compare/force_split.hpp"
 #include "compare/soft_state.hpp"
 #include "io/files.hpp"
@@ -24,17 +26,19 @@ namespace {
 struct Read : compare::SoftForces {
     std::string words;
     std::vector<std::string> notes;
+    double rounding = 0; ///< of gaps
 };
 
 /// A state says contacts and load itself.
 Read from_state(const SnapArguments& a) {
-    if (!a.contacts.empty() || !a.stress.empty() || !a.load.empty()) {
+    if (!a.contacts.empty() || !a.stress.empty() || !a.load.empty() || !a.reference_length.empty()) {
         throw Error(ErrorKind::usage, a.file + " is a state, which says its contacts and its load: expected none of "
-                                               "--contacts, --stress, --load");
+                                               "--contacts, --stress, --load, --reference-length");
     }
     const StateFile<2> file = read_any_state<2>(a.file);
     Read out;
     static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
+    out.rounding = imported_rounding(file.state);
     out.words = fmt::format("{} contacts of the state, those that can carry a force", file.state.contacts.size());
     return out;
 }
@@ -57,11 +61,15 @@ Read from_foreign(const SnapArguments& a) {
     out.words = list.words;
     out.forces = list.forces;
     out.notes = file.notes;
+    out.rounding = file.rounding;
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
     out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     out.soft.load.stress = parse_stress(a.stress);
     out.soft.load.refer_to(file.packing);
+    if (!a.reference_length.empty()) {
+        out.soft.load.reference_length = parse_pair(a.reference_length, "--reference-length", "L1,L2");
+    }
     return out;
 }
 
@@ -121,34 +129,35 @@ std::optional<State<2>> state_of(const SnapArguments& a, const Read& read, const
 
 void print(const SnapArguments& a, const Read& read, const compare::Snap& snap, const Json& report, bool written) {
     for (const std::string& note : read.notes) {
-        fmt::print("          {}\n", note);
+        say("          {}\n", note);
     }
-    fmt::print("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words,
-               snap.counting.dof_count, snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity,
-               snap.counting.mechanisms, snap.rattlers.size());
-    fmt::print("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
-               report["reason"].get<std::string>());
+    say("contacts  {}: N_f = {}, N = {}, rank {}, h = {}, k = {}, {} rattlers\n", read.words, snap.counting.dof_count,
+        snap.counting.contact_count, snap.counting.rank, snap.counting.hyperstaticity, snap.counting.mechanisms,
+        snap.rattlers.size());
+    say("snap      {}{}{}\n", to_string(snap.outcome), report["reason"].get<std::string>().empty() ? "" : ": ",
+        report["reason"].get<std::string>());
     if (!report["distance"].is_null()) {
-        fmt::print("distance  of a disk with a force from its true place at most {}\n",
-                   rounded_up(report["distance"].get<double>(), 3));
+        say("distance  of a disk with a force from its true place at most {}\n",
+            rounded_up(report["distance"].get<double>(), 3));
     }
     if (const auto forces = report.find("forces"); forces != report.end() && !(*forces)["rest"].is_null()) {
-        fmt::print("forces    of the file differ by at most {} mean forces from those that balance at its coordinates, "
-                   "in {}",
-                   rounded_up((*forces)["rest"].get<double>(), 2), (*forces)["contact"].get<std::string>());
-        fmt::print("{}\n", (*forces)["stiffness"].is_null()
-                               ? ""
-                               : fmt::format("; those by at most {} from the ones at the vertex",
-                                             rounded_up((*forces)["stiffness"].get<double>(), 2)));
+        say("forces    of the file differ by at most {} mean forces from those that balance at its coordinates, "
+            "in {}",
+            rounded_up((*forces)["rest"].get<double>(), 2), (*forces)["contact"].get<std::string>());
+        say("{}\n", (*forces)["stiffness"].is_null()
+                        ? ""
+                        : fmt::format("; those by at most {} from the ones at the vertex",
+                                      rounded_up((*forces)["stiffness"].get<double>(), 2)));
     }
     if (written) {
-        fmt::print("written   {}\n", a.output);
+        say("written   {}\n", a.output);
     }
 }
 
 } // namespace
 
 int snap(const SnapArguments& a) {
+    check_output(a.output, "\"isostat-state\"", {a.file, a.contacts});
     const std::string text = read_text(a.file);
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     Read read = format == "state" || format == "vertex" ? from_state(a) : from_foreign(a);
@@ -158,8 +167,14 @@ int snap(const SnapArguments& a) {
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
     std::optional<State<2>> state = state_of(a, read, snap, report);
+    Untold untold;
     if (state) {
-        state->provenance = json::dumped(report);
+        const Certification truth = certify(*state);
+        untold = untold_by(read.rounding, *state, truth);
+        add_untold(report, untold, truth.verdict);
+        Json provenance = report;
+        provenance["rounding"] = number(read.rounding);
+        state->provenance = json::dumped(provenance);
         write_state<2>(a.output, *state);
     }
     if (a.common.json) {
@@ -167,8 +182,12 @@ int snap(const SnapArguments& a) {
         print_json(report);
     } else {
         print(a, read, snap, report, state.has_value());
+        if (untold.any()) {
+            say("undecided {}\n", untold.words());
+        }
     }
-    return state                                                                                             ? done
+    return untold.any()                                                                                      ? undecided
+           : state                                                                                           ? done
            : snap.outcome == compare::SnapOutcome::vertex || snap.outcome == compare::SnapOutcome::undecided ? undecided
                                                                                                              : failed;
 }

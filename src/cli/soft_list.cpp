@@ -1,5 +1,6 @@
 #include "cli/soft_list.hpp"
 
+#include "cli/ranges.hpp"
 #include "compare/backbone.hpp"
 #include "compare/pair_images.hpp"
 #include "contact/candidates.hpp"
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -67,22 +67,23 @@ void refuse(const std::string& file, const std::string& what) {
 }
 
 std::array<double, 2> parse_stress(const std::string& text) {
-    if (text.empty()) {
-        return {1, 1};
-    }
+    return text.empty() ? std::array<double, 2>{1, 1} : parse_pair(text, "--stress", "S1,S2");
+}
+
+std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names) {
     const std::vector<std::string> words = parse_list(text);
-    std::array<double, 2> stress{};
+    std::array<double, 2> pair{};
     bool good = words.size() == 2;
     for (std::size_t k = 0; good && k < 2; ++k) {
-        const char* const end =
-            words[k].data() + words[k].size(); // NOLINT(cppcoreguidelines-pro-bounds-pointer-arithmetic)
-        const auto [stop, error] = std::from_chars(words[k].data(), end, stress[k]);
-        good = error == std::errc() && stop == end && stress[k] > 0 && std::isfinite(stress[k]);
+        const auto value = ranges::number_in(words[k], ranges::smallest);
+        good = value.has_value();
+        pair[k] = value.value_or(0);
     }
     if (!good) {
-        throw Error(ErrorKind::usage, fmt::format("--stress is '{}': expected S1,S2, two positive numbers", text));
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} is '{}': expected {}, two positive numbers", option, text, names));
     }
-    return stress;
+    return pair;
 }
 
 void take_cell(const CellStatement& statement, Packing<2>& packing) {

@@ -15,7 +15,9 @@ namespace isostat::cli {
 /// A packing must be this near to touching, in smallest radii: overlaps, and gaps at every wall.
 inline constexpr double nearly_touching = 0.1;
 
-/// "S1,S2"; 1,1 for an empty text. Throws `Error(usage)`.
+/// Two positive numbers, as in "S1,S2"; `names` is that. Throws `Error(usage)`.
+std::array<double, 2> parse_pair(const std::string& text, const char* option, const char* names);
+/// Of --stress; 1,1 for an empty text.
 std::array<double, 2> parse_stress(const std::string& text);
 
 /// Throws `Error(bad_input)` about a file.

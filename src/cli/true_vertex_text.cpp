@@ -1,6 +1,7 @@
 #include "cli/true_vertex_text.hpp"
 
 #include "cli/commands.hpp"
+#include "cli/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@ namespace isostat::cli {
 namespace {
 
 void line(const char* claim, const std::string& text, const std::string& rung) {
-    fmt::print("{:<14} {:<88} {}\n", claim, text, rung);
+    say("{:<14} {:<88} {}\n", claim, text, rung);
 }
 
 /// Smallest lower end, and the largest width, of the intervals that are not structural zeros.
@@ -78,8 +79,8 @@ std::string end_text(const LoadEndClaim& end) {
 
 void print_claims(const Certification& certification) {
     const CertificateClaims& c = certification.claims;
-    fmt::print("{:<14} {:<88} {}\n", "claim", "proved of the stored coordinates (counting) and of the true vertex",
-               "arithmetic");
+    say("{:<14} {:<88} {}\n", "claim", "proved of the stored coordinates (counting) and of the true vertex",
+        "arithmetic");
     if (c.counting) {
         line("counting",
              fmt::format("N_f = {}, N = {}, rank {}, h = {}, k = {}", c.counting->dof_count, c.counting->contact_count,
@@ -119,7 +120,7 @@ void print_claims(const Certification& certification) {
     for (const std::string& reason : c.undecided) {
         const bool refuted = std::find(certification.refuted.begin(), certification.refuted.end(), reason) !=
                              certification.refuted.end();
-        fmt::print("{:<14} {}\n", refuted ? "refuted" : "not claimed", reason);
+        say("{:<14} {}\n", refuted ? "refuted" : "not claimed", reason);
     }
 }
 
@@ -167,16 +168,16 @@ Json claims_json(const Certification& certification) {
 void print_true_vertex(const Certification& certification) {
     const CertificateClaims& c = certification.claims;
     if (!c.vertex) {
-        fmt::print("true configuration       not proved to exist\n");
+        say("true configuration       not proved to exist\n");
     } else {
-        fmt::print("true configuration       exists within {} of the stored coordinates ({}); rank {}, h = 0, k = 0 "
-                   "there (sigma_min >= {})\n",
-                   rounded_up(c.vertex->radius, 3), to_string(c.vertex->rung), c.counting->rank,
-                   rounded_down(certification.smallest_sigma, 3));
-        fmt::print("  its forces             {}\n", signs_text(certification.signs));
+        say("true configuration       exists within {} of the stored coordinates ({}); rank {}, h = 0, k = 0 "
+            "there (sigma_min >= {})\n",
+            rounded_up(c.vertex->radius, 3), to_string(c.vertex->rung), c.counting->rank,
+            rounded_down(certification.smallest_sigma, 3));
+        say("  its forces             {}\n", signs_text(certification.signs));
     }
     for (const std::string& reason : c.undecided) {
-        fmt::print("  not proved there       {}\n", reason);
+        say("  not proved there       {}\n", reason);
     }
 }
 
@@ -204,8 +205,8 @@ Json true_vertex_json(const Certification& certification) {
 
 void print_forces_in_file(const StateFile<2>& file, const Certification& truth) {
     if (const auto forces = compared_forces(file, truth)) {
-        fmt::print("forces in the file       differ from the proved ones by at most {}, in {}\n",
-                   rounded_up(forces->difference, 2), to_string<2>(forces->where));
+        say("forces in the file       differ from the proved ones by at most {}, in {}\n",
+            rounded_up(forces->difference, 2), to_string<2>(forces->where));
     }
 }
 

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/members.hpp"
+#include "cli/terminal.hpp"
 #include "cli/verify_run.hpp"
 #include "io/files.hpp"
 
@@ -75,15 +76,15 @@ int verify(const VerifyArguments& arguments) {
         print_json(object);
         return status_of(verification.verdict);
     }
-    fmt::print("{}: claims of {} about {} ({} disks, {} contacts)\n", arguments.certificate, certificate.program,
-               certificate.input, certificate.state.packing.disk_count(), certificate.state.contacts.size());
+    say("{}: claims of {} about {} ({} disks, {} contacts)\n", arguments.certificate, certificate.program,
+        certificate.input, certificate.state.packing.disk_count(), certificate.state.contacts.size());
     for (const ClaimCheck& check : verification.checks) {
-        fmt::print("{:<14} {:<9} {}\n", check.claim, check.claimed ? to_string(check.verdict) : "absent", check.detail);
+        say("{:<14} {:<9} {}\n", check.claim, check.claimed ? to_string(check.verdict) : "absent", check.detail);
     }
     for (const std::string& reason : certificate.claims.undecided) {
-        fmt::print("not claimed by the program: {}\n", reason);
+        say("not claimed by the program: {}\n", reason);
     }
-    fmt::print("{:<14} {}\n", "equilibrium", to_string(verification.verdict));
+    say("{:<14} {}\n", "equilibrium", to_string(verification.verdict));
     return status_of(verification.verdict);
 }
 

@@ -1,6 +1,7 @@
 #include "cli/common.hpp"
 #include "cli/members.hpp"
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 #include "cli/verify_run.hpp"
 #include "io/files.hpp"
 
@@ -77,18 +78,19 @@ void add(RunVerification& total, const MemberVerification& member) {
 }
 
 std::string word_of(const MemberVerification& member, const Member& of) {
-    return !of.begun ? "missing" : !member.unreadable.empty() ? "cannot be read" : words(member.run);
+    const std::string more = of.further > 0 ? fmt::format(", and {} after it", of.further) : "";
+    return !of.begun ? "missing" + more : !member.unreadable.empty() ? "cannot be read" : words(member.run);
 }
 
 void print_row(const Member& of, const MemberVerification& member, const Clock& clock) {
     const RunVerification& run = member.run;
-    fmt::print("{:>8} {:>14} {:>14} {:>14} {:>9} {:>8} {:>8}  {}\n", of.seed,
-               fmt::format("{}/{}", run.equilibria_proved, run.equilibria),
-               fmt::format("{}/{}", run.arcs_proved, run.arcs), fmt::format("{}/{}", run.ways_proved, run.arcs),
-               run.undecided.size(), clock_text(clock.elapsed()), clock_text(clock.rest(0)), word_of(member, of));
+    say("{:>8} {:>14} {:>14} {:>14} {:>9} {:>8} {:>8}  {}\n", of.seed,
+        fmt::format("{}/{}", run.equilibria_proved, run.equilibria), fmt::format("{}/{}", run.arcs_proved, run.arcs),
+        fmt::format("{}/{}", run.ways_proved, run.arcs), run.undecided.size(), clock_text(clock.elapsed()),
+        clock_text(clock.rest(0)), word_of(member, of));
     for (const std::string& text : {run.wrong, member.unreadable}) {
         if (!text.empty()) {
-            fmt::print("         {}\n", text);
+            say("         {}\n", text);
         }
     }
     std::fflush(stdout);
@@ -123,8 +125,8 @@ int verify_ensemble(const VerifyArguments& arguments) {
     Json list = Json::array();
     bool readable = true;
     if (!quiet) {
-        fmt::print("{:>8} {:>14} {:>14} {:>14} {:>9} {:>8} {:>8}\n", "seed", "equilibria", "ends of arcs", "ways",
-                   "undecided", "elapsed", "rest");
+        say("{:>8} {:>14} {:>14} {:>14} {:>9} {:>8} {:>8}\n", "seed", "equilibria", "ends of arcs", "ways", "undecided",
+            "elapsed", "rest");
     }
     for (std::size_t k = 0; k < members.size(); ++k) {
         const MemberVerification member = verify_member(members[k], [&](const VerificationProgress& at) {

@@ -1,6 +1,7 @@
 #include "cli/verify_run.hpp"
 
 #include "cli/progress.hpp"
+#include "cli/terminal.hpp"
 
 #include <fmt/format.h>
 
@@ -30,11 +31,10 @@ class VerifyTable {
         }
         line_.clear();
         if (at.equilibria == 1) {
-            fmt::print("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", "equil", "arcs", "all arcs", "undecided", "elapsed",
-                       "rest");
+            say("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", "equil", "arcs", "all arcs", "undecided", "elapsed", "rest");
         }
-        fmt::print("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", at.equilibrium, at.arcs_here,
-                   fmt::format("{}/{}", at.arcs, at.all_arcs), at.undecided, clock_text(elapsed), clock_text(rest));
+        say("{:>7} {:>6} {:>12} {:>9} {:>8} {:>8}\n", at.equilibrium, at.arcs_here,
+            fmt::format("{}/{}", at.arcs, at.all_arcs), at.undecided, clock_text(elapsed), clock_text(rest));
         std::fflush(stdout);
     }
     void end() { line_.clear(); }
@@ -60,30 +60,33 @@ Json json_of(const RunVerification& run, const std::string& folder) {
     object["equilibria_proved"] = run.equilibria_proved;
     object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
     object["undecided"] = run.undecided;
+    object["notes"] = run.notes;
     object["finished"] = run.finished;
     object["verdict"] = words(run);
     return object;
 }
 
 void print_totals(const RunVerification& run) {
-    fmt::print("arcs           ends of {} of {} proved, ways of {}\n", run.arcs_proved, run.arcs, run.ways_proved);
+    say("arcs           ends of {} of {} proved, ways of {}\n", run.arcs_proved, run.arcs, run.ways_proved);
     if (run.turns_checked > 0 || run.ties_checked > 0) {
-        fmt::print("power turns    {} checked\nties           {} first-order decisions checked\n", run.turns_checked,
-                   run.ties_checked);
+        say("power turns    {} checked\nties           {} first-order decisions checked\n", run.turns_checked,
+            run.ties_checked);
     }
     if (run.choices_checked > 0) {
-        fmt::print(
-            "choices        {} checked: what they are between is not refuted to be tied, which is not \"equal\"\n",
+        say("choices        {} checked: what they are between is not refuted to be tied, which is not \"equal\"\n",
             run.choices_checked);
     }
-    fmt::print("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
+    say("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
     for (const std::string& open : run.undecided) {
-        fmt::print("undecided      {}\n", open);
+        say("undecided      {}\n", open);
+    }
+    for (const std::string& note : run.notes) {
+        say("note           {}\n", note);
     }
     if (!run.wrong.empty()) {
-        fmt::print("first wrong    {}\n", run.wrong);
+        say("first wrong    {}\n", run.wrong);
     }
-    fmt::print("verdict        {}\n", words(run));
+    say("verdict        {}\n", words(run));
 }
 
 int verify_folder(const VerifyArguments& arguments) {
@@ -94,8 +97,7 @@ int verify_folder(const VerifyArguments& arguments) {
     if (arguments.common.json) {
         print_json(json_of(run, arguments.certificate));
     } else if (!run.finished) {
-        fmt::print(
-            "run            not finished: run.json says that it goes on, or was killed (`isostat run --resume`)\n");
+        say("run            not finished: run.json says that it goes on, or was killed (`isostat run --resume`)\n");
     } else {
         print_totals(run);
     }

@@ -96,14 +96,12 @@ void try_exchange(const SoftState& soft, const Reading& reading, const Snap& sna
     out.state = std::move(e.state);
 }
 
-} // namespace
-
-JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
-    const Reading reading = read_frame(series, frame);
+JudgedFrame judge(const Series& series, const Frame& frame, const Reading& reading, bool complete) {
     JudgedFrame out;
     out.result = begin(frame, reading);
     out.list = reading.contacts;
     out.pressed = reading.pressed;
+    out.note = frame.note;
     FrameResult& r = out.result;
     if (!reading.contradiction.empty()) {
         r.status = FrameStatus::file;
@@ -111,15 +109,22 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
         return out;
     }
     const SoftState soft{frame.packing, reading.contacts, frame.load};
-    if (!reading.other_load.empty() && snap(soft).outcome != SnapOutcome::moving) {
+    if (!reading.other_load.empty() && reading.dashpots.empty() && snap(soft).outcome != SnapOutcome::moving) {
         r.status = FrameStatus::file;
         r.reason = reading.other_load;
         return out;
     }
     if (!(reading.unbalanced <= series.rest)) {
+        r.status = reading.blurred ? FrameStatus::undecided : FrameStatus::moving;
+        r.reason = fmt::format(
+            "a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}{}{}{}", reading.unbalanced,
+            series.rest, reading.blurred ? "; so much is within the digits of the files, overlaps have no more" : "",
+            reading.dashpots.empty() ? "" : "; ", reading.dashpots, reading.few);
+        return out;
+    }
+    if (!reading.dashpots.empty()) {
         r.status = FrameStatus::moving;
-        r.reason = fmt::format("a force of {:.3g} mean forces is left: expected at most {:.3g} at rest{}",
-                               reading.unbalanced, series.rest, reading.few);
+        r.reason = fmt::format("forces differ from the law by {:.3g} mean forces; {}", reading.law, reading.dashpots);
         return out;
     }
     const Snap snapped = snap(soft);
@@ -149,6 +154,25 @@ JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
             r.reason = state.failure().message();
         }
     }
+    return out;
+}
+
+} // namespace
+
+JudgedFrame judge(const Series& series, const Frame& frame, bool complete) {
+    const Reading reading = read_frame(series, frame);
+    JudgedFrame out = judge(series, frame, reading, complete);
+    FrameResult& r = out.result;
+    const auto add = [&](const std::string& words) {
+        r.reason += (r.reason.empty() || words.empty() ? "" : "; ") + words;
+    };
+    const bool list_matters = r.status == FrameStatus::soft || r.status == FrameStatus::refuted ||
+                              (r.status == FrameStatus::moving && r.counting.mechanisms > 0);
+    if (list_matters && !reading.unsure.empty()) {
+        r.status = FrameStatus::undecided;
+        add(reading.unsure);
+    }
+    add(reading.rounding);
     return out;
 }
 

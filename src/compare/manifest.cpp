@@ -34,11 +34,11 @@ double positive(Section& section, const std::string& key, std::optional<double> 
 }
 
 void read_files(Section& section, const std::filesystem::path& folder, Manifest& out) {
-    out.disks = (folder / required(section, "disks", "the name of a LAMMPS dump")).string();
-    out.frames = (folder / required(section, "frames", "the name of a table (CSV)")).string();
-    if (const auto contacts = section.string("contacts")) {
-        out.contacts = (folder / *contacts).string();
-    }
+    (void)required(section, "disks", "the name of a LAMMPS dump");
+    (void)required(section, "frames", "the name of a table (CSV)");
+    out.disks = section.file("disks", folder)->string();
+    out.frames = section.file("frames", folder)->string();
+    out.contacts = section.file("contacts", folder).value_or("").string();
     if (const auto select = section.string("select")) {
         const std::size_t blank = select->find(' ');
         if (blank == std::string::npos || select->find(' ', blank + 1) != std::string::npos) {

@@ -1,8 +1,10 @@
 // Frames of a series, matched by time step.
 #include "compare/manifest.hpp"
 #include "compare/pair_images.hpp"
+#include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/frame_file.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -39,6 +41,7 @@ std::optional<std::size_t> wall_of(std::string_view field) {
 struct Sides {
     std::optional<std::array<double, 4>> at; ///< left, bottom, right, top
     double tilt = 0;                         ///< of a cell: the way along x from its lower to its upper side
+    Digits digits;
 };
 
 /// The table of frames.
@@ -50,7 +53,8 @@ class FrameTable {
         for (std::size_t k = 0; k < names.size(); ++k) {
             names_.emplace_back(names.field(k));
         }
-        where_ = fmt::format("{}:{}", manifest.frames, names.number());
+        where_ = names.place();
+        foreign::refuse_twice(names_, where_);
         (void)required("timestep");
         sides_ = !manifest.periodic || find("tilt") >= 0; // the bounds of a dump are not the walls
         for (const char* name : wall_names) {
@@ -92,7 +96,7 @@ class FrameTable {
     }
 
   private:
-    [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name, where_); }
+    [[nodiscard]] int find(const std::string& name) const { return foreign::find_column(names_, name); }
     [[nodiscard]] std::size_t required(const std::string& name) const {
         const int at = find(name);
         if (at < 0) {
@@ -105,12 +109,15 @@ class FrameTable {
     }
 
     [[nodiscard]] Sides sides_of(const Line& line) const {
-        Sides sides{std::array<double, 4>{}, 0};
+        Sides sides{std::array<double, 4>{}, 0, {}};
         for (std::size_t w = 0; w < 4; ++w) {
-            (*sides.at)[w] = line.number(required(wall_names[w]), wall_names[w]) * manifest_.length_factor;
+            const std::size_t column = required(wall_names[w]);
+            (*sides.at)[w] = line.number(column, wall_names[w]) * manifest_.length_factor;
+            sides.digits.see(line.field(column));
         }
         if (const int tilt = find("tilt"); tilt >= 0 && manifest_.periodic) {
             sides.tilt = line.number(static_cast<std::size_t>(tilt), "tilt") * manifest_.length_factor;
+            sides.digits.see(line.field(static_cast<std::size_t>(tilt)));
         }
         return sides;
     }
@@ -126,7 +133,7 @@ class FrameTable {
         } else {
             load.stress[1] = line.number(required("force_top"), "force_top") * per_force;
         }
-        if (!(load.stress[1] > 0)) {
+        if (!(load.stress[1] > 0 && std::isfinite(load.stress[1]))) {
             line.fail(fmt::format("{}", load.stress[1]), "sigma2", "a positive number");
         }
         for (const std::size_t axis : {std::size_t{0}, std::size_t{1}}) {
@@ -137,7 +144,7 @@ class FrameTable {
 
     /// A force on a wall must be that of the load, to the digits that a file has.
     void check_force(const Line& line, std::size_t axis, const Load<2>& load) const {
-        constexpr double digits = 1e-9;
+        constexpr double known = 1e-9;
         const std::string name = axis == 0 ? "force_right" : "force_top";
         const int at = find(name);
         if (at < 0 || load.kind == LoadKind::true_stress) {
@@ -145,11 +152,21 @@ class FrameTable {
         }
         const auto column = static_cast<std::size_t>(at);
         const double expected = load.stress[axis] * load.reference_length[1 - axis];
-        if (!(std::abs(line.number(column, name) * manifest_.force_factor - expected) <= digits * expected)) {
+        double digits = rounding(line, column) * manifest_.force_factor;
+        if (const int stress = find("sigma2"); stress >= 0 && axis == 1) {
+            digits += rounding(line, static_cast<std::size_t>(stress)) * load.reference_length[0];
+        }
+        if (!(std::abs(line.number(column, name) * manifest_.force_factor - expected) <= known * expected + digits)) {
             line.fail(line.field(column), fmt::format("{} (column {})", name, at + 1),
                       fmt::format("{}, the stress {} times the reference length {}", expected / manifest_.force_factor,
                                   load.stress[axis], load.reference_length[1 - axis]));
         }
+    }
+
+    [[nodiscard]] static double rounding(const Line& line, std::size_t column) {
+        Digits digits;
+        digits.see(line.field(column));
+        return digits.rounding();
     }
 
     const Manifest& manifest_;
@@ -191,6 +208,11 @@ class Disks {
             sides = sides.at ? sides : sides_of(rows.header);
         }
         const std::array<double, 4> walls = sides.at.value();
+        if (!last_.radius.empty() && manifest_.periodic) {
+            sides.tilt = unflipped(frame, sides.tilt, walls[2] - walls[0]);
+        }
+        const std::vector<std::size_t> speeds = speeds_of(rows);
+        Digits places, sizes;
         for (const auto& [number, row] : by_id) {
             const auto disk = frame.ids.size();
             if (frame.number > 0 && (disk >= ids_.size() || number != ids_[disk])) {
@@ -208,6 +230,13 @@ class Disks {
             }
             frame.packing.q.push_back(row->number(x, "x") * f - walls[0]);
             frame.packing.q.push_back(row->number(y, "y") * f - walls[1]);
+            sizes.see(row->field(size));
+            for (const std::size_t column : {x, y}) {
+                places.see(row->field(column));
+            }
+            for (const std::size_t column : speeds) {
+                frame.velocity.push_back(finite_number(row->field(column)).value_or(NAN) * f);
+            }
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }
         frame.packing.q.insert(frame.packing.q.end(), {walls[2] - walls[0], walls[3] - walls[1]});
@@ -218,17 +247,39 @@ class Disks {
             throw Error(ErrorKind::bad_input, fmt::format("{}: no disk {}: expected the disks of the first frame",
                                                           dump_.where(rows.header.line), ids_[frame.ids.size()]));
         }
+        if (std::any_of(frame.velocity.begin(), frame.velocity.end(), [](double v) { return std::isnan(v); })) {
+            frame.velocity.clear();
+        }
         validate(frame.packing, dump_.where(rows.header.line));
+        frame.rounding = f * rounding_of_gaps(places.rounding(), sides.digits.rounding(),
+                                              sizes.rounding() * (manifest_.diameters ? 0.5 : 1));
         if (frame.number == 0) {
             ids_ = frame.ids;
             first_ = frame.packing;
-        } else if (manifest_.periodic) {
+        }
+        if (manifest_.periodic && last_.radius.size() == frame.packing.radius.size()) {
             unwrap(frame.packing);
         }
         last_ = frame.packing;
     }
+    void begin_after(const Packing<2>& packing) {
+        if (packing.cell.all()) {
+            last_ = packing;
+        }
+    }
 
   private:
+    /// The columns vx and vy, or none.
+    [[nodiscard]] static std::vector<std::size_t> speeds_of(const FileFrame& rows) {
+        std::vector<std::size_t> out;
+        for (const char* name : {"vx", "vy"}) {
+            const auto& names = rows.header.names;
+            if (const auto at = std::find(names.begin(), names.end(), name); at != names.end()) {
+                out.push_back(static_cast<std::size_t>(at - names.begin()));
+            }
+        }
+        return out.size() == 2 ? out : std::vector<std::size_t>();
+    }
     void make_periodic(Packing<2>& packing) const {
         packing.walls = Walls<2>::none();
         packing.cell.periodic.fill(true);
@@ -239,7 +290,7 @@ class Disks {
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
         const double f = manifest_.length_factor;
         const std::array<double, 4> box = header.box.value();
-        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f};
+        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f, header.sides};
     }
 
     /// Walls, or both axes periodic: as the manifest says. A cell is stated once.
@@ -267,6 +318,21 @@ class Disks {
                             : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)"));
             }
         }
+    }
+
+    /// Other programs flip a box that is sheared far, by whole periods: the tilt next to the one before.
+    double unflipped(Frame& frame, double tilt, double period) {
+        const double periods = std::round((last_.lattice(0, 1) - tilt) / period);
+        const double out = tilt + periods * period;
+        if (periods != flipped_) {
+            frame.note =
+                fmt::format("box flipped by {} along x: the tilt {} of the file is {} here, the same lattice",
+                            std::abs(periods - flipped_) == 1 ? "one period"
+                                                              : fmt::format("{} periods", std::abs(periods - flipped_)),
+                            tilt, out);
+            flipped_ = periods;
+        }
+        return out;
     }
 
     /// Other programs wrap disks that leave the cell. Each is put where it has moved least since the frame before,
@@ -302,6 +368,7 @@ class Disks {
     FrameFile dump_;
     std::vector<long> ids_;
     Packing<2> first_, last_;
+    double flipped_ = 0; ///< periods between the tilt of the file and that of the frames
 };
 
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
@@ -362,6 +429,10 @@ SeriesReader::~SeriesReader() = default;
 
 const Series& SeriesReader::series() const {
     return files_->manifest.series;
+}
+
+void SeriesReader::begin_after(const Packing<2>& packing) {
+    files_->disks.begin_after(packing);
 }
 
 std::optional<Frame> SeriesReader::next() {

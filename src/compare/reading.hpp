@@ -17,6 +17,12 @@ struct Reading {
     /// Without a law, nothing else speaks of a contact that is missing or of a wrong force. Empty, or words: one or two
     /// disks do not balance and all others do.
     std::string few;
+    std::string dashpots; ///< empty, or words: forces differ from the law, and not by an error of the files
+    std::string
+        unsure; ///< empty, or words: whether a pair overlaps is not told by the digits of the files, nor by a list
+    std::string rounding; ///< empty, or words: they differ by what the digits of the files leave open
+    /// Forces that are not in the files are stiffness x overlap, and what is left is within their rounding.
+    bool blurred = false;
     int listed = 0;             ///< contacts of the files with a force
     int overlapping = 0;        ///< pairs that overlap, walls included
     int twice = 0, missing = 0; ///< rows of a contact that has one; overlaps without a row

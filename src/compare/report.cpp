@@ -1,6 +1,8 @@
 #include "compare/report.hpp"
 
+#include "core/text.hpp"
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
@@ -122,7 +124,7 @@ const std::vector<Column<BundleMember>>& of_members() {
     return columns;
 }
 
-/// Quoted where it must be; nothing for null.
+/// "nan" for null.
 std::string cell(const Json& value) {
     if (value.is_null()) {
         return "nan";
@@ -130,11 +132,7 @@ std::string cell(const Json& value) {
     if (!value.is_string()) {
         return value.is_number_float() ? fmt::format("{}", value.get<double>()) : value.dump();
     }
-    std::string safe;
-    for (const char c : value.get<std::string>()) {
-        safe += c == '"' ? std::string("\"\"") : std::string(1, c);
-    }
-    return safe.find_first_of(",\"\n") == std::string::npos ? safe : "\"" + safe + "\"";
+    return text::csv(value.get_ref<const std::string&>());
 }
 
 template <class Row> std::vector<std::string> names_of_columns(const std::vector<Column<Row>>& columns) {
@@ -174,46 +172,84 @@ bool shown(double error) {
     return error > 0 && std::isfinite(error);
 }
 
-/// Data of the figure, in blocks: staircase of the exact run; frames; for each status its frames; errors.
-std::string figure_data(const Comparison& comparison) {
-    std::string text = "# exact run: eps2 sigma2\n";
-    for (std::size_t k = 0; k < comparison.path.size(); ++k) {
-        const PathEquilibrium& e = comparison.path[k];
-        if (k > 0) {
-            text += fmt::format("{} {}\n", comparison.path[k - 1].eps2, e.sigma2);
+/// Data of the figure in blocks. gnuplot does not count one without a line: such a block is left out, and nothing is
+/// drawn of it.
+class Blocks {
+  public:
+    /// Its clause of `plot`; nothing where it has no line. {} in `clause`: the file and the block.
+    std::string add(const std::string& title, const std::string& lines, const std::string& clause) {
+        if (lines.empty()) {
+            return {};
         }
-        text += fmt::format("{} {}\n", e.eps2, e.sigma2);
+        data_ += fmt::format("{}# {}\n{}", count_ > 0 ? "\n\n" : "", title, lines);
+        return fmt::format(fmt::runtime(clause), fmt::format("\"comparison.dat\" index {}", count_++));
     }
-    text += "\n\n# frames: eps2 of the true vertex or of the frame, sigma2\n";
-    for (const FrameResult& f : comparison.frames) {
-        text += fmt::format("{} {}\n", std::isfinite(f.true_eps2) ? f.true_eps2 : f.eps2, f.sigma2);
-    }
-    text += "\n\n# statuses: sigma2 status\n";
-    for (const FrameResult& f : comparison.frames) {
-        text += fmt::format("{} {}\n", f.sigma2, static_cast<int>(f.status));
-    }
-    text += "\n\n# exact limits: sigma2\n";
-    for (const PathEquilibrium& e : comparison.path) {
-        text += fmt::format("{}\n", e.sigma2);
-    }
-    text += "\n\n# errors of the forces: sigma2 law rest stiffness downhill\n";
-    for (const FrameResult& f : comparison.frames) {
-        const auto text_of = [](double x) { return shown(x) ? fmt::format("{}", x) : "nan"; };
-        text += fmt::format("{} {} {} {} {}\n", f.sigma2, text_of(f.law), text_of(f.rest), text_of(f.stiffness),
-                            text_of(f.downhill));
-    }
-    text += "\n\n# bundle: eps2 sigma2_low sigma2_high members\n";
-    for (const BundleNode& node : comparison.bundle.nodes) {
-        const PathEquilibrium& e = node.equilibrium;
-        if (std::isfinite(e.high)) {
-            text += fmt::format("{} {} {} {}\n", e.eps2, e.low, e.high, node.members.size());
-        }
+    [[nodiscard]] const std::string& data() const { return data_; }
+
+  private:
+    std::string data_;
+    int count_ = 0;
+};
+
+template <class Row, class Line> std::string lines_of(const std::vector<Row>& rows, const Line& line) {
+    std::string text;
+    for (const Row& row : rows) {
+        text += line(row);
     }
     return text;
 }
 
-/// The curves that have a point: gnuplot refuses others.
-std::string errors_panel(const Comparison& comparison) {
+std::string plot(const std::vector<std::string>& clauses) {
+    std::string text;
+    for (const std::string& clause : clauses) {
+        text += clause.empty() ? "" : (text.empty() ? "plot " : ", ") + clause;
+    }
+    return text.empty() ? text : text + "\n";
+}
+
+std::string staircase(const std::vector<PathEquilibrium>& path) {
+    std::string text;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        text += k > 0 ? fmt::format("{} {}\n", path[k - 1].eps2, path[k].sigma2) : "";
+        text += fmt::format("{} {}\n", path[k].eps2, path[k].sigma2);
+    }
+    return text;
+}
+
+/// Against the strain: supported loads of the bundle, the exact run, the frames.
+std::string path_panel(const Comparison& comparison, Blocks& blocks) {
+    const std::string bundle = lines_of(comparison.bundle.nodes, [](const BundleNode& node) {
+        const PathEquilibrium& e = node.equilibrium;
+        return std::isfinite(e.high) ? fmt::format("{} {} {} {}\n", e.eps2, e.low, e.high, node.members.size())
+                                     : std::string();
+    });
+    const std::string frames = lines_of(comparison.frames, [](const FrameResult& f) {
+        return fmt::format("{} {}\n", std::isfinite(f.true_eps2) ? f.true_eps2 : f.eps2, f.sigma2);
+    });
+    return plot({blocks.add("bundle: eps2 sigma2_low sigma2_high members", bundle,
+                            "{} using 1:2:(0):($3-$2) with vectors nohead lw 4 lc \"#c3d3e3\" title \"bundle: "
+                            "supported loads\""),
+                 blocks.add("exact run: eps2 sigma2", staircase(comparison.path),
+                            "{} with lines lw 2 lc \"#1f4e79\" title \"exact run\""),
+                 blocks.add("frames: eps2 of the true vertex or of the frame, sigma2", frames,
+                            "{} with points pt 6 lc \"#c55a11\" title \"frames\"")});
+}
+
+/// Against the load: exact limits, the status of each frame.
+std::string status_panel(const Comparison& comparison, Blocks& blocks) {
+    const std::string limits =
+        lines_of(comparison.path, [](const PathEquilibrium& e) { return fmt::format("{}\n", e.sigma2); });
+    const std::string statuses = lines_of(comparison.frames, [](const FrameResult& f) {
+        return fmt::format("{} {}\n", f.sigma2, static_cast<int>(f.status));
+    });
+    return plot(
+        {blocks.add("exact limits: sigma2", limits,
+                    fmt::format("{{}} using 1:(-0.5):(0):({}) with vectors nohead lc \"#bbbbbb\"", frame_statuses)),
+         blocks.add("statuses: sigma2 status", statuses, "{} with points pt 7 ps 0.7 lc \"#c55a11\"")});
+}
+
+/// Errors of the forces that have a point.
+std::string errors_panel(const Comparison& comparison, Blocks& blocks) {
     struct Curve {
         const char* name;
         double FrameResult::*error;
@@ -223,18 +259,19 @@ std::string errors_panel(const Comparison& comparison) {
                                     {"rest", &FrameResult::rest, "pt 6 lc \"#1f4e79\""},
                                     {"stiffness", &FrameResult::stiffness, "pt 7 lc \"#c55a11\""},
                                     {"against the vertex downhill", &FrameResult::downhill, "pt 2 lc \"#7f7f7f\""}}};
-    std::string curves;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        if (std::any_of(comparison.frames.begin(), comparison.frames.end(),
-                        [&](const FrameResult& f) { return shown(f.*all[k].error); })) {
-            curves += fmt::format("{}\"comparison.dat\" index 4 using 1:{} with points {} title \"{}\"",
-                                  curves.empty() ? "plot " : ", ", k + 2, all[k].style, all[k].name);
-        }
+    std::vector<std::string> curves;
+    for (const Curve& curve : all) {
+        const std::string lines = lines_of(comparison.frames, [&](const FrameResult& f) {
+            return shown(f.*curve.error) ? fmt::format("{} {}\n", f.sigma2, f.*curve.error) : std::string();
+        });
+        curves.push_back(blocks.add(fmt::format("errors of the forces: sigma2, {}", curve.name), lines,
+                                    fmt::format("{{}} with points {} title \"{}\"", curve.style, curve.name)));
     }
-    return curves.empty() ? curves
-                          : "set key below horizontal\nset yrange [*:*] noreverse\nset ytics auto\nset logscale "
-                            "y\nset format y \"10^{%L}\"\nset ylabel \"error / mean force\"\n" +
-                                curves + "\n";
+    const std::string panel = plot(curves);
+    return panel.empty() ? panel
+                         : "set key below horizontal\nset yrange [*:*] noreverse\nset ytics auto\nset logscale "
+                           "y\nset format y \"10^{%L}\"\nset ylabel \"error / mean force\"\n" +
+                               panel;
 }
 
 Chart figure(const Comparison& comparison) {
@@ -242,33 +279,24 @@ Chart figure(const Comparison& comparison) {
     for (int s = 0; s < frame_statuses; ++s) {
         tics += fmt::format("{}\"{}\" {}", s > 0 ? ", " : "", to_string(static_cast<FrameStatus>(s)), s);
     }
-    const std::string data = "\"comparison.dat\"";
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (const FrameResult& f : comparison.frames) {
         low = std::min(low, f.sigma2);
         high = std::max(high, f.sigma2);
     }
     const double margin = 0.03 * (high - low) + 1e-6 * high;
+    Blocks blocks;
     std::string body = "set multiplot layout 3,1\nset grid\nset key right bottom\n";
     body +=
         fmt::format("set yrange [{}:{}]\nset xlabel \"strain ε_2\"\nset ylabel \"σ_2\"\n", low - margin, high + margin);
-    const char* bundle = comparison.bundle.nodes.empty() ? ""
-                                                         : "{0} index 5 using 1:2:(0):($3-$2) with vectors nohead lw 4 "
-                                                           "lc \"#c3d3e3\" title \"bundle: supported loads\", ";
-    body += fmt::format(fmt::runtime(std::string("plot ") + bundle +
-                                     "{0} index 0 with lines lw 2 lc \"#1f4e79\" title \"exact run\", {0} index 1 with "
-                                     "points pt 6 lc \"#c55a11\" title \"frames\"\n"),
-                        data);
+    body += path_panel(comparison, blocks);
     body += fmt::format("unset key\nset xrange [{}:{}]\nset xlabel \"σ_2\"\nset ylabel \"\"\nset yrange [-0.5:{}] "
                         "reverse\nset ytics ({})\n",
                         low - margin, high + margin, frame_statuses - 0.5, tics);
-    body +=
-        fmt::format("plot {0} index 3 using 1:(-0.5):(0):({1}) with vectors nohead lc \"#bbbbbb\", {0} index 2 with "
-                    "points pt 7 ps 0.7 lc \"#c55a11\"\n",
-                    data, frame_statuses);
-    body += errors_panel(comparison);
+    body += status_panel(comparison, blocks);
+    body += errors_panel(comparison, blocks);
     body += "unset multiplot\nunset logscale\nset format y\nset xrange [*:*]\n";
-    return {"comparison", figure_data(comparison), chart_script("comparison", 800, 1000, body)};
+    return {"comparison", blocks.data(), chart_script("comparison", 800, 1000, body)};
 }
 
 } // namespace
@@ -311,6 +339,8 @@ std::string members_csv(const Comparison& comparison) {
 
 std::string comparison_json(const Series& series, const Comparison& comparison) {
     Json out;
+    out["format"] = comparison_folder.format;
+    out["version"] = 1;
     out["title"] = series.title;
     out["made_by"] = series.program;
     out["stiffness"] = series.law != ForceLaw::none ? Json(series.stiffness) : Json();
@@ -357,7 +387,7 @@ void write_bundle(const std::filesystem::path& folder, const Comparison& compari
 } // namespace
 
 std::string write_comparison(const std::filesystem::path& folder, const Series& series, const Comparison& comparison) {
-    make_directory(folder);
+    make_folder_for(folder, comparison_folder);
     const Chart chart = figure(comparison);
     write_atomically(folder / "comparison.csv", frames_csv(comparison));
     write_atomically(folder / "path.csv", path_csv(comparison));

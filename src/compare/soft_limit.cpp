@@ -21,8 +21,12 @@ class SoftGrains {
         : contacts_(state.contacts), load_(state.load), stiffness_(stiffness), dofs_(state.packing),
           packing(state.packing) {}
 
-    /// Forces and their slopes at this place under the loaded stress `sigma`. False: the matrix is singular.
+    /// Forces and their slopes at this place under the loaded stress `sigma`. False: the matrix is singular, or the
+    /// grains are so soft that a step left the range of double.
     bool solve(double sigma) {
+        if (!std::all_of(packing.q.begin(), packing.q.end(), [](double x) { return std::isfinite(x); })) {
+            return false;
+        }
         const auto structure = IsostaticStructure<2>::prove(packing, contacts_);
         if (!structure.ok()) {
             return false;

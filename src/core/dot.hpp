@@ -37,20 +37,27 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
     return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-/// max |x_i|, 0 without components; components that are no numbers do not count. Several maxima at a time, as above.
+/// max |x_i|, 0 without components, NaN where one is none: what is compared with it then fails. Several maxima at a
+/// time, as above.
 inline double largest(std::span<const double> x) {
     constexpr std::size_t lanes = 8;
     std::array<double, lanes> most{};
+    const auto take = [](double& largest, double size) {
+        largest = size <= largest || std::isnan(largest) ? largest : size;
+    };
     std::size_t i = 0;
     for (; i + lanes <= x.size(); i += lanes) {
         for (std::size_t k = 0; k < lanes; ++k) {
-            most[k] = std::max(most[k], std::abs(x[i + k]));
+            take(most[k], std::abs(x[i + k]));
         }
     }
     for (; i < x.size(); ++i) {
-        most[0] = std::max(most[0], std::abs(x[i]));
+        take(most[0], std::abs(x[i]));
     }
-    return *std::max_element(most.begin(), most.end());
+    for (const double lane : most) {
+        take(most[0], lane);
+    }
+    return most[0];
 }
 
 } // namespace isostat

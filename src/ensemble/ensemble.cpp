@@ -1,6 +1,5 @@
 #include "ensemble/ensemble.hpp"
 
-#include "io/descriptor.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "io/record_text.hpp"
@@ -8,11 +7,9 @@
 
 #include <isostat/core/error.hpp>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace isostat {
@@ -22,8 +19,6 @@ using json::Field;
 using json::Json;
 
 namespace {
-
-constexpr std::array<const char*, 4> tables{"ensemble.json", "equilibria.csv", "increments.csv", "samples.csv"};
 
 /// The complete lines of a table without its header.
 template <class Use> void for_each_row(const std::string& text, const Use& use) {
@@ -56,48 +51,14 @@ void append_increments(std::string& table, std::uint64_t seed, const std::vector
 
 } // namespace
 
-struct EnsembleDirectory::Lock {
-    Descriptor file;
-};
-
-namespace {
-
-[[noreturn]] void refuse_to_resume(const fs::path& directory) {
-    throw Error(ErrorKind::bad_input, fmt::format("{}: does not exist: there is no ensemble to resume",
-                                                  (directory / "ensemble.json").string()));
-}
-
-} // namespace
-
 EnsembleDirectory::EnsembleDirectory(fs::path directory, EnsembleHeader header, Mode mode)
-    : samples_(std::move(directory), std::move(header)), lock_(std::make_unique<Lock>()) {
+    : samples_(std::move(directory), std::move(header)) {
     const EnsembleHeader& asked = samples_.header();
     (void)samples_.scene(0);
     (void)samples_.scene(static_cast<std::size_t>(asked.samples) - 1);
-    const fs::path& path = samples_.path();
-    if (mode == Mode::resume && !fs::exists(path / "lock") && !fs::exists(path / "ensemble.json")) {
-        refuse_to_resume(path); // and nothing is left there that looks like an ensemble
-    }
-    make_directory(path);
-    lock_->file = Descriptor::open(path / "lock", O_RDWR | O_CREAT);
-    if (!lock_->file.try_lock()) {
-        throw Error(ErrorKind::cannot_write,
-                    fmt::format("{}: another running program writes into this folder", path.string()));
-    }
-    const bool holds_one = fs::exists(path / "ensemble.json");
-    if (mode == Mode::fresh && (holds_one || fs::exists(path / "run.json"))) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: holds {} already: expected an empty folder{}", path.string(),
-                                holds_one ? "an ensemble" : "a run",
-                                holds_one ? ", --resume to go on or --force to delete it first" : ""));
-    }
-    if (mode == Mode::resume) {
+    taken_ = take_folder(samples_.path(), ensemble_folder, mode);
+    if (taken_.begun && mode == Mode::resume) {
         check_resumed();
-    } else if (holds_one) {
-        fs::remove_all(path / "samples");
-        for (const char* name : tables) {
-            fs::remove(path / name);
-        }
     }
     write_header("running", {});
 }
@@ -105,13 +66,7 @@ EnsembleDirectory::EnsembleDirectory(fs::path directory, EnsembleHeader header, 
 EnsembleDirectory::~EnsembleDirectory() = default;
 
 void EnsembleDirectory::check_resumed() const {
-    const fs::path file = samples_.path() / "ensemble.json";
-    if (holds_only_a_lock(file)) { // killed before it wrote anything
-        return;
-    }
-    if (!fs::exists(file)) {
-        refuse_to_resume(samples_.path());
-    }
+    const fs::path file = samples_.path() / ensemble_folder.mark;
     const Json parsed = Field::parse(read_text(file), file.string());
     const Field old(parsed, file.string());
     const EnsembleHeader& asked = samples_.header();
@@ -158,7 +113,7 @@ void EnsembleDirectory::write_header(const std::string& status, const std::vecto
         object["counts"] = counts;
         object["not_completed"] = reasons;
     }
-    write_atomically(samples_.path() / "ensemble.json", json::dumped(object, 2) + "\n");
+    write_atomically(samples_.path() / ensemble_folder.mark, json::dumped(object, 2) + "\n");
 }
 
 std::vector<Sample> EnsembleDirectory::merge() const {

@@ -2,6 +2,8 @@
 /// \file
 /// The folder of an ensemble: independent samples of one scene, each a run of its own, and the tables made of them.
 
+#include "io/folders.hpp"
+
 #include <isostat/io/run_directory.hpp>
 
 #include <cstdint>
@@ -88,13 +90,9 @@ class SampleFolders {
 /// worked, and in which order, leaves no trace. Throws `Error(cannot_write)` when a file cannot be written.
 class EnsembleDirectory {
   public:
-    enum class Mode {
-        fresh, ///< `Error(usage)` when the folder holds an ensemble
-        force, ///< its samples and tables are deleted first
-        resume ///< finished samples stay; `Error(bad_input)` when there is none, or of another scene, first seed or
-               ///< program version. The number of samples may differ: more are added; those beyond are kept, not
-               ///< merged.
-    };
+    /// resume: finished samples stay; also `Error(bad_input)` for one of another scene, first seed or program version.
+    /// The number of samples may differ: more are added; those beyond are kept, not merged.
+    using Mode = FolderMode;
     /// Makes the folder if needed and locks it: `Error(cannot_write)` when a running program holds it. A scene that has
     /// no samples (`with_seed`) is refused here, before anything is deleted or computed.
     EnsembleDirectory(std::filesystem::path directory, EnsembleHeader header, Mode mode);
@@ -108,11 +106,10 @@ class EnsembleDirectory {
     [[nodiscard]] std::vector<Sample> merge() const;
 
   private:
-    struct Lock;
     void check_resumed() const;
     void write_header(const std::string& status, const std::vector<Sample>& samples) const;
     SampleFolders samples_;
-    std::unique_ptr<Lock> lock_;
+    TakenFolder taken_;
 };
 
 } // namespace isostat

@@ -45,7 +45,7 @@ pid_t start(const Command& command) {
     }
     pointers.push_back(nullptr);
     constexpr mode_t mode = 0666;
-    const int log = ::open(command.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, mode);
+    const int log = ::open(command.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, mode);
     if (log < 0) {
         return -1;
     }

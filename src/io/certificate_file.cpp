@@ -33,7 +33,7 @@ std::string certificate_text(const Certificate& certificate) {
 }
 
 void write_certificate(const std::filesystem::path& path, const Certificate& certificate) {
-    write_atomically(path, certificate_text(certificate));
+    write_output(path, certificate_text(certificate), "\"isostat-certificate\"");
 }
 
 Certificate parse_certificate(const std::string& text, const std::string& source) {

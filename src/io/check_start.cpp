@@ -1,6 +1,7 @@
 #include "contact/candidates.hpp"
 #include "exact/independent_columns.hpp"
 #include "linear/factorisation.hpp"
+#include "packing/pressed_sides.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
@@ -59,6 +60,7 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
         throw Error(ErrorKind::bad_input, fmt::format("{}: {}", source, what));
     };
     validate(state.packing, source);
+    require_pressed_sides(state.packing, state.load, true, source);
     if (const auto pair = fixed_overlap(state.packing)) {
         bad(fmt::format("{} overlap, and cannot move: expected every gap >= 0", to_string<Dim>(*pair)));
     }

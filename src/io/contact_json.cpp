@@ -76,7 +76,9 @@ template <int Dim> Json contact_to_json(const Contact& contact) {
     return {};
 }
 
-template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing) {
+namespace {
+
+template <int Dim> Contact contact_of(const Field& field, const Packing<Dim>& packing) {
     if (field.size() != 3) {
         field.require_size(2, "[disk, disk], [disk, disk, [mx, my]], [disk, \"wall\"] or [\"held\", coordinate]");
     }
@@ -107,6 +109,16 @@ template <int Dim> Contact contact_from_json(const Field& field, const Packing<D
         return {lower ? ContactKind::lower_wall : ContactKind::upper_wall, i, static_cast<int>(a)};
     }
     second.fail("a disk or one of \"left\", \"right\", \"bottom\", \"top\"");
+}
+
+} // namespace
+
+template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing) {
+    const Contact contact = contact_of(field, packing);
+    if (const Json written = contact_to_json<Dim>(contact); written != field.value()) {
+        field.fail(fmt::format("{}: a contact has one spelling", written.dump()));
+    }
+    return contact;
 }
 
 template <int Dim>

@@ -9,8 +9,8 @@ namespace isostat::json {
 
 template <int Dim> Json contact_to_json(const Contact& contact);
 
-/// The contact, its disks in increasing order. Throws `Error(bad_input)` when an index is out of range, a disk touches
-/// itself or a wall is unknown or absent.
+/// The contact. Throws `Error(bad_input)` when an index is out of range, a disk touches itself, a wall is unknown or
+/// absent, or `contact_to_json` spells it otherwise (disks in increasing order, no image [0, 0]).
 template <int Dim> Contact contact_from_json(const Field& field, const Packing<Dim>& packing);
 
 /// Throws `Error(bad_input)` naming the first contact that is listed twice, and its position. `name` is that of the

@@ -23,6 +23,20 @@ Descriptor Descriptor::open(const std::filesystem::path& path, int flags) {
     return file;
 }
 
+std::optional<Descriptor> Descriptor::make(const std::filesystem::path& path) {
+    constexpr mode_t mode = 0666;
+    Descriptor file(::open(path.c_str(), // NOLINT(cppcoreguidelines-pro-type-vararg)
+                           O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode),
+                    path);
+    if (file.fd_ < 0) {
+        if (errno == EEXIST) {
+            return {};
+        }
+        file.fail();
+    }
+    return file;
+}
+
 Descriptor::~Descriptor() {
     if (fd_ >= 0) {
         ::close(fd_);

@@ -3,6 +3,7 @@
 /// A file descriptor that closes itself: what the standard streams do not give (append, truncate, fsync, lock).
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,8 @@ class Descriptor {
     Descriptor() = default;
     /// `flags` as for open(2); new files get mode 0666 under the user's mask.
     static Descriptor open(const std::filesystem::path& path, int flags);
+    /// A new file to write; nothing when there is something of that name, a link too.
+    static std::optional<Descriptor> make(const std::filesystem::path& path);
     ~Descriptor();
     Descriptor(Descriptor&& other) noexcept;
     Descriptor& operator=(Descriptor&& other) noexcept;

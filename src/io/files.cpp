@@ -8,11 +8,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <sstream>
+#include <utility>
 
 namespace isostat {
 
@@ -30,6 +34,20 @@ void sync_directory_of(const std::filesystem::path& path) {
     if (fd >= 0) {
         ::fsync(fd);
         ::close(fd);
+    }
+}
+
+constexpr std::string_view part_suffix = ".part";
+
+/// A new file beside `path`, under a name that nobody has.
+std::pair<std::filesystem::path, Descriptor> temporary_beside(const std::filesystem::path& path) {
+    std::random_device random;
+    for (;;) {
+        const std::uint64_t number = (std::uint64_t{random()} << 32U) | random();
+        const std::filesystem::path part = fmt::format("{}.{:016x}{}", path.string(), number, part_suffix);
+        if (auto file = Descriptor::make(part)) {
+            return {part, std::move(*file)};
+        }
     }
 }
 
@@ -77,9 +95,8 @@ void write_atomically(const std::filesystem::path& path, const std::string& text
             return;
         }
     }
-    const std::filesystem::path part = path.string() + ".part";
+    auto [part, file] = temporary_beside(path);
     try {
-        Descriptor file = Descriptor::open(part, O_WRONLY | O_CREAT | O_TRUNC);
         file.write(text);
         file.sync();
     } catch (const Error&) {
@@ -94,15 +111,49 @@ void write_atomically(const std::filesystem::path& path, const std::string& text
     sync_directory_of(path);
 }
 
-bool holds_only_a_lock(const std::filesystem::path& first) {
-    namespace fs = std::filesystem;
-    const fs::path folder = first.parent_path();
-    return fs::exists(folder / "lock") &&
-           std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [&](const fs::directory_entry& e) {
-               const fs::path name = e.path().filename();
-               return name == "lock" || name == first.filename().string() + ".part" ||
-                      (e.is_directory() && fs::is_empty(e.path()));
-           });
+std::string name_of_temporary(const std::string& name) {
+    constexpr std::size_t digits = 16;
+    if (!name.ends_with(part_suffix)) {
+        return {};
+    }
+    const std::string whole = name.substr(0, name.size() - part_suffix.size());
+    const std::size_t dot = whole.size() > digits ? whole.size() - digits - 1 : std::string::npos;
+    const bool unique = dot != std::string::npos && whole[dot] == '.' &&
+                        whole.find_first_not_of("0123456789abcdef", dot + 1) == std::string::npos;
+    return unique ? whole.substr(0, dot) : whole;
+}
+
+bool is_marked(const std::filesystem::path& path, const std::string& text) {
+    std::array<char, 300> first{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(first.data(), first.size());
+    return std::string_view(first.data(), static_cast<std::size_t>(file.gcount())).find(text) != std::string_view::npos;
+}
+
+void check_output(const std::filesystem::path& path, const std::string& mark,
+                  std::initializer_list<std::filesystem::path> inputs) {
+    std::error_code absent;
+    for (const std::filesystem::path& input : inputs) {
+        if (std::filesystem::equivalent(path, input, absent) && !absent) {
+            throw Error(ErrorKind::usage, fmt::format("{}: is the input {}: expected another name to write to",
+                                                      path.string(), input.string()));
+        }
+    }
+    if (std::filesystem::is_regular_file(path, absent) && std::filesystem::file_size(path) > 0 &&
+        !is_marked(path, mark)) {
+        throw Error(ErrorKind::usage, fmt::format("{}: exists and holds something else than what would be written: "
+                                                  "expected a new name",
+                                                  path.string()));
+    }
+}
+
+void write_output(const std::filesystem::path& path, const std::string& text, const std::string& mark) {
+    check_output(path, mark);
+    write_atomically(path, text);
+}
+
+void check_directory_of(const std::filesystem::path& path) {
+    ::unlink(temporary_beside(path).first.c_str());
 }
 
 void make_directory(const std::filesystem::path& path) {

@@ -1,5 +1,6 @@
 // LAMMPS: data files (atom_style sphere) and text dumps.
 #include "io/foreign_source.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <set>
 #include <utility>
 
 namespace isostat::foreign {
@@ -48,7 +51,7 @@ struct HeaderLine {
     std::size_t numbers = 0;
     std::string keyword;
     explicit HeaderLine(Line l) : line(std::move(l)) {
-        while (numbers < line.size() && to_number(line.field(numbers))) {
+        while (numbers < line.size() && finite_number(line.field(numbers))) {
             ++numbers;
         }
         for (std::size_t k = numbers; k < line.size(); ++k) {
@@ -82,22 +85,21 @@ bool is_counter(const std::string& keyword) {
 struct DataHeader {
     long atoms = -1;
     double tilt = 0; ///< xy
+    Digits sides;
     std::array<std::optional<std::array<double, 2>>, 2> bounds;
+    std::set<std::string> seen; ///< keywords
 
     void take(const HeaderLine& header) {
         const Line& line = header.line;
-        const auto once = [&](bool known) {
-            if (known) {
-                line.fail(header.keyword, "a second header line", "it once");
-            }
-        };
+        if (!seen.insert(header.keyword).second) {
+            line.fail(header.keyword, "a second header line", "it once");
+        }
         const auto numbers = [&](std::size_t count) {
             if (header.numbers != count) {
                 line.fail(line.text(), "header line", fmt::format("{} numbers before '{}'", count, header.keyword));
             }
         };
         if (header.keyword == "atoms") {
-            once(atoms >= 0);
             numbers(1);
             atoms = line.integer(0, "number of atoms", 1, most_disks);
         } else if (header.keyword == "xlo xhi" || header.keyword == "ylo yhi" || header.keyword == "zlo zhi") {
@@ -108,12 +110,14 @@ struct DataHeader {
                 line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
             }
             if (axis < 2) {
-                once(bounds[axis].has_value());
+                sides.see(line.field(0));
+                sides.see(line.field(1));
                 bounds[axis] = {low, high};
             }
         } else if (header.keyword == "xy xz yz") {
             numbers(3);
             tilt = line.number(0, "tilt");
+            sides.see(line.field(0));
             for (std::size_t k = 1; k < 3; ++k) {
                 if (line.number(k, "tilt") != 0) {
                     line.fail(line.field(k), "tilt of the box", "0: only packings in a plane are read");
@@ -190,10 +194,10 @@ struct Coordinates {
                                                        {"xu", "yu", "zu", false, "unwrapped coordinates xu yu"},
                                                        {"xs", "ys", "zs", true, "scaled coordinates xs ys"},
                                                        {"xsu", "ysu", "zsu", true, "scaled coordinates xsu ysu"}}) {
-            columns.x = find_column(names, x, where);
-            columns.y = find_column(names, y, where);
+            columns.x = find_column(names, x);
+            columns.y = find_column(names, y);
             if (columns.x >= 0 && columns.y >= 0) {
-                columns.z = find_column(names, z, where);
+                columns.z = find_column(names, z);
                 scaled = is_scaled;
                 if (*note != '\0') {
                     raw.notes.emplace_back(note);
@@ -242,7 +246,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
             header.take(HeaderLine(line));
         } else if (std::isalpha(static_cast<unsigned char>(content.front())) != 0) {
             line.fail(content, "section", "a section of a LAMMPS data file");
-        } else if (read && line.size() > 0 && !to_number(line.field(0))) {
+        } else if (read && line.size() > 0 && !finite_number(line.field(0))) {
             line.fail(line.field(0), "first value of the row", "a number");
         }
     }
@@ -252,6 +256,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
     if (header.bounds[0] && header.bounds[1]) {
         raw.box = {(*header.bounds[0])[0], (*header.bounds[0])[1], (*header.bounds[1])[0], (*header.bounds[1])[1]};
         raw.tilt = header.tilt;
+        raw.sides = header.sides;
     }
     return raw;
 }
@@ -287,7 +292,7 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         coordinates.find(columns, frame.names, where, raw);
         find_size(columns, frame.names, options, where, raw);
         find_selection(columns, frame.names, options, where);
-        columns.id = find_column(frame.names, "id", where);
+        columns.id = find_column(frame.names, "id");
         Rows rows(columns, source);
         for (long k = 0; k < frame.rows; ++k) {
             const Line line = atoms.next("an atom");
@@ -297,10 +302,12 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         rows.finish(raw);
         raw.box = frame.box;
         raw.tilt = frame.tilt;
+        raw.sides = frame.sides;
         raw.boundary = frame.boundary;
         raw.loose = frame.loose;
         if (coordinates.scaled) {
             const std::array<double, 4> box = frame.box.value();
+            raw.scale = std::max(box[1] - box[0] + std::abs(frame.tilt), box[3] - box[2]);
             for (std::size_t i = 0; i < raw.x.size(); ++i) {
                 raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * frame.tilt;
                 raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);

@@ -1,6 +1,7 @@
 #include "io/foreign_source.hpp"
 
 #include "io/files.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -8,8 +9,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 namespace isostat::foreign {
 
@@ -27,24 +26,7 @@ std::string_view trimmed(std::string_view text) {
     return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2) : text;
 }
 
-template <class T> bool parse(std::string_view field, T& value) {
-    if (field.starts_with('+')) {
-        field.remove_prefix(1);
-    }
-    const char* const end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, value);
-    return error == std::errc() && stop == end && !field.empty() && !field.starts_with("+");
-}
-
 } // namespace
-
-std::optional<double> to_number(std::string_view text) {
-    double value = 0;
-    if (!parse(text, value) || !std::isfinite(value)) {
-        return std::nullopt;
-    }
-    return value;
-}
 
 Line::Line(std::string_view text, int number, const std::string* source, char separator)
     : text_(text), number_(number), source_(source) {
@@ -65,6 +47,10 @@ Line::Line(std::string_view text, int number, const std::string* source, char se
     }
 }
 
+std::string Line::place() const {
+    return fmt::format("{}:{}", *source_, number_);
+}
+
 void Line::fail(std::string_view value, const std::string& name, const std::string& expected) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {} is '{}': expected {}", *source_, number_, name,
                                                   value.substr(0, longest_quote), expected));
@@ -79,7 +65,7 @@ void Line::require_size(std::size_t count, const std::string& what) const {
 }
 
 double Line::number(std::size_t k, const std::string& name) const {
-    const std::optional<double> value = to_number(fields_[k]);
+    const std::optional<double> value = finite_number(fields_[k]);
     if (!value) {
         fail(fields_[k], name, "a finite number");
     }
@@ -87,11 +73,11 @@ double Line::number(std::size_t k, const std::string& name) const {
 }
 
 long Line::integer(std::size_t k, const std::string& name, long lowest, long highest) const {
-    long value = 0;
-    if (!parse(fields_[k], value) || value < lowest || value > highest) {
+    const auto value = plain_integer(fields_[k]);
+    if (!value || *value < lowest || *value > highest) {
         fail(fields_[k], name, fmt::format("an integer from {} to {}", lowest, highest));
     }
-    return value;
+    return *value;
 }
 
 Lines::Lines(std::string_view text, const std::string& source, int before)
@@ -116,15 +102,19 @@ void Lines::fail(const std::string& message) const {
     throw Error(ErrorKind::bad_input, fmt::format("{}:{}: {}", *source_, number_, message));
 }
 
-int find_column(const std::vector<std::string>& names, std::string_view name, const std::string& where) {
+void refuse_twice(const std::vector<std::string>& names, const std::string& where) {
+    std::vector<std::string> sorted = names;
+    std::sort(sorted.begin(), sorted.end());
+    std::erase(sorted, "");
+    if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end()) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: column '{}' is given twice: expected it once", where, *twice));
+    }
+}
+
+int find_column(const std::vector<std::string>& names, std::string_view name) {
     const auto at = std::find(names.begin(), names.end(), name);
-    if (at == names.end()) {
-        return -1;
-    }
-    if (std::find(at + 1, names.end(), name) != names.end()) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: column '{}' is given twice: expected it once", where, name));
-    }
-    return static_cast<int>(at - names.begin());
+    return at == names.end() ? -1 : static_cast<int>(at - names.begin());
 }
 
 void find_size(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
@@ -139,7 +129,7 @@ void find_size(Columns& columns, const std::vector<std::string>& names, const Fo
             raw.notes.push_back(fmt::format("{} {} for every disk, as stated", word(raw.meaning), columns.constant));
             return;
         }
-        columns.size = find_column(names, columns.size_name, where);
+        columns.size = find_column(names, columns.size_name);
         if (columns.size < 0) {
             throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}' for the {}: expected one of: {}", where,
                                                           columns.size_name, word(raw.meaning), listed));
@@ -151,7 +141,7 @@ void find_size(Columns& columns, const std::vector<std::string>& names, const Fo
         for (const char* name : meaning == SizeMeaning::radius
                                     ? std::array<const char*, 4>{"radius", "Radius", "r", "R"}
                                     : std::array<const char*, 4>{"diameter", "Diameter", "d", "D"}) {
-            const int column = find_column(names, name, where);
+            const int column = find_column(names, name);
             if (column < 0) {
                 continue;
             }
@@ -177,11 +167,11 @@ void find_size(Columns& columns, const std::vector<std::string>& names, const Fo
 
 void find_selection(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
                     const std::string& where) {
-    columns.type = find_column(names, "type", where);
+    columns.type = find_column(names, "type");
     if (!options.select) {
         return;
     }
-    columns.select = find_column(names, options.select->first, where);
+    columns.select = find_column(names, options.select->first);
     columns.selected = options.select->second;
     if (columns.select < 0) {
         std::vector<std::string> named = names;
@@ -205,6 +195,8 @@ void Rows::add(const Line& line, Raw& raw) {
     };
     raw.x.push_back(number(columns_.x, "x"));
     raw.y.push_back(number(columns_.y, "y"));
+    raw.places.see(line.field(static_cast<std::size_t>(columns_.x)));
+    raw.places.see(line.field(static_cast<std::size_t>(columns_.y)));
     if (columns_.z >= 0) {
         const double z = number(columns_.z, "z");
         if (z != z_.value_or(z)) {
@@ -222,6 +214,7 @@ void Rows::add(const Line& line, Raw& raw) {
     const std::string name = columns_.meaning == SizeMeaning::radius ? "radius" : "diameter";
     if (columns_.size >= 0) {
         size = number(columns_.size, name.c_str());
+        raw.sizes.see(line.field(static_cast<std::size_t>(columns_.size)));
         if (!(size > 0)) {
             line.fail(line.field(static_cast<std::size_t>(columns_.size)), fmt::format("{} of disk {}", name, disk),
                       "a positive number");

@@ -1,6 +1,8 @@
 #pragma once
 // What the readers of foreign formats share: lines with numbers, named columns, the raw packing.
 
+#include "io/digits.hpp"
+
 #include <isostat/io/foreign.hpp>
 
 #include <array>
@@ -20,6 +22,8 @@ class Line {
     Line(std::string_view text, int number, const std::string* source, char separator = ' ');
 
     [[nodiscard]] std::string_view text() const { return text_; }
+    /// "FILE:LINE".
+    [[nodiscard]] std::string place() const;
     [[nodiscard]] int number() const { return number_; }
     [[nodiscard]] std::size_t size() const { return fields_.size(); }
     [[nodiscard]] std::string_view field(std::size_t k) const { return fields_[k]; }
@@ -38,9 +42,6 @@ class Line {
     int number_;
     const std::string* source_;
 };
-
-/// A number, all of the text; empty when it is none or not finite.
-std::optional<double> to_number(std::string_view text);
 
 /// Walks through a text line by line, after its byte order mark if it has one. \pre text and source outlive it and its
 /// lines.
@@ -83,6 +84,7 @@ struct FrameHeader {
     double tilt = 0;                          ///< x component of the second period
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks
+    Digits sides;                ///< of box and tilt
 };
 
 /// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
@@ -102,7 +104,9 @@ struct Raw {
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
     std::vector<std::string> notes;
-    std::string types; ///< empty, or which there are, and that all are taken for disks; a note too
+    Digits places, sides, sizes; ///< digits of coordinates, of box and tilt, of radii or diameters
+    double scale = 1;            ///< of coordinates in units of the box: the largest length that multiplied them
+    std::string types;           ///< empty, or which there are, and that all are taken for disks; a note too
 };
 
 /// Which columns hold what.
@@ -125,8 +129,11 @@ void find_selection(Columns& columns, const std::vector<std::string>& names, con
 void find_size(Columns& columns, const std::vector<std::string>& names, const ForeignOptions& options,
                const std::string& where, Raw& raw);
 
-/// Column `name`, or -1. Throws when there are two.
-int find_column(const std::vector<std::string>& names, std::string_view name, const std::string& where);
+/// Throws when two columns have one name; "" names none.
+void refuse_twice(const std::vector<std::string>& names, const std::string& where);
+
+/// Column `name`, or -1. \pre no name is there twice.
+int find_column(const std::vector<std::string>& names, std::string_view name);
 
 /// Adds the rows that are selected to a raw packing; finds ids given twice and different z.
 class Rows {

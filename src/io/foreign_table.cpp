@@ -114,6 +114,7 @@ TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& ra
     for (std::string& name : out.names) {
         name = name == "-" ? "" : name;
     }
+    refuse_twice(out.names, out.line == 0 ? lines.source() : fmt::format("{}:{}", lines.source(), out.line));
     return out;
 }
 
@@ -127,10 +128,10 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     const TableNames header = read_table_names(lines, options, raw);
     const std::string where = header.line == 0 ? source : fmt::format("{}:{}", source, header.line);
     Columns columns;
-    columns.x = find_column(header.names, "x", where);
-    columns.y = find_column(header.names, "y", where);
-    columns.z = find_column(header.names, "z", where);
-    columns.id = find_column(header.names, "id", where);
+    columns.x = find_column(header.names, "x");
+    columns.y = find_column(header.names, "y");
+    columns.z = find_column(header.names, "z");
+    columns.id = find_column(header.names, "id");
     if (columns.x < 0 || columns.y < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no columns x and y: expected them in the header", where));
     }

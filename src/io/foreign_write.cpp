@@ -1,3 +1,4 @@
+#include "core/text.hpp"
 #include "io/cell_wrap.hpp"
 
 #include <isostat/io/foreign.hpp>
@@ -41,7 +42,7 @@ std::string lammps_data_text(const Packing<2>& stored, const std::string& title)
     const auto [xlo, xhi, ylo, yhi] = bounds_of(packing);
     const double r = packing.max_radius();
     std::string text = fmt::format("{}\n\n{} atoms\n1 atom types\n\n{} {} xlo xhi\n{} {} ylo yhi\n{} {} zlo zhi\n",
-                                   title.substr(0, title.find('\n')), packing.disk_count(), xlo, xhi, ylo, yhi, -r, r);
+                                   text::shown(title), packing.disk_count(), xlo, xhi, ylo, yhi, -r, r);
     if (tilt_of(packing) != 0 || packing.cell.tilt_moves[0]) { // triclinic for LAMMPS, even at tilt 0
         text += fmt::format("{} 0 0 xy xz yz\n", tilt_of(packing));
     }

@@ -1,5 +1,6 @@
 // Extended XYZ: a number of rows, a line of key=value, the rows; frames follow each other.
 #include "io/foreign_source.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -72,7 +73,7 @@ std::vector<std::string> property_columns(const Line& line, const std::string& p
     constexpr double most_columns = 1000;
     for (std::size_t k = 0; k < parts.size(); k += 3) {
         const std::string& type = parts[k + 1];
-        const double count = to_number(parts[k + 2]).value_or(0);
+        const double count = finite_number(parts[k + 2]).value_or(0);
         if (parts[k].empty() || type.size() != 1 || std::string_view("SRIL").find(type[0]) == std::string_view::npos ||
             !(count >= 1 && count <= most_columns) || count != static_cast<int>(count)) {
             line.fail(parts[k] + ":" + type + ":" + parts[k + 2], "Properties",
@@ -85,18 +86,20 @@ std::vector<std::string> property_columns(const Line& line, const std::string& p
     return names;
 }
 
-std::vector<double> numbers_of(const Line& line, const std::string& key, const std::string& value, std::size_t count) {
+std::vector<double> numbers_of(const Line& line, const std::string& key, const std::string& value, std::size_t count,
+                               Digits& digits) {
     std::string blanks = value;
     std::replace(blanks.begin(), blanks.end(), ',', ' ');
     const std::string source;
     const Line fields(blanks, 0, &source);
     std::vector<double> out;
     for (std::size_t k = 0; k < fields.size(); ++k) {
-        const auto number = to_number(fields.field(k));
+        const auto number = finite_number(fields.field(k));
         if (!number) {
             line.fail(fields.field(k), key, "a finite number");
         }
         out.push_back(*number);
+        digits.see(fields.field(k));
     }
     if (out.size() != count) {
         line.fail(value, key, fmt::format("{} numbers", count));
@@ -107,10 +110,10 @@ std::vector<double> numbers_of(const Line& line, const std::string& key, const s
 void read_box(const Line& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
-        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9);
+        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9, out.sides);
         std::array<double, 2> origin{};
         if (const auto o = keys.find("origin"); o != keys.end()) {
-            const std::vector<double> w = numbers_of(line, "Origin", o->second, 3);
+            const std::vector<double> w = numbers_of(line, "Origin", o->second, 3, out.sides);
             origin = {w[0], w[1]};
         }
         for (const std::size_t off : {1U, 2U, 5U, 6U, 7U}) { // of the second vector its x may differ from 0
@@ -165,6 +168,7 @@ FrameHeader read_xyz_header(const Line& comment, long rows) {
     const auto keys = key_values(comment);
     const auto properties = keys.find("properties");
     out.names = property_columns(comment, properties == keys.end() ? "species:S:1:pos:R:3" : properties->second);
+    refuse_twice(out.names, comment.place());
     read_box(comment, keys, out);
     return out;
 }
@@ -192,10 +196,10 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
         const std::vector<std::string>& names = header.names;
         const std::string where = fmt::format("{}:{}", source, comment.number());
         Columns columns;
-        columns.x = find_column(names, "pos.0", where);
-        columns.y = find_column(names, "pos.1", where);
-        columns.z = find_column(names, "pos.2", where);
-        columns.id = find_column(names, "id", where);
+        columns.x = find_column(names, "pos.0");
+        columns.y = find_column(names, "pos.1");
+        columns.z = find_column(names, "pos.2");
+        columns.id = find_column(names, "id");
         if (columns.x < 0) {
             throw Error(ErrorKind::bad_input,
                         fmt::format("{}: no coordinates: expected pos:R:2 or pos:R:3 in Properties", where));
@@ -204,6 +208,7 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
         find_selection(columns, names, options, where);
         raw.box = header.box;
         raw.tilt = header.tilt;
+        raw.sides = header.sides;
         raw.boundary = header.boundary;
         if (header.box && ((*header.box)[0] != 0 || (*header.box)[2] != 0)) {
             raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");

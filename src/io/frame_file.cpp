@@ -1,6 +1,7 @@
 #include "io/frame_file.hpp"
 
 #include "io/files.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -67,7 +68,7 @@ void FrameFile::recognise() {
     Lines lines(head, source_);
     Raw nothing;
     names_ = read_table_names(lines, {}, nothing);
-    step_ = find_column(names_.names, "timestep", where(names_.line));
+    step_ = find_column(names_.names, "timestep");
     pending_ = lines.at_end() ? "" : row;
     lines_ = lines.number();
 }
@@ -89,7 +90,7 @@ std::string FrameFile::take_dump() {
 std::string FrameFile::take_xyz() {
     std::string line = take_line(), text = line;
     const Line count(content(without_byte_order_mark(line)), 0, &source_);
-    const double rows = count.size() == 1 ? to_number(count.field(0)).value_or(0) : 0;
+    const double rows = count.size() == 1 ? finite_number(count.field(0)).value_or(0) : 0;
     for (double k = 0; k <= rows && !line.empty(); ++k) { // the line of key=value too
         text += line = take_line();
     }
@@ -125,6 +126,7 @@ void FrameFile::read_xyz(Lines& lines, FrameHeader& header) const {
     header = read_xyz_header(comment, rows);
     for (std::string& name : header.names) {
         name = name == "pos.0" ? "x" : name == "pos.1" ? "y" : name == "pos.2" ? "z" : name;
+        name = name == "velo.0" || name == "vel.0" ? "vx" : name == "velo.1" || name == "vel.1" ? "vy" : name;
     }
     header.timestep = xyz_timestep(comment, source_).value_or(frames_);
 }
@@ -211,7 +213,7 @@ FileFrame FrameFile::at(long timestep) {
 
 std::size_t FrameFile::column(const FileFrame& frame, const std::string& name) const {
     const std::string place = where(frame.header.line);
-    const int found = find_column(frame.header.names, name, place);
+    const int found = find_column(frame.header.names, name);
     if (found < 0) {
         throw Error(ErrorKind::bad_input, fmt::format("{}: no column '{}': expected one of {}", place, name,
                                                       fmt::join(frame.header.names, ", ")));

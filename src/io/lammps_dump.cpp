@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 namespace isostat::foreign {
 
@@ -39,6 +40,9 @@ void read_bounds(Lines& lines, std::string_view flags_text, FrameHeader& frame) 
         if (!(low <= high)) {
             line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
         }
+        for (std::size_t k = 0; a < 2 && k < line.size(); ++k) {
+            frame.sides.see(line.field(k));
+        }
         if (tilted && a == 0) {
             frame.tilt = line.number(2, "tilt");
         } else if (tilted && line.number(2, "tilt") != 0) {
@@ -60,6 +64,7 @@ void read_bounds(Lines& lines, std::string_view flags_text, FrameHeader& frame) 
 FrameHeader read_dump_header(Lines& lines, const std::string& item) {
     FrameHeader frame;
     const std::string rows = item == "ATOMS" ? "atoms" : "entries";
+    std::set<std::string> seen;
     for (bool first = true;; first = false) {
         const std::string_view text = lines.take("ITEM: " + item);
         const Line line(text, lines.number(), &lines.source());
@@ -67,6 +72,9 @@ FrameHeader read_dump_header(Lines& lines, const std::string& item) {
             return text.starts_with(name) &&
                    (text.size() == name.size() || std::isspace(static_cast<unsigned char>(text[name.size()])) != 0);
         };
+        if (line.size() > 1 && !seen.insert(std::string(line.field(1))).second) {
+            line.fail(text, "item", "it once in a frame");
+        }
         if (first && !starts("ITEM: TIMESTEP") && !starts("ITEM: UNITS") && !starts("ITEM: TIME")) {
             line.fail(text, "start of a frame", "ITEM: TIMESTEP");
         }
@@ -90,6 +98,7 @@ FrameHeader read_dump_header(Lines& lines, const std::string& item) {
             for (std::size_t k = 2; k < line.size(); ++k) {
                 frame.names.emplace_back(line.field(k));
             }
+            refuse_twice(frame.names, line.place());
             return frame;
         } else {
             line.fail(text, "item",

@@ -16,6 +16,13 @@ template <int Dim> Json terms(const std::vector<std::pair<Contact, Enclosure>>& 
     return rows;
 }
 
+Enclosure enclosure_from(const Field& value, const Field& bound) {
+    if (bound.number() < 0) {
+        bound.fail("a bound, which is not negative");
+    }
+    return {value.number(), bound.number()};
+}
+
 template <int Dim>
 std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const Packing<Dim>& packing) {
     std::vector<std::pair<Contact, Enclosure>> list;
@@ -23,7 +30,7 @@ std::vector<std::pair<Contact, Enclosure>> terms_from(const Field& field, const 
         const Field row = field.at(k);
         row.require_size(3, "[contact, value, bound]");
         list.emplace_back(contact_from_json<Dim>(row.at(std::size_t{0}), packing),
-                          Enclosure{row.at(std::size_t{1}).number(), row.at(std::size_t{2}).number()});
+                          enclosure_from(row.at(std::size_t{1}), row.at(std::size_t{2})));
     }
     return list;
 }
@@ -67,7 +74,7 @@ template <int Dim> RadiusPerturbation perturbation_from_json(const Field& field,
         perturbation.load_zero = contact_from_json<Dim>(field.at("load_zero"), packing);
         const Field rate = field.at("stress_rate");
         rate.require_size(2, "[value, bound]");
-        perturbation.stress_rate = {rate.at(std::size_t{0}).number(), rate.at(std::size_t{1}).number()};
+        perturbation.stress_rate = enclosure_from(rate.at(std::size_t{0}), rate.at(std::size_t{1}));
     }
     if (field.has("open")) {
         perturbation.open = terms_from(field.at("open"), packing);

@@ -1,4 +1,5 @@
 #include "io/files.hpp"
+#include "io/numbers.hpp"
 #include "io/record_text.hpp"
 
 #include <isostat/core/error.hpp>
@@ -7,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -15,16 +15,8 @@ namespace isostat {
 
 namespace {
 
-/// Unlike `Row::number` it takes inf: an unbounded interval.
-double column(const std::string& name, std::string_view field, const std::string& where) {
-    double value = 0;
-    const char* const end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, value);
-    if (error != std::errc() || stop != end) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: {} is '{}': expected a number", where, name, field));
-    }
-    return value;
-}
+/// Beyond it sums and differences of columns overflow; no run comes near.
+constexpr double largest = 1e300;
 
 /// One row by the names of its columns.
 class Fields {
@@ -41,20 +33,36 @@ class Fields {
                         fmt::format("{}: {} columns: expected {}", where_, fields_.size(), columns_.size()));
         }
     }
+    /// Finite.
     [[nodiscard]] double number(const char* name) const {
-        const auto index = std::find(columns_.begin(), columns_.end(), name) - columns_.begin();
-        return column(name, fields_[static_cast<std::size_t>(index)], where_);
-    }
-    [[nodiscard]] int integer(const char* name) const {
-        constexpr double largest = std::numeric_limits<int>::max();
-        const double value = number(name);
-        if (!(std::abs(value) <= largest) || value != std::trunc(value)) {
-            throw Error(ErrorKind::bad_input, fmt::format("{}: {} is {}: expected an integer", where_, name, value));
+        const auto value = finite_number(field(name));
+        if (!value || std::abs(*value) > largest) {
+            fail(name, "a finite number");
         }
-        return static_cast<int>(value);
+        return *value;
+    }
+    /// An interval may be unbounded, a smallest of nothing is inf.
+    [[nodiscard]] double number_or_infinite(const char* name) const {
+        const std::string_view text = field(name);
+        return text == "inf" ? HUGE_VAL : text == "-inf" ? -HUGE_VAL : number(name);
+    }
+    [[nodiscard]] int integer(const char* name, int lowest) const {
+        const auto value = plain_integer(field(name));
+        if (!value || *value < lowest || *value > std::numeric_limits<int>::max()) {
+            fail(name, fmt::format("an integer from {}", lowest));
+        }
+        return static_cast<int>(*value);
     }
 
   private:
+    [[nodiscard]] std::string_view field(const char* name) const {
+        const auto index = std::find(columns_.begin(), columns_.end(), name) - columns_.begin();
+        return fields_[static_cast<std::size_t>(index)];
+    }
+    [[noreturn]] void fail(const char* name, const std::string& expected) const {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{}: {} is '{}': expected {}", where_, name, field(name), expected));
+    }
     const std::vector<std::string>& columns_;
     std::string where_;
     std::vector<std::string_view> fields_;
@@ -62,24 +70,24 @@ class Fields {
 
 EquilibriumRow row_of(const Fields& fields) {
     EquilibriumRow row;
-    row.number = fields.integer("number");
-    row.previous = fields.integer("previous");
-    row.segment = fields.integer("segment");
+    row.number = fields.integer("number", 0);
+    row.previous = fields.integer("previous", -1);
+    row.segment = fields.integer("segment", 0);
     row.stress = fields.number("sigma2");
     row.ratio = fields.number("ratio");
     row.strain1 = fields.number("eps1");
     row.strain2 = fields.number("eps2");
     row.solid_fraction = fields.number("solid_fraction");
-    row.arcs = fields.integer("arcs");
-    row.rattlers = fields.integer("rattlers");
-    row.backbone = fields.integer("backbone");
-    row.hyperstaticity = fields.integer("h");
-    row.stress_low = fields.number("sigma2_low");
-    row.stress_high = fields.number("sigma2_high");
-    row.min_force = fields.number("min_force");
-    row.min_gap = fields.number("min_gap");
-    row.margin = fields.number("margin");
-    row.proved = fields.integer("proved") == 1;
+    row.arcs = fields.integer("arcs", 0);
+    row.rattlers = fields.integer("rattlers", 0);
+    row.backbone = fields.integer("backbone", 0);
+    row.hyperstaticity = fields.integer("h", 0);
+    row.stress_low = fields.number_or_infinite("sigma2_low");
+    row.stress_high = fields.number_or_infinite("sigma2_high");
+    row.min_force = fields.number_or_infinite("min_force");
+    row.min_gap = fields.number_or_infinite("min_gap");
+    row.margin = fields.number_or_infinite("margin");
+    row.proved = fields.integer("proved", 0) == 1;
     return row;
 }
 

@@ -1,6 +1,7 @@
 #include "io/record_digests.hpp"
 
 #include "io/files.hpp"
+#include "io/folders.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/certificate_file.hpp>
@@ -25,12 +26,24 @@ std::string chained_lines(const std::string& lines) {
     return digest;
 }
 
-void check_digest(const fs::path& path, const std::string& found, const std::string& expected) {
-    if (found != expected) {
-        throw Error(ErrorKind::bad_input,
-                    fmt::format("{}: damaged: its digest is {}, expected {} as at the checkpoint: nothing was changed; "
-                                "restore the file, or start again with --force",
-                                path.string(), found, expected));
+/// Words for a file that is not as it was; nothing: it is.
+std::string damage_of(const fs::path& path, const std::string& found, const std::string& expected) {
+    return found == expected
+               ? ""
+               : fmt::format("{}: damaged: its digest is {}, expected {} as at the checkpoint: nothing was "
+                             "changed; restore the file, or start again with --force",
+                             path.string(), found, expected);
+}
+
+/// A checkpoint names the files of its run and nothing else: `resume` reads and cuts what it names.
+void check_names(const json::Field& list, bool of_states) {
+    for (const auto& [name, unused] : list.value().items()) {
+        const bool records = name == "events.jsonl" || name == "equilibria.csv" || name == witness_records;
+        const bool state = name == "start.json" || (name.starts_with("states/eq_") && run_folder.owns(name));
+        if (!(of_states ? state : records)) {
+            list.at(name.c_str())
+                .fail(of_states ? "no file but start.json and states/eq_*.json" : "no file but the records of a run");
+        }
     }
 }
 
@@ -40,7 +53,7 @@ std::string chained(const std::string& before, const std::string& line) {
     return sha256(before + line);
 }
 
-std::optional<CheckedRecords> check_records(const fs::path& directory) {
+std::optional<CheckedRecords> compare_records(const fs::path& directory) {
     const fs::path path = directory / "checkpoint.json";
     if (!fs::exists(path)) {
         return std::nullopt;
@@ -49,34 +62,52 @@ std::optional<CheckedRecords> check_records(const fs::path& directory) {
     CheckedRecords found;
     found.checkpoint = json::Field::parse(whole, path.string());
     const json::Field file(found.checkpoint, path.string());
-    const std::size_t body = whole.rfind(before_digest);
-    check_digest(path, sha256(whole.substr(0, body)), file.at("digest").string());
     if (file.at("format").string() != "isostat-checkpoint") {
         file.at("format").fail("\"isostat-checkpoint\"");
     }
+    (void)file.at("version").integer(1, 1);
+    const auto note = [&found](const std::string& damage) {
+        found.damage = found.damage.empty() ? damage : found.damage;
+    };
+    const std::size_t body = whole.rfind(before_digest);
+    note(damage_of(path, sha256(whole.substr(0, body)), file.at("digest").string()));
     if (const std::size_t state = whole.find(before_state); state < body) {
         const std::size_t begin = state + std::string_view(before_state).size();
         found.state = whole.substr(begin, body - begin);
     }
+    for (const char* list : {"bytes", "files"}) {
+        check_names(file.at(list), std::string_view(list) == "files");
+    }
     for (const auto& [name, unused] : file.at("files").value().items()) {
         found.files[name] = file.at("files").at(name.c_str()).string();
-        check_digest(directory / name, sha256(read_text(directory / name)), found.files[name]);
+        const bool there = fs::exists(directory / name);
+        note(damage_of(directory / name, there ? sha256(read_text(directory / name)) : "none, as it is missing",
+                       found.files[name]));
     }
     for (const auto& [name, unused] : file.at("bytes").value().items()) {
         const fs::path records = directory / name;
         const long bytes = file.at("bytes").at(name.c_str()).integer();
+        const std::string expected = file.at("digests").at(name.c_str()).string();
         const long size = fs::exists(records) ? static_cast<long>(fs::file_size(records)) : -1;
         if (bytes < 0 || size < bytes) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint: nothing was "
-                                    "changed; restore the file, or start again with --force",
-                                    records.string(), size, bytes));
+            note(fmt::format("{}: {} bytes: expected at least {}, the length at the checkpoint: nothing was "
+                             "changed; restore the file, or start again with --force",
+                             records.string(), size, bytes));
+            continue;
         }
         const std::string lines =
             bytes > 0 ? read_text(records).substr(0, static_cast<std::size_t>(bytes)) : std::string();
         const std::string digest = chained_lines(lines);
-        check_digest(records, digest, file.at("digests").at(name.c_str()).string());
+        note(damage_of(records, digest, expected));
         found.lines[name] = {bytes, digest};
+    }
+    return found;
+}
+
+std::optional<CheckedRecords> check_records(const fs::path& directory) {
+    std::optional<CheckedRecords> found = compare_records(directory);
+    if (found && !found->damage.empty()) {
+        throw Error(ErrorKind::bad_input, found->damage);
     }
     return found;
 }

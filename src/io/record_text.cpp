@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <limits>
 
 namespace isostat {
 
@@ -122,6 +123,16 @@ Json certificate_json(const ArcCertificate& certificate) {
     object["power_open_start"] = certificate.power_open_start;
     object["power_open_end"] = certificate.power_open_end;
     return object;
+}
+
+/// A run goes on counting from here.
+long counted(const json::Field& field) {
+    constexpr long most = 1L << 53;
+    const long value = field.integer();
+    if (value < 0 || value > most) {
+        field.fail("a count");
+    }
+    return value;
 }
 
 } // namespace
@@ -306,43 +317,42 @@ Json counters_json(const RunCounters& counters) {
 
 RunCounters counters_from(const json::Field& field) {
     RunCounters counters;
-    counters.steps = field.at("arcs").integer();
-    counters.equilibria = static_cast<int>(field.at("equilibria").integer());
+    counters.steps = counted(field.at("arcs"));
+    counters.equilibria = field.at("equilibria").integer(0, std::numeric_limits<int>::max());
     counters.seconds = field.at("seconds").number();
     const json::Field tally = field.at("decisions");
-    counters.tally.combinatorial = tally.at("combinatorial").integer();
-    counters.tally.double_bound = tally.at("double").integer();
-    counters.tally.double_double = tally.at("double-double").integer();
-    counters.tally.multiprecision = tally.at("mpfr").integer();
-    counters.tally.exact = tally.at("exact").integer();
-    counters.tally.undecided = tally.at("undecided").integer();
+    counters.tally.combinatorial = counted(tally.at("combinatorial"));
+    counters.tally.double_bound = counted(tally.at("double"));
+    counters.tally.double_double = counted(tally.at("double-double"));
+    counters.tally.multiprecision = counted(tally.at("mpfr"));
+    counters.tally.exact = counted(tally.at("exact"));
+    counters.tally.undecided = counted(tally.at("undecided"));
     for (std::size_t k = 0; k < decision_kinds; ++k) {
         const json::Field kind = tally.at("kinds").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str());
         for (std::size_t rung = 0; rung < counters.tally.by_kind[k].size(); ++rung) {
-            counters.tally.by_kind[k][rung] =
-                kind.at(std::string(to_string(static_cast<Rung>(rung))).c_str()).integer();
+            counters.tally.by_kind[k][rung] = counted(kind.at(std::string(to_string(static_cast<Rung>(rung))).c_str()));
         }
         counters.tally.smallest_margin_of[k] = kind.at("smallest_margin").number();
     }
-    counters.tally.structural_ties = tally.at("ties").at("structural").integer();
-    counters.tally.ties = tally.at("ties").at("other").integer();
-    counters.tally.choices = tally.at("ties").has("choices") ? tally.at("ties").at("choices").integer() : 0;
-    for (std::size_t k = 0; k < decision_kinds && tally.at("ties").has("perturbed"); ++k) { // older records: none
+    counters.tally.structural_ties = counted(tally.at("ties").at("structural"));
+    counters.tally.ties = counted(tally.at("ties").at("other"));
+    counters.tally.choices = tally.at("ties").has("choices") ? counted(tally.at("ties").at("choices")) : 0;
+    for (std::size_t k = 0; k < decision_kinds; ++k) {
         counters.tally.perturbed[k] =
-            tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()).integer();
+            counted(tally.at("ties").at("perturbed").at(std::string(to_string(static_cast<DecisionKind>(k))).c_str()));
     }
     counters.tally.smallest_margin = tally.at("smallest_margin").number();
     const json::Field states = field.at("certified_states");
-    counters.states.proved = states.at("proved").integer();
-    counters.states.refuted = states.at("refuted").integer();
-    counters.states.undecided = states.at("undecided").integer();
+    counters.states.proved = counted(states.at("proved"));
+    counters.states.refuted = counted(states.at("refuted"));
+    counters.states.undecided = counted(states.at("undecided"));
     counters.states.seconds = states.at("seconds").number();
     const json::Field arcs = field.at("certified_arcs");
-    counters.arcs.certified = arcs.at("certified").integer();
-    counters.arcs.undecided = arcs.at("undecided").integer();
-    counters.arcs.power_undecided = arcs.at("power_undecided").integer();
-    counters.arcs.pieces = arcs.at("pieces").integer();
-    counters.arcs.factorisations = arcs.at("centres").integer();
+    counters.arcs.certified = counted(arcs.at("certified"));
+    counters.arcs.undecided = counted(arcs.at("undecided"));
+    counters.arcs.power_undecided = counted(arcs.at("power_undecided"));
+    counters.arcs.pieces = counted(arcs.at("pieces"));
+    counters.arcs.factorisations = counted(arcs.at("centres"));
     counters.arcs.tube_margin = arcs.at("tube_margin").number();
     counters.arcs.gap_margin = arcs.at("gap_margin").number();
     counters.arcs.seconds = arcs.at("seconds").number();

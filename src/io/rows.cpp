@@ -1,14 +1,14 @@
 #include "io/rows.hpp"
 
 #include "io/files.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
+#include <algorithm>
 
 namespace isostat {
 
@@ -16,15 +16,6 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r,";
 constexpr std::size_t longest_quote = 60; ///< characters of a bad line that a message repeats
-
-template <class T> bool parse(std::string_view field, T& value) {
-    if (field.starts_with('+')) {
-        field.remove_prefix(1);
-    }
-    const char* const end = field.data() + field.size();
-    const auto [stop, error] = std::from_chars(field.data(), end, value);
-    return error == std::errc() && stop == end;
-}
 
 } // namespace
 
@@ -42,19 +33,19 @@ void Row::fail(std::size_t field, const std::string& name, const std::string& ex
 }
 
 double Row::number(std::size_t field, const std::string& name) const {
-    double value = 0;
-    if (!parse(fields_[field], value) || !std::isfinite(value)) {
+    const auto value = finite_number(fields_[field]);
+    if (!value) {
         fail(field, name, "a finite number");
     }
-    return value;
+    return *value;
 }
 
 long Row::integer(std::size_t field, const std::string& name, long lowest, long highest) const {
-    long value = 0;
-    if (!parse(fields_[field], value) || value < lowest || value > highest) {
+    const auto value = plain_integer(fields_[field]);
+    if (!value || *value < lowest || *value > highest) {
         fail(field, name, fmt::format("an integer from {} to {}", lowest, highest));
     }
-    return value;
+    return *value;
 }
 
 RowReader::RowReader(const std::string& text, const std::string& source)

@@ -1,6 +1,7 @@
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 #include "io/record_text.hpp"
@@ -24,14 +25,6 @@ using json::Field;
 using json::Json;
 namespace fs = std::filesystem;
 
-/// Everything that a run may leave in its folder, figures apart.
-constexpr std::array<const char*, 7> run_files{"run.json",     "events.jsonl", "equilibria.csv", "checkpoint.json",
-                                               "summary.json", "start.json",   "work.json"};
-
-fs::path state_path(const fs::path& directory, int equilibrium) {
-    return directory / "states" / fmt::format("eq_{:06}.json", equilibrium);
-}
-
 std::string header_text(const RunHeader& header, const std::string& status) {
     Json object;
     object["format"] = "isostat-run";
@@ -44,11 +37,6 @@ std::string header_text(const RunHeader& header, const std::string& status) {
     object["programme"] = header.programme;
     object["settings"] = Json::parse(header.settings);
     return json::dumped(object, 2) + "\n";
-}
-
-[[noreturn]] void refuse_to_resume(const fs::path& directory) {
-    throw Error(ErrorKind::bad_input,
-                fmt::format("{}: does not exist: there is no run to resume", (directory / "run.json").string()));
 }
 
 /// What is known of the way between the equilibria.
@@ -75,42 +63,25 @@ const char* to_string(RunStatus status) {
 }
 
 struct RunDirectory::Files {
-    Descriptor lock, events, equilibria, witnesses;
+    TakenFolder folder;
+    Descriptor events, equilibria, witnesses;
 };
 
 RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, const RunCounters& counters)
     : directory_(std::move(directory)), header_(std::move(header)), counters_(counters), resumed_(mode == Mode::resume),
       files_(std::make_unique<Files>()) {
-    if (mode == Mode::resume && !fs::exists(directory_ / "lock") && !fs::exists(directory_ / "run.json")) {
-        refuse_to_resume(directory_); // and nothing is left there that looks like a run
-    }
-    make_directory(directory_);
-    files_->lock = Descriptor::open(directory_ / "lock", O_RDWR | O_CREAT);
-    if (!files_->lock.try_lock()) {
-        throw Error(ErrorKind::cannot_write,
-                    fmt::format("{}: another running program writes into this folder", directory_.string()));
-    }
-    const bool holds_a_run = fs::exists(directory_ / "run.json");
-    if (mode == Mode::fresh && holds_a_run) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("{}: holds a run already: expected an empty folder, --resume to go on or --force to "
-                                "delete it first",
-                                directory_.string()));
-    }
+    files_->folder = take_folder(directory_, run_folder, mode);
     if (mode == Mode::resume) {
         open_for_resume();
-    } else if (holds_a_run) {
-        for (const char* name : run_files) {
-            fs::remove(directory_ / name);
-        }
-        fs::remove_all(directory_ / "states");
-        fs::remove_all(directory_ / "figures");
-        fs::remove_all(directory_ / "certificates");
+        const FolderContent& before = files_->folder.before;
+        remove_files(directory_, before.leftovers);
+        fs::remove(directory_ / "preparation_failed.json");
+        notes_ = notes_on(before, run_folder);
     }
     make_directory(directory_ / "states");
     fs::remove(directory_ / "summary.json"); // of the interrupted run: it must not look like that of this one
     write_header("running");
-    const int flags = O_WRONLY | O_CREAT | O_APPEND | (checkpoint_ ? 0 : O_TRUNC);
+    const int flags = O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW | (checkpoint_ ? 0 : O_TRUNC);
     files_->events = Descriptor::open(directory_ / "events.jsonl", flags);
     files_->equilibria = Descriptor::open(directory_ / "equilibria.csv", flags);
     if (header_.witnesses) {
@@ -128,15 +99,12 @@ RunDirectory::RunDirectory(fs::path directory, RunHeader header, Mode mode, cons
 RunDirectory::~RunDirectory() = default;
 
 void RunDirectory::open_for_resume() {
-    const fs::path run = directory_ / "run.json";
-    if (holds_only_a_lock(run)) { // killed before it wrote anything
+    if (!files_->folder.begun) { // killed before it wrote anything
         previous_status_ = "killed before it began";
         resumed_ = false;
         return;
     }
-    if (!fs::exists(run)) {
-        refuse_to_resume(directory_);
-    }
+    const fs::path run = directory_ / run_folder.mark;
     const Json parsed = Field::parse(read_text(run), run.string());
     const Field old(parsed, run.string());
     previous_status_ = old.at("status").string();
@@ -150,6 +118,11 @@ void RunDirectory::open_for_resume() {
                                 run.string(), old.at("program").string(), header_.program));
     }
     header_.command = old.at("command").string(); // states tell how the run was started
+    read_checkpoint();
+}
+
+/// Everything is checked before anything is cut.
+void RunDirectory::read_checkpoint() {
     const std::optional<CheckedRecords> checked = check_records(directory_);
     if (!checked) {
         return;
@@ -157,13 +130,16 @@ void RunDirectory::open_for_resume() {
     const std::string path = (directory_ / "checkpoint.json").string();
     const Field file(checked->checkpoint, path);
     Checkpoint& point = checkpoint_.emplace();
-    constexpr int most = std::numeric_limits<int>::max();
-    point.segment = file.at("segment").integer(0, most);
-    point.made = file.at("made").integer(0, most);
+    const auto segments = static_cast<int>(header_.programme.size());
+    point.segment = file.at("segment").integer(0, std::max(0, segments - 1));
+    point.made = file.at("made").integer(0, std::numeric_limits<int>::max());
     point.segment_done = file.at("segment_done").boolean();
     point.counters = counters_from(file.at("counters"));
     StateFile<2> state = parse_any_state<2>(file.at("state").value().dump(), path);
     point.state = state.state;
+    const Cell<2>& cell = point.state.packing.cell;
+    const bool tilts = cell.any() && cell.tilt_moves[0];
+    file.at("strain").require_size(tilts ? 3 : 2, "a strain for each axis");
     for (std::size_t a = 0; a < file.at("strain").size(); ++a) {
         last_strain_.push_back(file.at("strain").at(a).number());
     }
@@ -173,10 +149,9 @@ void RunDirectory::open_for_resume() {
     digests_ = checked->files;
     const fs::path equilibria = directory_ / "equilibria.csv";
     columns_ = named_columns(read_text(equilibria), equilibria.string());
-    // Everything is checked before anything is cut.
     std::vector<std::pair<Descriptor, long>> cut;
     for (const auto& [name, lines] : checked->lines) {
-        cut.emplace_back(Descriptor::open(directory_ / name, O_WRONLY), lines.bytes);
+        cut.emplace_back(Descriptor::open(directory_ / name, O_WRONLY | O_NOFOLLOW), lines.bytes);
         (name == "events.jsonl"    ? events_digest_
          : name == witness_records ? witness_digest_
                                    : equilibria_digest_) = lines.digest;
@@ -188,7 +163,7 @@ void RunDirectory::open_for_resume() {
 
 std::optional<State<2>> RunDirectory::start() const {
     const fs::path path = directory_ / "start.json";
-    if (!resumed_ || !fs::exists(path)) { // a file of that name in a new folder is not ours
+    if (!resumed_ || !fs::exists(path)) {
         return std::nullopt;
     }
     return read_any_state<2>(path).state;
@@ -205,7 +180,7 @@ void RunDirectory::store_start(const State<2>& state) {
 }
 
 State<2> RunDirectory::stored(int equilibrium) const {
-    return read_any_state<2>(state_path(directory_, equilibrium)).state;
+    return read_any_state<2>(directory_ / state_name(equilibrium)).state;
 }
 
 void RunDirectory::begin_segment(int number, const Segment& goal, int made, int from) {
@@ -252,9 +227,9 @@ void RunDirectory::on_equilibrium(const EquilibriumRecord<2>& record, const Stat
     const bool every = header_.states_every > 0 && record.number % header_.states_every == 0;
     const bool kept = std::find(header_.keep.begin(), header_.keep.end(), record.number) != header_.keep.end();
     if (first || every || kept || segment_done()) {
-        const fs::path path = state_path(directory_, record.number);
-        write_state<2>(path, last_, last_forces_);
-        keep_digest(fs::relative(path, directory_).string());
+        const std::string name = state_name(record.number);
+        write_state<2>(directory_ / name, last_, last_forces_);
+        keep_digest(name);
     }
     if (first) {
         return; // the start is made again from start.json: run_segment reports number 0 itself
@@ -323,7 +298,7 @@ void RunDirectory::finish(RunStatus status, const std::string& reason) {
     name_columns({}); // of a run without a start
     write_checkpoint();
     if (!last_.packing.radius.empty()) {
-        write_state<2>(directory_ / "states" / "last.json", last_, last_forces_);
+        write_state<2>(directory_ / last_state, last_, last_forces_);
     }
     Json object;
     object["format"] = "isostat-summary";

@@ -4,6 +4,7 @@
 #include "io/perturbation_json.hpp"
 #include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
+#include "packing/pressed_sides.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/foreign.hpp>
@@ -85,6 +86,11 @@ constexpr std::array<const char*, 3> tilt_name{"xy", "xz", "yz"};
 template <int Dim> void read_moves(const Field& moves, Cell<Dim>& cell) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
         const std::string& name = moves.at(k).string();
+        for (std::size_t before = 0; before < k; ++before) {
+            if (moves.at(before).string() == name) {
+                moves.at(k).fail("each coordinate once");
+            }
+        }
         bool known = name == "scale";
         if (known && (moves.size() != 1 || !cell.all())) {
             moves.at(k).fail("\"scale\" alone, where every axis is periodic: it is what moves of an isotropic cell");
@@ -168,6 +174,9 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
             const long i = fixed.at(k).integer();
             if (i < 0 || i >= packing.disk_count()) {
                 fixed.at(k).fail(fmt::format("a disk from 0 to {}", packing.disk_count() - 1));
+            }
+            if (packing.fixed[static_cast<std::size_t>(i)] != 0) {
+                fixed.at(k).fail("each disk once");
             }
             packing.fixed[static_cast<std::size_t>(i)] = 1;
         }
@@ -293,6 +302,8 @@ template <int Dim> StateFile<Dim> json::state_from_json(const Field& document, c
     state.packing = packing_of<Dim>(document);
     validate(state.packing, source);
     state.load = load_of(document, state.packing);
+    require_pressed_sides(state.packing, state.load,
+                          document.has("load") && document.at("load").has("reference_length"), source);
     if (document.has("equilibrium")) {
         const long number = document.at("equilibrium").integer();
         if (number < 0 || number > 1'000'000'000) {

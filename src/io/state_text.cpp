@@ -170,7 +170,7 @@ template <int Dim> std::string state_text(const State<Dim>& state, std::span<con
 template <int Dim>
 void write_state(const std::filesystem::path& path, const State<Dim>& state, std::span<const double> forces) {
     count_work(Work::states_written);
-    write_atomically(path, state_text(state, forces));
+    write_output(path, state_text(state, forces), "\"isostat-state\"");
 }
 
 template <int Dim>
@@ -178,7 +178,7 @@ void write_packing(const std::filesystem::path& path, const Packing<Dim>& packin
     std::string text = "{\n  \"format\": \"isostat-packing\",\n  \"version\": 2,\n";
     text += fmt::format("  \"incomplete\": {},\n", json::dumped(reason));
     append_disks(text, packing);
-    write_atomically(path, text + "\n}\n");
+    write_output(path, text + "\n}\n", "\"isostat-packing\"");
 }
 
 template void write_packing<2>(const std::filesystem::path&, const Packing<2>&, const std::string&);

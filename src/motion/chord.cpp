@@ -98,7 +98,7 @@ template <int Dim> bool Chord<Dim>::iterate(Packing<Dim>& at, const Contact& row
         }
         ++iterations_;
         if (last) {
-            return true;
+            return largest(at.q) < infinity;
         }
         // What no longer shrinks is rounding noise, or the factors are stale; factors taken over shrink it slowly.
         if (k > 3 && size > (is_fresh() ? 0.5 : 0.9) * previous) {

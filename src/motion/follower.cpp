@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace isostat {
 
@@ -255,20 +256,17 @@ typename Follower<Dim>::Attempt Follower<Dim>::shorten_before(const GapEvent& ev
 
 template <int Dim> std::optional<CurvePoint<Dim>> Follower<Dim>::step_to(double s, double accuracy) {
     Packing<Dim> at = here_.predicted(s);
-    const Packing<Dim> guess = at;
+    Vector off = at.q;
     if (!chord_.converge(at, Contact{ContactKind::held, static_cast<int>(here_.fastest), 0})) {
         return std::nullopt;
     }
-    double off = 0;
-    for (std::size_t k = 0; k < at.q.size(); ++k) {
-        off = std::max(off, std::abs(at.q[k] - guess.q[k]));
-    }
+    std::transform(at.q.begin(), at.q.end(), off.begin(), off.begin(), std::minus<>());
     // A start known to its last bits only is put back on the curve first: that is no bend, however short the step.
-    if (off > 0.2 * s + 1e-10 * at.min_radius()) {
+    if (!(largest(off) <= 0.2 * s + 1e-10 * at.min_radius())) {
         return std::nullopt; // another branch, or a curve too bent for this step
     }
     auto t = chord_.tangent(at, here_.tangent, here_.fastest, accuracy);
-    if (!t || largest(*t) > 4) {
+    if (!t || !(largest(*t) <= 4)) {
         return std::nullopt; // another coordinate became much faster: shorter steps re-choose it in time
     }
     return CurvePoint<Dim>{std::move(at), std::move(*t)};

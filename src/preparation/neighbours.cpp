@@ -3,6 +3,10 @@
 #include "contact/near_pairs.hpp"
 #include "contact/separation.hpp"
 
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,7 +94,8 @@ template <int Dim> class Grid {
 } // namespace
 
 template <int Dim>
-void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs) {
+void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs,
+                int most) {
     const std::size_t n = radius.size();
     pairs.start.assign(1, 0);
     pairs.partner.clear();
@@ -117,6 +122,12 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
                 pairs.partner.push_back(partner);
             }
         });
+        if (pairs.partner.size() > static_cast<std::size_t>(most)) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{} disks have more than {} pairs at gaps below {}: expected fewer (disks that lie "
+                                    "on each other, or too large a threshold)",
+                                    n, most, reach));
+        }
         std::sort(pairs.partner.begin() + first, pairs.partner.end());
         pairs.start.push_back(static_cast<int>(pairs.partner.size()));
     }
@@ -164,6 +175,6 @@ template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packin
 }
 
 template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);
-template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&);
+template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&, int);
 
 } // namespace isostat::preparation

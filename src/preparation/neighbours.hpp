@@ -6,6 +6,7 @@
 #include <isostat/contact/contact.hpp>
 #include <isostat/packing/packing.hpp>
 
+#include <limits>
 #include <vector>
 
 namespace isostat::preparation {
@@ -18,8 +19,10 @@ struct PairList {
 
 /// All pairs with gap < reach: complete for any positions and radii. `x` holds Dim*n coordinates.
 /// The answer does not depend on the grid, hence not on rounding of the cell numbers. Cost O(n) for comparable radii.
+/// Throws `Error(bad_input)` when they are more than `most`.
 template <int Dim>
-void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs);
+void find_pairs(const std::vector<double>& x, const std::vector<double>& radius, double reach, PairList& pairs,
+                int most = std::numeric_limits<int>::max());
 
 /// The same with the disks near walls: pairs and lower walls with gap < `reach`, upper walls with gap < `upper_reach`,
 /// sorted. In a cell: pairs with the images of another disk too, those with gap < `reach` + `upper_reach`, as a period
@@ -27,6 +30,6 @@ void find_pairs(const std::vector<double>& x, const std::vector<double>& radius,
 template <int Dim> std::vector<Contact> near_contacts(const Packing<Dim>& packing, double reach, double upper_reach);
 
 extern template std::vector<Contact> near_contacts<2>(const Packing<2>&, double, double);
-extern template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&);
+extern template void find_pairs<2>(const std::vector<double>&, const std::vector<double>&, double, PairList&, int);
 
 } // namespace isostat::preparation

@@ -2,6 +2,7 @@
 
 #include "contact/candidates.hpp"
 #include "contact/words.hpp"
+#include "core/dot.hpp"
 #include "preparation/best_conditioned.hpp"
 #include "statics/statics.hpp"
 #include "verified/configuration.hpp"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -136,9 +136,6 @@ template <int Dim> class Basis {
     [[nodiscard]] const std::vector<Contact>& contacts() const { return structure_.contacts(); }
     [[nodiscard]] const Contact& other(std::size_t m) const { return others_[m]; }
     [[nodiscard]] const IsostaticStructure<Dim>& structure() const { return structure_; }
-    static double largest(const std::vector<double>& x) {
-        return std::accumulate(x.begin(), x.end(), 0.0, [](double m, double y) { return std::max(m, std::abs(y)); });
-    }
 
   private:
     static Load<Dim> final_load(Load<Dim> load, const Packing<Dim>& packing) {
@@ -223,9 +220,9 @@ Result<Polished<Dim>> pivot(Packing<Dim> packing, std::vector<Contact> contacts,
         if (!motion.entering) {
             return failed(FailureKind::unbounded, "opening {} closes no gap", named<Dim>(contacts[*pulling]));
         }
-        if (motion.time * Basis<Dim>::largest(motion.velocity) > limits.step) {
+        if (motion.time * largest(motion.velocity) > limits.step) {
             return failed(FailureKind::not_converged, "opening {} moves farther ({:.3g}) than linear gaps hold",
-                          named<Dim>(contacts[*pulling]), motion.time * Basis<Dim>::largest(motion.velocity));
+                          named<Dim>(contacts[*pulling]), motion.time * largest(motion.velocity));
         }
         for (std::size_t mu = 0; mu < motion.velocity.size(); ++mu) {
             packing.q[static_cast<std::size_t>(basis.structure().dofs().coordinate_of(static_cast<int>(mu)))] +=

@@ -23,7 +23,7 @@ struct Snapped {
 Snapped snapped(const PyState& file, double stiffness) {
     Snapped out;
     compare::SoftForces grains = compare::soft_grains(file, "state");
-    if (stiffness > 0) {
+    if (finite(stiffness, "stiffness") > 0) {
         compare::add_law(grains, stiffness);
     }
     out.snap = compare::snap(grains.soft);

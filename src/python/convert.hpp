@@ -52,6 +52,8 @@ py::array_t<int> contact_array(const std::vector<Contact>& contacts);
 py::object contact_pair(const Contact& contact);
 /// The contact of a pair. Throws `Error(bad_input)`.
 Contact contact_of(std::pair<int, int> pair);
+/// The number. Throws `Error(bad_input)` when it is not finite.
+double finite(double value, const char* name);
 /// (n, 2) of the ends of intervals.
 py::array_t<double> interval_array(const std::vector<Interval>& intervals);
 

@@ -45,11 +45,7 @@ Number to_number(const py::handle& object) {
         return object.cast<Number>();
     }
     if (py::isinstance<py::float_>(object)) {
-        const auto value = object.cast<double>();
-        if (!std::isfinite(value)) {
-            throw Error(ErrorKind::bad_input, "number is " + std::to_string(value) + ": expected a finite one");
-        }
-        return Number::from_double(value);
+        return Number::from_double(finite(object.cast<double>(), "number"));
     }
     return Number::parse(py::str(object).cast<std::string>());
 }

@@ -1,10 +1,12 @@
 #include "convert.hpp"
+#include "core/text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 
 namespace isostat::python {
@@ -62,6 +64,14 @@ Contact contact_of(std::pair<int, int> pair) {
                                           "right, (i, -4) top wall, (i, -9) held coordinate");
 }
 
+double finite(double value, const char* name) {
+    if (!std::isfinite(value)) {
+        throw Error(ErrorKind::bad_input,
+                    std::string(name) + " is " + std::to_string(value) + ": expected a finite number");
+    }
+    return value;
+}
+
 py::array_t<double> interval_array(const std::vector<Interval>& intervals) {
     py::array_t<double> array({static_cast<py::ssize_t>(intervals.size()), py::ssize_t{2}});
     auto rows = array.mutable_unchecked<2>();
@@ -78,7 +88,7 @@ py::object verdict_object(Verdict verdict) {
 
 void raise(const Failure& failure) {
     const py::object type = ours("isostat._words", "failure_of")(to_string(failure.kind));
-    PyErr_SetObject(type.ptr(), py::str(failure.message()).ptr());
+    PyErr_SetObject(type.ptr(), py::str(text::shown(failure.message())).ptr());
     throw py::error_already_set();
 }
 
@@ -121,7 +131,7 @@ void bind_errors(py::module_& /*module*/) {
             std::rethrow_exception(std::move(thrown));
         } catch (const Error& error) {
             const py::object type = ours("isostat._words", "error_of")(error.exit_status());
-            PyErr_SetString(type.ptr(), error.what());
+            PyErr_SetString(type.ptr(), text::shown(error.what()).c_str());
         }
     });
 }

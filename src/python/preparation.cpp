@@ -31,20 +31,24 @@ template <class Work> std::shared_ptr<PyState> stoppable(PreparationOptions opti
 
 std::shared_ptr<PyState> prepare_disks(int disks, std::uint64_t seed, std::pair<double, double> diameters,
                                        double jitter, const std::optional<std::vector<double>>& radii) {
+    finite(diameters.first + diameters.second, "diameters");
+    for (const double radius : radii.value_or(std::vector<double>())) {
+        finite(radius, "radii");
+    }
     PreparationOptions options;
     options.disks = disks;
     options.seed = seed;
     options.diameters.smallest = diameters.first;
     options.diameters.largest = diameters.second;
-    options.jitter = jitter;
+    options.jitter = finite(jitter, "jitter");
     options.radii = radii.value_or(std::vector<double>());
     return stoppable(options, [](const PreparationOptions& o, PreparationReport<2>& r) { return prepare<2>(o, r); });
 }
 
 std::shared_ptr<PyState> vertex_near(const Packing<2>& packing, std::array<double, 2> stress, std::uint64_t seed) {
     PreparationOptions options;
-    options.stress = stress[0];
-    options.ratio = stress[1] / stress[0];
+    options.stress = finite(stress[0], "stress");
+    options.ratio = finite(stress[1] / stress[0], "ratio of the stresses");
     options.seed = seed;
     return stoppable(options, [&packing](const PreparationOptions& o, PreparationReport<2>& r) {
         return find_vertex<2>(packing, o, r);
@@ -54,6 +58,12 @@ std::shared_ptr<PyState> vertex_near(const Packing<2>& packing, std::array<doubl
 Packing<2> read_any(const std::filesystem::path& path, const std::string& walls,
                     std::optional<std::array<double, 4>> box, const std::string& radius, const std::string& diameter) {
     ForeignOptions options;
+    if (walls != "none" && walls != "fixed" && walls != "box") {
+        throw Error(ErrorKind::bad_input, "walls is '" + walls + "': expected \"box\", \"fixed\" or \"none\"");
+    }
+    for (const double side : box.value_or(std::array<double, 4>{})) {
+        finite(side, "box");
+    }
     options.walls = walls == "none" ? ForeignWalls::none : walls == "fixed" ? ForeignWalls::fixed : ForeignWalls::box;
     options.box = box;
     if (!radius.empty()) {
@@ -97,7 +107,7 @@ void bind_plateau(py::module_& module) {
     module.def(
         "plateau",
         [](const Packing<2>& packing, double first, double last, int rows) {
-            return crafted::plateau(packing, first, last, rows);
+            return crafted::plateau(packing, finite(first, "first"), finite(last, "last"), rows);
         },
         py::arg("packing"), py::arg("first"), py::arg("last"), py::arg("rows") = 0,
         py::call_guard<py::gil_scoped_release>(),
@@ -106,6 +116,7 @@ void bind_plateau(py::module_& module) {
     module.def(
         "backbone_at",
         [](const Packing<2>& packing, double threshold) {
+            finite(threshold, "threshold");
             return contact_array(unlocked([&] { return crafted::backbone_at(packing, threshold); }));
         },
         py::arg("packing"), py::arg("threshold"), "(N, 2) contacts of the backbone at a threshold.");

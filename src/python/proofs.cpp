@@ -207,6 +207,7 @@ void bind_forces(py::module_& module) {
         "forces_at",
         [](const PyState& state, double sigma) {
             const State<2> copy = state.state;
+            finite(sigma, "sigma2");
             return interval_array(value_or_raise(interruptible([copy, sigma] { return forces_at(copy, sigma); })));
         },
         py::arg("state"), py::arg("sigma2"),

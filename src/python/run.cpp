@@ -161,6 +161,12 @@ class Run {
 void bind_arc(py::module_& module) {
     using Arc = ArcRecord<2>;
     const auto contact = [](auto member) { return [member](const Arc& self) { return contact_pair(self.*member); }; };
+    const auto image = [](auto member) {
+        return [member](const Arc& self) {
+            const auto& periods = (self.*member).image.m;
+            return py::make_tuple(int{periods[0]}, int{periods[1]});
+        };
+    };
     py::class_<Arc>(module, "Arc", "One arc: a contact opened, the mechanism followed, a contact met.")
         .def_readonly("step", &Arc::step, "Number of the arc in the run, from 1.")
         .def_readonly("equilibrium", &Arc::equilibrium, "Number of the equilibrium that it leads to.")
@@ -170,6 +176,9 @@ void bind_arc(py::module_& module) {
             "\"limit\", \"tension\", \"rattler\" or \"release\".")
         .def_property_readonly("opened", contact(&Arc::opened), "Contact opened, (i, j).")
         .def_property_readonly("closed", contact(&Arc::closed), "Contact met, or the coordinate held, (i, -9).")
+        .def_property_readonly("opened_image", image(&Arc::opened),
+                               "In a cell: periods by which the second disk of the opened contact is moved.")
+        .def_property_readonly("closed_image", image(&Arc::closed), "The same of the contact met.")
         .def_readonly("power_turn", &Arc::power_turn, "It ended where the power of the load vanished.")
         .def_readonly("sigma2", &Arc::stress, "Loaded stress.")
         .def_readonly("eps2", &Arc::strain, "Strain at the end, positive in compression.")

@@ -40,6 +40,14 @@ py::array lengths(const Packing<2>& packing, py::handle owner) {
     return view(packing.q.data() + 2 * packing.radius.size(), {2}, owner);
 }
 
+/// x of the second period of a cell.
+std::optional<double> tilt(const Packing<2>& packing) {
+    return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
+}
+
+constexpr const char* tilt_words = "Of a periodic cell: x of the second period; None in a box.";
+constexpr const char* periodic_words = "(along x, along y): whether the packing repeats.";
+
 /// Names of the degrees of freedom: "x of disk 3", "top wall".
 std::vector<std::string> dof_names(const Packing<2>& packing) {
     const DofMap<2> dofs(packing);
@@ -112,13 +120,16 @@ void bind_packing(py::module_& module) {
             "(n, 2) centres; length. A read-only view.")
         .def_property_readonly(
             "length", [](const py::object& self) { return lengths(self.cast<const Packing<2>&>(), self); },
-            "(2,) positions of the right and the top wall; length. A read-only view.")
+            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
         .def_property_readonly("radii", vector_of(&Packing<2>::radius), "(n,) radii; length. A read-only view.")
         .def_property_readonly("fixed", vector_of(&Packing<2>::fixed),
                                "(n,) flags, 1: cannot move; empty where no disk is fixed.")
         .def_property_readonly(
             "walls", [](const Packing<2>& self) { return walls_dict(self.walls); },
             "{\"lower\": (left, bottom), \"upper\": (right, top)}, each \"absent\", \"fixed\" or \"movable\".")
+        .def_property_readonly("tilt", &tilt, tilt_words)
+        .def_property_readonly(
+            "periodic", [](const Packing<2>& self) { return py::tuple(py::cast(self.cell.periodic)); }, periodic_words)
         .def_property_readonly("solid_fraction", &Packing<2>::solid_fraction, "Area of the disks over that of the box.")
         .def_property_readonly("dof_names", &dof_names,
                                "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".");
@@ -140,7 +151,7 @@ void bind_grains(StateClass& state) {
             "(n,) radii; length. A read-only view.")
         .def_property_readonly(
             "length", [](const py::object& self) { return lengths(state_of(self).packing, self); },
-            "(2,) positions of the right and the top wall; length. A read-only view.")
+            "(2,) positions of the right and the top wall, or the periods of a cell; length. A read-only view.")
         .def_property_readonly(
             "fixed", [](const py::object& self) { return view(state_of(self).packing.fixed, self); },
             "(n,) flags, 1: cannot move; empty where no disk is fixed.")
@@ -174,15 +185,13 @@ void bind_contacts(StateClass& state) {
             },
             "(N, 2) integers: the second disk of a contact is moved by so many periods; 0 in a box. A copy.")
         .def_property_readonly(
-            "tilt",
-            [](const PyState& self) {
-                const Packing<2>& packing = self.state.packing;
-                return packing.cell.any() ? std::optional(packing.lattice(0, 1)) : std::nullopt;
-            },
-            "Of a periodic cell: x of the second period; None in a box.")
+            "tilt", [](const PyState& self) { return tilt(self.state.packing); }, tilt_words)
+        .def_property_readonly(
+            "periodic", [](const PyState& self) { return py::tuple(py::cast(self.state.packing.cell.periodic)); },
+            periodic_words)
         .def_property_readonly(
             "contact_names", [](const PyState& self) { return contact_names(self.state.contacts); },
-            "Names of the N contacts: \"3-7\", \"3-left\".")
+            "Names of the N contacts: \"3-7\", \"3-8(1,0)\", \"3-left\".")
         .def_property_readonly(
             "dof_names", [](const PyState& self) { return dof_names(self.state.packing); },
             "Names of the N_f degrees of freedom, in their order: \"x of disk 3\", \"top wall\".")
@@ -201,7 +210,7 @@ void bind_load(StateClass& state) {
             "[Lx, Ly] at which nominal stress and strain are defined; length.")
         .def_property_readonly(
             "loaded_axis", [](const PyState& self) { return self.state.load.loaded_axis; },
-            "Axis whose stress a programme changes: 0 or 1.")
+            "Axis whose stress a programme changes: 0 or 1; 2: the shear stress on the tilt of a cell.")
         .def_property_readonly(
             "load", [](const PyState& self) { return self.state.load.kind == LoadKind::nominal ? "nominal" : "true"; },
             "\"nominal\": force = stress x reference length; \"true\": force = stress x length.")
@@ -303,6 +312,11 @@ void bind_state(py::module_& module) {
     module.def(
         "count",
         [](const Packing<2>& packing, const std::vector<std::pair<int, int>>& contacts) {
+            if (packing.cell.any()) {
+                throw Error(ErrorKind::bad_input,
+                            "packing is a periodic cell, whose contacts name images, and pairs do "
+                            "not: expected count(state)");
+            }
             std::vector<Contact> list;
             for (const auto& pair : contacts) {
                 list.push_back(contact_of(pair));

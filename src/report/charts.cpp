@@ -1,5 +1,6 @@
 #include "report/charts.hpp"
 
+#include "core/text.hpp"
 #include "report/statistics.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 namespace isostat {
 
@@ -20,20 +22,8 @@ std::size_t dash(std::size_t k) {
 
 constexpr std::array<const char*, 6> colours{"#1f4e79", "#c55a11", "#548235", "#7b3f99", "#997300", "#a61c3c"};
 
-/// gnuplot strings in double quotes.
-std::string quoted(const std::string& text) {
-    std::string safe = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') {
-            safe += '\\';
-        }
-        safe += c;
-    }
-    return safe + "\"";
-}
-
 void append_points(std::string& data, const std::string& title, const std::vector<std::pair<double, double>>& points) {
-    data += fmt::format("# {}\n", title);
+    data += fmt::format("# {}\n", text::shown(title));
     for (const auto& [x, y] : points) {
         data += fmt::format("{} {}\n", x, y);
     }
@@ -84,12 +74,13 @@ Chart stairs_chart(const std::string& name, const std::vector<Curve>& curves, co
         append_points(chart.data, fmt::format("{} {}: {}", words.strain, words.ratio, curves[k].title),
                       stairs(curves[k].path));
         plot += fmt::format("{} {} index {} with lines lw 1.5 dt {} lc rgb {} title {} noenhanced",
-                            k == 0 ? "plot" : ",\\\n    ", quoted(name + ".dat"), k, dash(k),
-                            quoted(colours[k % colours.size()]), quoted(curves[k].title));
+                            k == 0 ? "plot" : ",\\\n    ", text::gnuplot(name + ".dat"), k, dash(k),
+                            text::gnuplot(colours[k % colours.size()]), text::gnuplot(curves[k].title));
     }
     chart.script = chart_script(
         name, 800, 560,
-        fmt::format("set xlabel {}\nset ylabel {}\n", quoted(words.strain_axis), quoted(words.ratio_axis)) +
+        fmt::format("set xlabel {}\nset ylabel {}\n", text::gnuplot(words.strain_axis),
+                    text::gnuplot(words.ratio_axis)) +
             "set key top left reverse Left\nset format x \"%g\"\nset autoscale xfixmin\nset grid back lt 1 lw 0.5 lc "
             "rgb \"#cccccc\"\n" +
             plot + "\n",
@@ -109,8 +100,11 @@ void add_stairs(std::vector<Chart>& charts, const std::vector<EquilibriumRow>& r
     std::vector<Curve> main_path;
     std::vector<Curve> cycles;
     int highest_branch = -1;
-    const int segments = rows.empty() ? 0 : rows.back().segment + 1;
-    for (int s = 0; s < segments; ++s) {
+    std::set<int> segments;
+    for (const EquilibriumRow& row : rows) {
+        segments.insert(row.segment);
+    }
+    for (const int s : segments) {
         std::vector<EquilibriumRow> path = segment_path(rows, s);
         if (path.size() < 2) {
             continue;
@@ -141,8 +135,8 @@ struct Distribution {
 
 /// The script of both panels, `left` and `right` what they plot.
 std::string two_panels(const std::string& label, bool power_law, const std::string& left, const std::string& right) {
-    const std::string x = quoted(label);
-    const std::string x_left = power_law ? quoted("log_{10} " + label) : x;
+    const std::string x = text::gnuplot(label);
+    const std::string x_left = power_law ? text::gnuplot("log_{10} " + label) : x;
     std::string body =
         "set multiplot layout 1,2\nset xtics font \",11\"\nset key top right samplen 2 font \",11\"\nset grid lc rgb "
         "\"#dddddd\"\nset yrange [0:*]\n";
@@ -191,14 +185,14 @@ void add_distribution(std::vector<Chart>& charts, const Distribution& of, const 
         const std::string title = fmt::format("{}: {} values, mean {:.3g}", kinds[k].first, values.size(), average);
         const auto curve = [&](std::string& plot, int block, const char* style) {
             plot += fmt::format("{} {} index {} with {} lw 1.5 dt {} lc rgb {} title {}",
-                                plot.empty() ? "plot" : ",\\\n    ", quoted(name + ".dat"), block, style, 2 * k + 1,
-                                quoted(colours[k]), quoted(title));
+                                plot.empty() ? "plot" : ",\\\n    ", text::gnuplot(name + ".dat"), block, style,
+                                2 * k + 1, text::gnuplot(colours[k]), text::gnuplot(title));
         };
         curve(left, index, "histeps");
         curve(right, index + 1, "fsteps");
         if (!power_law) {
             right += fmt::format(",\\\n     exp(-x/{}) dt 2 lc rgb {} title \"exponential of the same mean\"", average,
-                                 quoted(colours[k]));
+                                 text::gnuplot(colours[k]));
         }
         index += 2;
     }
@@ -225,7 +219,7 @@ std::string chart_script(const std::string& name, int width, int height, const s
     }
     for (const auto& [suffix, terminal] : terminals) {
         script += fmt::format("reset\nset encoding utf8\n{}\nset output {}\n{}unset output\n", terminal,
-                              quoted(fmt::format("{}.{}", name, suffix)), body);
+                              text::gnuplot(fmt::format("{}.{}", name, suffix)), body);
     }
     return script;
 }

@@ -1,5 +1,6 @@
 #include "report/page.hpp"
 
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "linear/factorisation.hpp"
@@ -36,11 +37,20 @@ constexpr std::array columns{"number",    "previous",   "segment",     "sigma2",
                              "contacts",  "h",          "held",        "margin",         "proved",
                              "certified", "sigma2_low", "sigma2_high", "solid_fraction", "decided_by"};
 
+/// The number of a disk, and above it by how many periods it is moved: two signed bytes.
+std::int64_t disk_with_image(const Contact& contact, int disks) {
+    constexpr std::int64_t byte = 256;
+    const auto part = [&](std::size_t a) {
+        return static_cast<std::int64_t>(static_cast<std::uint8_t>(contact.image.m[a]));
+    };
+    return contact.j + disks * (part(0) + byte * part(1));
+}
+
 /// A contact as in equilibria.csv: two numbers, walls -1 to -4; a held coordinate is (its index, -9).
-void append_contact(Json& list, const Contact& contact) {
+void append_contact(Json& list, const Contact& contact, const Packing<2>& packing) {
     list.push_back(contact.i);
     switch (contact.kind) {
-    case ContactKind::disk_disk: list.push_back(contact.j); break;
+    case ContactKind::disk_disk: list.push_back(disk_with_image(contact, packing.disk_count())); break;
     case ContactKind::lower_wall: list.push_back(-1 - contact.j); break;
     case ContactKind::upper_wall: list.push_back(-3 - contact.j); break;
     case ContactKind::held: list.push_back(-9); break;
@@ -112,7 +122,7 @@ class Frames {
         if (vertex.relisted) {
             Json& list = lists_.emplace_back(Json::array());
             for (const Contact& contact : state.contacts) {
-                append_contact(list, contact);
+                append_contact(list, contact, state.packing);
             }
         }
         arrow_.push_back(add_arrows(vertex.from, state));
@@ -126,6 +136,7 @@ class Frames {
     [[nodiscard]] Json json() const {
         Json object;
         object["resolution"] = resolution_;
+        object["coordinates"] = last_.size();
         object["event"] = event_;
         object["equilibrium"] = equilibrium_;
         object["list"] = list_;
@@ -214,8 +225,8 @@ Json events_json(const RunRecords& records, const Packing<2>& packing) {
         object["arc"].push_back(event.arc);
         object["kind"].push_back(event.kind);
         const Contact nothing{ContactKind::held, -1, 0};
-        append_contact(object["opened"], checker::contact_named(event.opened, packing).value_or(nothing));
-        append_contact(object["closed"], checker::contact_named(event.closed, packing).value_or(nothing));
+        append_contact(object["opened"], checker::contact_named(event.opened, packing).value_or(nothing), packing);
+        append_contact(object["closed"], checker::contact_named(event.closed, packing).value_or(nothing), packing);
         object["sigma2"].push_back(event.stress);
         object["eps2"].push_back(event.strain);
         object["displacement"].push_back(event.displacement);
@@ -229,6 +240,7 @@ Json packing_json(const State<2>& state) {
     Json object;
     object["radii"] = std::vector<float>(packing.radius.begin(), packing.radius.end());
     object["fixed"] = packing.fixed;
+    object["periodic"] = packing.cell.periodic;
     object["loaded_axis"] = state.load.loaded_axis;
     for (std::size_t a = 0; a < 2; ++a) {
         object["lower"].push_back(kinds.at(static_cast<std::size_t>(packing.walls.lower[a])));
@@ -247,7 +259,7 @@ Json header_json(const std::filesystem::path& directory) {
     }
     object["segments"] = run.at("programme").value();
     const json::Field settings = run.at("settings").at("run");
-    object["level"] = settings.has("certify") ? settings.at("certify").string() : "decisions";
+    object["level"] = settings.at("certify").string();
     return object;
 }
 
@@ -267,9 +279,8 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
     std::optional<Frames> frames;
     const std::optional<StateFile<2>> first = records.stored(0);
     data["words"] = words_json(load_words(first && first->state.load.loads_tilt()));
-    if (first && first->state.packing.cell.any()) {
-        page.left_out.emplace_back("the packing in its periodic cell: the force pictures show it");
-    } else if (first) {
+    data["arcs"] = records.events.size();
+    if (first) {
         const Packing<2>& packing = first->state.packing;
         data["packing"] = packing_json(first->state);
         data["events"] = events_json(records, packing);
@@ -288,12 +299,14 @@ Page run_page(const std::filesystem::path& directory, const std::function<void(s
             page.left_out.push_back(thinning.words());
         }
         data["frames"] = frames->json();
+    } else {
+        page.left_out.emplace_back("the packing and its arcs: states/eq_000000.json is not there");
     }
     data["equilibria"] = equilibria_json(records);
     data["left_out"] = page.left_out;
     page.html = page_template;
     const std::string place = "@DATA@";
-    page.html.replace(page.html.find(place), place.size(), in_script(json::dumped(data)));
+    page.html.replace(page.html.find(place), place.size(), text::in_script(json::dumped(data)));
     return page;
 }
 

@@ -18,7 +18,7 @@ struct Page {
 /// what opened and closed, tables, what was proved. Positions are found again from the records in double
 /// (`walk_run`) and rounded to a fraction of the mean radius; forces are those of equilibria, rounded to a sixteenth of
 /// their mean: for looking, never for computing. Beyond six million coordinates only every so many arcs, then
-/// equilibria, are on it, and the page says so. Of a periodic cell: the staircase and the tables of equilibria.
+/// equilibria, are on it, and the page says so.
 /// `progress`: arcs gone through, and of the run. Throws `Error(bad_input)`.
 Page run_page(const std::filesystem::path& directory, const std::function<void(std::size_t, std::size_t)>& progress);
 

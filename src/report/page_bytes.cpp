@@ -33,17 +33,4 @@ std::string packed(const std::string& bytes) {
     return text;
 }
 
-std::string in_script(const std::string& json) {
-    std::string safe;
-    safe.reserve(json.size());
-    for (const char c : json) {
-        if (c == '<' || c == '>' || c == '&') {
-            safe += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        } else {
-            safe += c;
-        }
-    }
-    return safe;
-}
-
 } // namespace isostat

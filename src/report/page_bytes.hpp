@@ -13,7 +13,4 @@ void append_varint(std::string& bytes, std::int64_t value);
 /// Base64 of the bytes in zlib's format, which browsers undo (`DecompressionStream("deflate")`).
 std::string packed(const std::string& bytes);
 
-/// JSON that may stand in a script element: no "<", ">" or "&", which only its strings can hold.
-std::string in_script(const std::string& json);
-
 } // namespace isostat

@@ -1,5 +1,6 @@
 #include "report/picture.hpp"
 
+#include "core/text.hpp"
 #include "io/cell_wrap.hpp"
 
 #include <fmt/format.h>
@@ -140,7 +141,7 @@ class Canvas {
             y(from), x(to), y(to), width, style);
     }
     void text(Point at, const std::string& words) {
-        add(R"(<text x="{:.1f}" y="{:.1f}">{}</text>)", x(at), y(at), words);
+        add(R"(<text x="{:.1f}" y="{:.1f}">{}</text>)", x(at), y(at), text::markup(words));
     }
     std::string take() { return std::move(text_); }
 
@@ -285,14 +286,6 @@ void draw_scale(Canvas& canvas, const State<2>& state, std::span<const double> f
     }
 }
 
-std::string escaped(const std::string& text) {
-    std::string safe;
-    for (const char c : text) {
-        safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-    }
-    return safe;
-}
-
 } // namespace
 
 std::vector<unsigned char> rattler_flags(const State<2>& state, std::span<const double> forces) {
@@ -332,10 +325,10 @@ std::string force_picture(const State<2>& stored, std::span<const double> forces
     constexpr double below = 84;   // scale and caption
     const double width = 1000 + border + beside;
     const double height = canvas.height() + above + below;
-    std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" "
-        "height=\"{:.0f}\" viewBox=\"{:.0f} {:.0f} {:.0f} {:.0f}\">\n",
-        width, height, -border, -above, width, height);
+    std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- forces by isostat -->\n<svg "
+                                   "xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" "
+                                   "height=\"{:.0f}\" viewBox=\"{:.0f} {:.0f} {:.0f} {:.0f}\">\n",
+                                   width, height, -border, -above, width, height);
     text +=
         "<style>.disk{fill:#e9e6df;stroke:#a9a59b;stroke-width:0.5}.rattler{fill:#9fb8cf;stroke:#6f89a3;stroke-width:0."
         "5}"
@@ -349,10 +342,10 @@ std::string force_picture(const State<2>& stored, std::span<const double> forces
     text += "</style>\n";
     text += fmt::format(
         "<title>{}</title>\n<rect x=\"{:.0f}\" y=\"{:.0f}\" width=\"{:.0f}\" height=\"{:.0f}\" fill=\"#ffffff\"/>\n",
-        escaped(caption), -border, -above, width, height);
+        text::markup(caption), -border, -above, width, height);
     text += canvas.take();
-    text +=
-        fmt::format("<text x=\"0\" y=\"{:.0f}\">{}</text>\n</svg>\n", canvas.height() + below - 16, escaped(caption));
+    text += fmt::format("<text x=\"0\" y=\"{:.0f}\">{}</text>\n</svg>\n", canvas.height() + below - 16,
+                        text::markup(caption));
     return text;
 }
 
@@ -416,7 +409,7 @@ std::string vtk_text(const State<2>& state, std::span<const double> forces, cons
     rattler.resize(points.size(), 0);
     // The title is one line of at most 256 characters; ours is short.
     std::string text = fmt::format("# vtk DataFile Version 3.0\n{}\nASCII\nDATASET POLYDATA\nPOINTS {} double\n",
-                                   title.substr(0, 200), points.size());
+                                   text::shown(title).substr(0, 200), points.size());
     for (const Point& p : points) {
         text += fmt::format("{:.17g} {:.17g} 0\n", p.x, p.y);
     }

@@ -2,6 +2,7 @@
 
 #include "core/work.hpp"
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 #include "report/charts.hpp"
@@ -29,12 +30,13 @@ namespace fs = std::filesystem;
 
 class Writer {
   public:
-    Writer(fs::path output, ReportOptions options) : output_(std::move(output)), options_(std::move(options)) {
-        make_directory(output_);
-    }
+    /// \pre the folder is there. `owned`: its names are those of a report, other files may stand beside otherwise
+    Writer(fs::path output, ReportOptions options, bool owned)
+        : output_(std::move(output)), options_(std::move(options)), owned_(owned) {}
 
-    void write(const std::string& name, const std::string& text) {
-        write_atomically(output_ / name, text);
+    /// `mark`: as for `write_output`.
+    void write(const std::string& name, const std::string& text, const std::string& mark = "") {
+        write_output(output_ / name, text, owned_ ? "" : mark);
         result_.files.push_back(output_ / name);
     }
     void note(const std::string& text) {
@@ -53,12 +55,14 @@ class Writer {
                         load_words(state.load.loads_tilt()).ratio_sign, state.load.ratio());
         if (options_.pictures) {
             count_work(Work::pictures);
-            write(name + ".svg", force_picture(state, file.forces, caption));
+            write(name + ".svg", force_picture(state, file.forces, caption), " by isostat ");
         }
         if (options_.vtk) {
             count_work(Work::vtk_files);
-            write(name + ".vtk", vtk_text(state, file.forces, fmt::format("isostat: equilibrium {}", state.equilibrium),
-                                          displacement(state)));
+            write(name + ".vtk",
+                  vtk_text(state, file.forces, fmt::format("isostat: equilibrium {}", state.equilibrium),
+                           displacement(state)),
+                  "\nisostat: ");
             series_.emplace_back(state.equilibrium, name + ".vtk");
         }
     }
@@ -123,6 +127,7 @@ class Writer {
     std::vector<std::pair<int, std::string>> series_;
     fs::path output_;
     ReportOptions options_;
+    bool owned_;
     ReportResult result_;
 };
 
@@ -147,33 +152,36 @@ std::string decision_table(const json::Field& decisions) {
     text += fmt::format("undecided            {} (ties {}); structural ties ordered by the infinitesimal loads {}\n",
                         decisions.at("undecided").integer(), decisions.at("ties").at("other").integer(),
                         decisions.at("ties").at("structural").integer());
-    if (decisions.at("ties").has("perturbed")) { // records of older versions have none
-        const json::Field perturbed = decisions.at("ties").at("perturbed");
-        std::string kinds;
-        long all = 0;
-        for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
-            const long count = perturbed.at(kind).integer();
-            all += count;
-            kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, count);
-        }
-        text += all == 0 ? "" : fmt::format("settled by first order in the radii {} ({})\n", all, kinds);
-        const json::Field ties = decisions.at("ties");
-        text += ties.has("choices") ? fmt::format("chosen by the rule   {}\n", ties.at("choices").integer()) : "";
+    const json::Field ties = decisions.at("ties"), perturbed = ties.at("perturbed");
+    std::string kinds;
+    long all = 0;
+    for (const char* kind : {"gaps", "power", "opening", "equilibrium"}) {
+        const long count = perturbed.at(kind).integer();
+        all += count;
+        kinds += fmt::format("{}{} {}", kinds.empty() ? "" : ", ", kind, count);
     }
+    text += all == 0 ? "" : fmt::format("settled by first order in the radii {} ({})\n", all, kinds);
+    text += ties.has("choices") ? fmt::format("chosen by the rule   {}\n", ties.at("choices").integer()) : "";
     return text;
 }
 
-std::vector<fs::path> stored_states(const fs::path& directory) {
+std::vector<fs::path> stored_states(const fs::path& directory, const FolderContent& content) {
     std::vector<fs::path> states;
-    if (fs::exists(directory / "states")) {
-        for (const fs::directory_entry& entry : fs::directory_iterator(directory / "states")) {
-            if (entry.path().extension() == ".json") {
-                states.push_back(entry.path());
-            }
+    for (const std::string& name : content.files) {
+        if (name.starts_with("states/")) {
+            states.push_back(directory / name);
         }
     }
-    std::sort(states.begin(), states.end());
     return states;
+}
+
+/// Figures go into the run that they are of, or where only a report is.
+void make_output(const fs::path& directory, const fs::path& output) {
+    if (fs::weakly_canonical(output) == fs::weakly_canonical(directory / "figures")) {
+        make_directory(output);
+    } else {
+        make_folder_for(output, report_folder);
+    }
 }
 
 } // namespace
@@ -184,8 +192,10 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         throw Error(ErrorKind::bad_input,
                     fmt::format("{}: does not exist: expected the folder of a run", run.string()));
     }
+    check_mark(directory, run_folder);
     const json::Json parsed = json::Field::parse(read_text(run), run.string());
     const json::Field header(parsed, run.string());
+    const FolderContent content = content_of(directory, run_folder);
     (void)check_records(directory); // damaged records are not drawn
     std::vector<std::string> names;
     const json::Field programme = header.at("programme");
@@ -193,8 +203,12 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
         names.push_back(programme.at(s).string());
     }
     const std::vector<EquilibriumRow> rows = read_equilibria(directory / "equilibria.csv");
-    Writer writer(output, options);
-    const std::vector<fs::path> states = stored_states(directory);
+    make_output(directory, output);
+    Writer writer(output, options, true);
+    for (const std::string& note : notes_on(content, run_folder)) {
+        writer.note(note);
+    }
+    const std::vector<fs::path> states = stored_states(directory, content);
     const LoadWords& words = load_words(!states.empty() && read_any_state<2>(states.front()).state.load.loads_tilt());
     if (options.pictures || options.vtk) {
         if (options.pictures) {
@@ -225,7 +239,8 @@ ReportResult report_run(const fs::path& directory, const fs::path& output, const
 }
 
 ReportResult report_state(const fs::path& state, const fs::path& output, const ReportOptions& options) {
-    Writer writer(output, options);
+    make_directory(output);
+    Writer writer(output, options, false);
     const std::string name = "forces_" + state.stem().string();
     writer.picture(state, name);
     return writer.take(fmt::format("force picture of {}\n", state.string()));

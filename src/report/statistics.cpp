@@ -90,8 +90,8 @@ std::vector<std::pair<double, double>> histogram(const std::vector<double>& valu
     std::vector<int> count(static_cast<std::size_t>(bins), 0);
     for (const double v : values) {
         if (v >= low && v <= high) {
-            const auto bin = static_cast<int>((v - low) / width);
-            ++count[static_cast<std::size_t>(std::min(bin, bins - 1))];
+            const double part = (v - low) / width; // beyond every bin, or NaN, where the width has no digits
+            ++count[static_cast<std::size_t>(part < bins ? static_cast<int>(part) : bins - 1)];
         }
     }
     std::vector<std::pair<double, double>> points;

@@ -1,5 +1,6 @@
 #include "report/tables.hpp"
 
+#include "core/text.hpp"
 #include "report/statistics.hpp"
 
 #include <fmt/format.h>
@@ -29,14 +30,15 @@ void add_segments(std::string& text, const std::vector<EquilibriumRow>& rows, co
             arcs += row.arcs;
         }
         if (first == nullptr) {
-            text += fmt::format("{:>3} {:<36} not run\n", s + 1, names[s]);
+            text += fmt::format("{:>3} {:<36} not run\n", s + 1, text::shown(names[s]));
             continue;
         }
         const auto before = std::find_if(rows.begin(), rows.end(),
                                          [&](const EquilibriumRow& r) { return r.number == first->previous; });
         const EquilibriumRow& start = before == rows.end() ? *first : *before;
-        text += fmt::format("{:>3} {:<36} {:>6} {:>6} {:>12.8f} {:>12.8f} {:>12.5e} {:>12.5e} {:>6}\n", s + 1, names[s],
-                            start.number, made, start.ratio, last->ratio, start.strain2, last->strain2, arcs);
+        text += fmt::format("{:>3} {:<36} {:>6} {:>6} {:>12.8f} {:>12.8f} {:>12.5e} {:>12.5e} {:>6}\n", s + 1,
+                            text::shown(names[s]), start.number, made, start.ratio, last->ratio, start.strain2,
+                            last->strain2, arcs);
     }
 }
 
@@ -100,8 +102,8 @@ void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows
         if (last->ratio == path.front().ratio && peak->strain2 > 0) {
             text +=
                 fmt::format("left of peak strain  {:.1f} % after \"{}\" (peak {} {:.5e}, back at {} = {:g}: {:.5e})\n",
-                            100 * last->strain2 / peak->strain2, names[s], words.strain, peak->strain2, words.ratio,
-                            last->ratio, last->strain2);
+                            100 * last->strain2 / peak->strain2, text::shown(names[s]), words.strain, peak->strain2,
+                            words.ratio, last->ratio, last->strain2);
         }
     }
 }
@@ -111,7 +113,7 @@ void add_irreversible(std::string& text, const std::vector<EquilibriumRow>& rows
 std::string run_tables(const std::vector<EquilibriumRow>& rows, const std::vector<std::string>& names,
                        const std::string& status, const LoadWords& words) {
     std::string text = fmt::format("status               {}\nratio, strain        {}, {}\nequilibria           {}\n",
-                                   status, words.ratio, words.strain, rows.size());
+                                   text::shown(status), words.ratio, words.strain, rows.size());
     if (rows.empty()) {
         return text;
     }

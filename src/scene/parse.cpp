@@ -1,3 +1,4 @@
+#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
 #include "scene/radii_file.hpp"
@@ -50,7 +51,7 @@ void read_start(Section& section, const std::string& file, Scene& scene, const s
                 key, fmt::format("'{}' in [packing] is of a preparation: a packing read from a file has none", key));
         }
     }
-    scene.start = folder / file;
+    scene.start = *section.file("file", folder);
     section.record("file", toml_text(file));
 }
 
@@ -90,7 +91,7 @@ void read_packing(Section& section, Scene& scene, const std::filesystem::path& f
     } else if (radii) {
         read_radii_list(section, *radii, options);
     } else {
-        options.radii = read_radii(folder / *radii_file);
+        options.radii = read_radii(*section.file("radii_file", folder));
         section.record("radii_file", toml_text(*radii_file));
     }
     options.jitter = section.number("jitter", options.jitter, 0, largest_jitter, "0, or a number from 1e-14 to 0.1");
@@ -207,6 +208,9 @@ ProgrammeStep read_step(Section& section, bool of_shear) {
         step.from = static_cast<int>(section.integer("from", 0, 0, 1'000'000'000));
     }
     const auto name = section.string("name");
+    if (name && !text::is_plain_line(*name)) {
+        section.fail("name", "one line of text without control characters");
+    }
     step.name = name.value_or(describe(step));
     section.record("name", toml_text(step.name));
     section.finish();

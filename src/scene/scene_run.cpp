@@ -160,6 +160,12 @@ SceneEnding play_scene(const Scene& scene, State<2> state, RunDirectory& directo
     if (const auto& point = directory.checkpoint()) {
         state = point->state;
         counters = point->counters;
+        const std::optional<int> goal = scene.programme[static_cast<std::size_t>(point->segment)].equilibria;
+        if (goal && point->made > *goal) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: made is {}: expected at most {}, as the scene says",
+                                    (directory.path() / "checkpoint.json").string(), point->made, *goal));
+        }
         programme.first = static_cast<std::size_t>(point->segment) + (point->segment_done ? 1 : 0);
         programme.made = point->segment_done ? 0 : point->made;
     }

@@ -1,5 +1,8 @@
 #include "scene/section.hpp"
 
+#include "core/text.hpp"
+#include "io/named_input.hpp"
+
 #include <isostat/core/error.hpp>
 
 #include <fmt/format.h>
@@ -33,19 +36,19 @@ std::string toml_text(double value) {
 
 std::string toml_text(const std::string& value) {
     // A basic string, with those escapes that JSON has as well: records of a run take it over.
-    std::string text = "\"";
+    std::string quoted = "\"";
     for (const char c : value) {
         const auto code = static_cast<unsigned char>(c);
         if (c == '"' || c == '\\') {
-            text += '\\';
-            text += c;
+            quoted += '\\';
+            quoted += c;
         } else if (code < 0x20 || code == 0x7f) {
-            text += fmt::format("\\u{:04X}", code);
+            quoted += fmt::format("\\u{:04X}", code);
         } else {
-            text += c;
+            quoted += c;
         }
     }
-    return text + "\"";
+    return text::json(quoted + "\"");
 }
 
 void Section::fail(const std::string& key, const std::string& expected) const {
@@ -118,6 +121,14 @@ std::optional<std::string> Section::string(const std::string& key) {
         fail(key, "a string");
     }
     return node->value<std::string>();
+}
+
+std::optional<std::filesystem::path> Section::file(const std::string& key, const std::filesystem::path& folder) {
+    const auto name = string(key);
+    if (!name) {
+        return std::nullopt;
+    }
+    return named_input(folder, *name, fmt::format("{}:{}: {} in [{}]", source_, line_of(key), key, name_));
 }
 
 std::optional<std::vector<double>> Section::numbers(const std::string& key) {

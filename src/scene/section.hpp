@@ -7,6 +7,7 @@
 
 #include <toml++/toml.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ class Section {
     std::optional<long> integer(const std::string& key);
     std::optional<bool> boolean(const std::string& key);
     std::optional<std::string> string(const std::string& key);
+    /// A file in `folder` or below: see `named_input`.
+    std::optional<std::filesystem::path> file(const std::string& key, const std::filesystem::path& folder);
     std::optional<std::vector<double>> numbers(const std::string& key);
     /// A table in this one; null when it is absent.
     const toml::table* table(const std::string& key);

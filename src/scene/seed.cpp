@@ -31,10 +31,20 @@ std::size_t offset_of(const std::string& text, const toml::source_position& posi
     return at;
 }
 
-void replace_value(std::string& text, const toml::node& value, const std::string& by) {
-    const std::size_t begin = offset_of(text, value.source().begin);
-    const std::size_t end = offset_of(text, value.source().end);
+void replace(std::string& text, const toml::source_region& where, const std::string& by) {
+    const std::size_t begin = offset_of(text, where.begin);
+    const std::size_t end = offset_of(text, where.end);
     text.replace(begin, end - begin, by);
+}
+
+/// `radii = [...]` in the place of `radii_file = "..."`.
+void put_radii(std::string& text, const toml::table& packing, const std::vector<double>& radii) {
+    for (const auto& [key, value] : packing) {
+        if (key.str() == "radii_file") {
+            replace(text, value.source(), fmt::format("[{}]", fmt::join(radii, ", ")));
+            replace(text, key.source(), "radii");
+        }
+    }
 }
 
 } // namespace
@@ -56,13 +66,10 @@ std::string with_seed(const std::string& marked, std::uint64_t seed, const std::
     const auto value_of = [](const toml::table& document, const char* key) { return document["packing"][key].node(); };
     std::string result = text;
     const toml::table original = parse_toml(text, source);
-    if (const toml::node* file = value_of(original, "radii_file")) {
-        const std::filesystem::path name = file->value<std::string>().value_or("");
-        replace_value(result, *file, toml_text(std::filesystem::absolute(folder / name).lexically_normal().string()));
-    }
+    put_radii(result, *original["packing"].as_table(), scene.preparation.radii);
     const toml::table document = parse_toml(result, source);
     if (const toml::node* old = value_of(document, "seed")) {
-        replace_value(result, *old, fmt::format("{}", seed));
+        replace(result, old->source(), fmt::format("{}", seed));
     } else {
         const std::size_t header = offset_of(result, document["packing"].node()->source().begin);
         if (result[header] != '[') {
@@ -72,9 +79,10 @@ std::string with_seed(const std::string& marked, std::uint64_t seed, const std::
         const std::size_t next = std::min(result.find('\n', header), result.size());
         result.insert(next, fmt::format("\nseed = {}", seed));
     }
-    if (parse_scene(result, source, folder).preparation.seed != seed) {
-        throw Error(ErrorKind::bad_input, fmt::format("{}: the seed of [packing] could not be replaced: expected seed "
-                                                      "= 1 on a line of its own",
+    const PreparationOptions made = parse_scene(result, source, folder).preparation;
+    if (made.seed != seed || made.radii != scene.preparation.radii) {
+        throw Error(ErrorKind::bad_input, fmt::format("{}: seed or radii_file of [packing] could not be replaced: "
+                                                      "expected each on a line of its own",
                                                       source));
     }
     return result;

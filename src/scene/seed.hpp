@@ -9,9 +9,8 @@
 namespace isostat {
 
 /// The text of a scene whose `seed` in [packing] is `seed`: the number is replaced where it stands (or a line is added
-/// below [packing] when the scene has none), comments and everything else stay. A relative `radii_file` becomes an
-/// absolute name, since the new text may be kept in another folder. `source` starts messages, `folder` is that of
-/// relative names.
+/// below [packing] when the scene has none), comments and everything else stay. In the place of `radii_file` stand the
+/// radii, since the new text may be kept in another folder. `source` starts messages, `folder` is that of the file.
 /// \post parse_scene(result).preparation.seed == seed; the same arguments give the same text.
 /// Throws `Error(bad_input)` for a text that is no scene, for one that reads its packing from a file (it has no seed:
 /// all samples would be the same), for a seed above 2^63 - 1, which TOML does not have.

@@ -2,6 +2,7 @@
 
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
+#include "core/dot.hpp"
 #include "core/work.hpp"
 
 #include <ClpSimplex.hpp>
@@ -18,11 +19,8 @@ namespace {
 constexpr double infinitesimal_weight = 1e-5;
 constexpr double tolerance = 1e-9;
 
-double largest(const std::vector<double>& x) {
-    double size = 0;
-    for (const double c : x) {
-        size = std::max(size, std::abs(c));
-    }
+double scale_of(const std::vector<double>& x) {
+    const double size = largest(x);
     return size > 0 ? size : 1;
 }
 
@@ -32,9 +30,9 @@ template <int Dim>
 void load_programme(ClpSimplex& simplex, const Packing<Dim>& packing, const DofMap<Dim>& dofs, const Load<Dim>& load,
                     const std::vector<Contact>& contacts, const std::vector<double>& rho) {
     const std::vector<double> force = load.external_force(packing);
-    const double force_size = largest(force);
-    const double small_size = largest(load.infinitesimal) / infinitesimal_weight;
-    const double rho_size = largest(rho);
+    const double force_size = scale_of(force);
+    const double small_size = scale_of(load.infinitesimal) / infinitesimal_weight;
+    const double rho_size = scale_of(rho);
     const auto columns = static_cast<std::size_t>(dofs.dof_count());
     std::vector<double> cost(columns, 0.0);
     for (std::size_t mu = 0; mu < columns; ++mu) {

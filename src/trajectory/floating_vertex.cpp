@@ -1,5 +1,6 @@
 #include "trajectory/floating_vertex.hpp"
 
+#include "core/dot.hpp"
 #include "rigidity/contact_pattern.hpp"
 
 #include <algorithm>

@@ -321,14 +321,14 @@ BOOST_AUTO_TEST_CASE(jammed_strictly_is_told_by_the_forces_under_a_pressure) {
     // L = (2, sqrt 3), t = 1: under a pressure F1/F2 = sqrt 3/2, whatever the load of the state.
     BOOST_TEST((strict(cells::one_tilted_disk(1, 2 / std::sqrt(3.0), 0)) == Verdict::proved));
     BOOST_TEST((strict(cells::one_tilted_disk(1, 0.125, 0)) == Verdict::proved));
-    BOOST_TEST((strict(cells::one_tilted_disk(1, 0.5, 0.125)) == Verdict::undecided)); // a shear
-    BOOST_TEST((strict(cells::one_disk(1, 1)) == Verdict::refuted));                   // no tilt
+    BOOST_TEST((strict(cells::one_tilted_disk(1, 0.5, 0.125)) == Verdict::proved)); // under a shear too
+    BOOST_TEST((strict(cells::one_disk(1, 1)) == Verdict::refuted));                // no tilt
     // Own image in a centred rectangle, X = 1.2, Y = 1.6: f = F1 - F2 X/Y, at F1/F2 = Y/X. With the image along the
     // longer period in its place, X = 1.6 and Y = 1.2 do not touch.
     State<2> state = cells::two_disks(true, 5, 2);
     state.contacts.push_back(cells::across(0, 0, 1, 0));
     state.load.shear = {0.25};
-    BOOST_TEST((strict(state) == Verdict::undecided));
+    BOOST_TEST((strict(state) == Verdict::proved));
     // The tilted equilibrium at the end of its interval, above the pressure: the forces at the pressure are the same.
     State<2> tilt = first_equilibrium("tilt").state;
     tilt.load.stress[1] = 1.75;
@@ -337,6 +337,45 @@ BOOST_AUTO_TEST_CASE(jammed_strictly_is_told_by_the_forces_under_a_pressure) {
     tilt.load.stress[1] = 3.5;
     tilt.load.reference_length[0] /= 2;
     BOOST_TEST((strict(tilt) == Verdict::proved));
+}
+
+BOOST_AUTO_TEST_CASE(an_own_image_that_touches_along_a_fixed_period_is_counted) {
+    // The triangular lattice of one disk: its image along x touches, and L_x does not move. C7 (a) said: refuted.
+    const auto one = [](double width) {
+        State<2> state = cells::in_cell({{1, 0.25, 0.5}}, {width, std::sqrt(4 - width * width / 4), width / 2}, true, 1,
+                                        1, {cells::across(0, 0, 0, 1), cells::across(0, 0, 1, -1)});
+        state.packing.cell.period_moves[0] = false;
+        return isostat::inspect_cell(state, certify(state));
+    };
+    const isostat::CellInspection touching = one(2), apart = one(2.125);
+    BOOST_TEST((touching.strict.verdict == Verdict::proved), touching.strict.reason);
+    BOOST_TEST((apart.strict.verdict == Verdict::refuted), apart.strict.reason);
+    BOOST_TEST_REQUIRE(touching.backbone.has_value());
+    for (std::size_t s = 0; s < 4; ++s) {
+        const Counting &all = touching.all[s], &backbone = (*touching.backbone)[s];
+        BOOST_TEST(all.contact_count == 3);
+        BOOST_TEST(all.mechanisms == 0);
+        BOOST_TEST(backbone.contact_count == 3);
+        BOOST_TEST(backbone.mechanisms == 0);
+        BOOST_TEST(apart.all[s].contact_count == 2);
+    }
+    BOOST_TEST(apart.all[3].mechanisms == 1);
+    // Along a column, L_y and the tilt at rest: two strains are short, an image closes one.
+    State<2> column = cells::in_cell({{1, 0, 0}}, {2, 2, 0}, false, 1, 1, {cells::across(0, 0, 1, 0)});
+    column.packing.cell.period_moves[1] = false;
+    const isostat::CellInspection c = isostat::inspect_cell(column, certify(column));
+    BOOST_TEST((c.collective.verdict == Verdict::proved));
+    BOOST_TEST((c.strict.verdict == Verdict::refuted), c.strict.reason);
+    BOOST_TEST(c.all[3].contact_count == 2);
+    BOOST_TEST(c.all[3].mechanisms == 1);
+}
+
+BOOST_AUTO_TEST_CASE(own_images_of_rattlers_leave_the_strict_answer_open) {
+    // Rows of disks of radius 1 between rows of a disk that is as wide and bears nothing.
+    State<2> state = cells::in_cell({{1, 0, 0}, {1, 1, 4}}, {2, 8, 1}, true, 1, 1, {});
+    state.packing.cell.period_moves[0] = false;
+    BOOST_TEST((isostat::inspect_cell(state, certify(state)).strict.verdict == Verdict::undecided));
+    BOOST_TEST(isostat::inspect_cell(state, certify(state)).all[3].contact_count == 2);
 }
 
 BOOST_AUTO_TEST_CASE(states_with_a_mechanism_are_counted_not_followed) {

@@ -5,6 +5,7 @@
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
 
 #include <boost/test/unit_test.hpp>
 
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
-void play(State<2> state, int direction, int equilibria, const fs::path& folder) {
+void play(State<2> state, int direction, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
     RunHeader header;
     header.program = "test";
     header.settings = R"({"run":{"rule":"most_negative","ties":"choose"}})";
@@ -27,6 +28,7 @@ void play(State<2> state, int direction, int equilibria, const fs::path& folder)
     segment.equilibria = equilibria;
     RunOptions options;
     options.ties = TiePolicy::choose;
+    options.ties_seed = seed;
     directory.begin_segment(0, segment, 0, 0);
     const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
     BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));
@@ -109,6 +111,59 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     const RunVerification forged = verify_run(folder);
     BOOST_TEST((forged.verdict == Verdict::refuted));
     BOOST_TEST(forged.wrong.find("infinitesimal loads take") != std::string::npos, forged.wrong);
+}
+
+/// The path of one direction of the radii under the name of another, whose first-order terms take another one of two
+/// forces that vanish together: with bounds so wide that nothing is told apart, the record calls it a choice.
+BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_tie) {
+    const scratch::Folder scratch_folder;
+    const auto opened = [](const fs::path& folder) {
+        return json::Json::parse(
+                   scratch::read(folder / "events.jsonl").substr(0, scratch::read(folder / "events.jsonl").find('\n')))
+            .at("opened")
+            .get<std::string>();
+    };
+    const State<2> start = read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "ties/two-forces.json").state;
+    const fs::path folder = scratch_folder / "1";
+    play(start, -1, 1, folder, 1);
+    std::uint64_t seed = 1;
+    do {
+        ++seed;
+        play(start, -1, 1, scratch_folder / std::to_string(seed), seed);
+    } while (opened(folder) == opened(scratch_folder / std::to_string(seed)) && seed < 10);
+    const std::vector<double> rho =
+        read_state<2>(scratch_folder / std::to_string(seed) / "states/eq_000000.json").state.perturbation->rho;
+    BOOST_REQUIRE((verify_run(folder).verdict == Verdict::proved));
+    for (const double bound : {1e6, 1.0}) {
+        for (const char* name : {"eq_000000.json", "eq_000001.json", "last.json"}) {
+            StateFile<2> file = read_state<2>(folder / "states" / name);
+            file.state.perturbation->rho = rho;
+            for (auto* list : {&file.state.perturbation->open, &file.state.perturbation->zero}) {
+                for (auto& [contact, term] : *list) {
+                    term = {0, bound};
+                }
+            }
+            write_state<2>(folder / "states" / name, file.state, file.forces);
+        }
+        std::string events;
+        std::istringstream in(scratch::read(folder / "events.jsonl"));
+        for (std::string line; std::getline(in, line);) {
+            json::Json event = json::Json::parse(line);
+            for (json::Json& tie : event["perturbed"]) {
+                tie["first_order"] = {0.0, bound};
+                tie["choice"] = tie["decision"] == "limit" ? "infinitesimal loads" : "zero";
+                if (tie.contains("against")) {
+                    tie["against_first_order"] = {0.0, bound};
+                }
+            }
+            events += event.dump() + "\n";
+        }
+        scratch::write(folder / "events.jsonl", events);
+        forger::seal(folder);
+        const RunVerification forged = verify_run(folder);
+        BOOST_TEST((forged.verdict != Verdict::proved));
+        BOOST_TEST_MESSAGE(forged.wrong << (forged.undecided.empty() ? "" : forged.undecided[0]));
+    }
 }
 
 /// No record says how an end of the interval was chosen, and each of them ends it (C1 b).

@@ -40,7 +40,7 @@ class Background {
     }
     /// Sends a signal as soon as the file has so many lines; false when the program ended before.
     bool signal_at(const std::filesystem::path& file, long lines, int signal) {
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
         while (std::chrono::steady_clock::now() < deadline) {
             const std::string text = scratch::read(file);
             if (std::count(text.begin(), text.end(), '\n') >= lines) {

@@ -27,7 +27,7 @@ void run_refuses(const std::string& start, const std::vector<std::string>& words
 /// A scene that every command must refuse.
 void scene_refused(const std::string& scene, const std::vector<std::string>& words) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene);
+    scratch::write_scene(folder / "s.toml", scene);
     for (const std::string command : {"run", "prepare"}) {
         const Outcome outcome = run({command, (folder / "s.toml").string(), "-o", (folder / "out").string()});
         expect(outcome, 65, {"s.toml"});
@@ -75,7 +75,7 @@ BOOST_AUTO_TEST_CASE(empty_files) {
     const scratch::Folder folder;
     scratch::write(folder / "e.json", "");
     expect(run({"inspect", (folder / "e.json").string()}), 65, {"e.json", "empty"});
-    expect(run({"convert", (folder / "e.json").string(), "-o", (folder / "o.json").string()}), 65, {"e.json", "empty"});
+    expect(run({"import", (folder / "e.json").string(), "-o", (folder / "o.json").string()}), 65, {"e.json", "empty"});
     expect(run({"report", (folder / "e.json").string()}), 65, {"e.json", "empty"});
     BOOST_TEST(!fs::exists(folder / "o.json"));
     expect(run({"inspect", (folder / "absent.json").string()}), 65, {"absent.json", "No such file"});
@@ -99,7 +99,7 @@ BOOST_AUTO_TEST_CASE(disks_larger_than_the_box) {
 BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     const scratch::Folder folder;
     scratch::write(folder / "plain", "a file");
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     scratch::write(folder / "p.toml", "[packing]\ndisks = 2000\n"); // would take a while: it must be refused before
     const std::string below = (folder / "plain/below").string();
     expect(run({"run", (folder / "s.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
@@ -108,7 +108,7 @@ BOOST_AUTO_TEST_CASE(folders_that_cannot_be_written) {
     expect(run({"prepare", (folder / "p.toml").string(), "-o", below, "-q"}), 74, {"plain/below", "cannot write"});
     expect(run({"prepare", (folder / "p.toml").string(), "-o", (folder / "no/p.json").string(), "-q"}), 74,
            {"no/p.json", "cannot write"});
-    expect(run({"convert", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
+    expect(run({"import", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
     expect(run({"report", scratch::data("vertex100.txt"), "-o", below}), 74, {"plain/below", "cannot write"});
     BOOST_TEST(scratch::read(folder / "plain") == "a file");
     BOOST_TEST(!fs::exists(folder / "no"));
@@ -139,15 +139,15 @@ BOOST_AUTO_TEST_CASE(contradictory_programmes) {
 BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
     const scratch::Folder folder;
     const std::string out = (folder / "run").string();
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "--resume", "-q"}), 65,
            {"run.json", "no run to resume"});
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 64,
            {"holds a run already", "--resume", "--force"});
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q", "--force"}), 0);
-    scratch::write(folder / "t.toml",
-                   scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"least_index\"\n"));
+    scratch::write_scene(folder / "t.toml",
+                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"least_index\"\n"));
     expect(run({"run", (folder / "t.toml").string(), "-o", out, "-q", "--resume"}), 65,
            {"run.json", "another scene", "t.toml"});
 }

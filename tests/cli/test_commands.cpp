@@ -15,7 +15,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 
 BOOST_AUTO_TEST_CASE(help_of_every_subcommand_has_an_example) {
     for (const char* name : {"prepare", "run", "ensemble", "inspect", "certify", "verify", "plateau", "genericity",
-                             "plan", "report", "convert"}) {
+                             "plan", "report", "import"}) {
         const Outcome outcome = run({name, "--help"});
         expect(outcome, 0);
         BOOST_TEST(contains(outcome.out, "isostat " + std::string(name) + " "), name);
@@ -83,18 +83,25 @@ BOOST_AUTO_TEST_CASE(inspect_refutes_what_is_no_isostatic_equilibrium) {
     BOOST_TEST(contains(tension.out, "1-bottom"));
 }
 
-BOOST_AUTO_TEST_CASE(convert_keeps_every_number) {
+BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
     const scratch::Folder folder;
     const std::string target = (folder / "state.json").string();
-    expect(run({"convert", scratch::data("vertex100.txt"), "-o", target}), 0);
+    expect(run({"import", scratch::data("vertex100.txt"), "-o", target}), 0);
     const isostat::State<2> a = isostat::read_state<2>(scratch::data("vertex100.txt")).state;
     const isostat::State<2> b = isostat::read_state<2>(target).state;
     BOOST_TEST((a.packing.q == b.packing.q));
     BOOST_TEST((a.packing.radius == b.packing.radius));
     BOOST_TEST((a.load.infinitesimal == b.load.infinitesimal));
     BOOST_TEST((a.contacts == b.contacts));
-    BOOST_TEST(json::parse(b.provenance)["command"].get<std::string>().find("convert") != std::string::npos);
-    expect(run({"inspect", target}), 0);
+    BOOST_TEST(json::parse(b.provenance)["command"].get<std::string>().find("import") != std::string::npos);
+    for (const char* stated : {"--stress=1,2", "--load=true", "--contacts=nearest", "--threshold=1e-9"}) {
+        expect(run({"import", scratch::data("vertex100.txt"), "-o", target, stated}), 65, {"vertex text"});
+    }
+    const std::string rows = scratch::read(scratch::data("vertex100.txt")), pulled = (folder / "pulled.txt").string();
+    const std::size_t last = rows.rfind("\n4 ");
+    scratch::write(pulled, rows.substr(0, last + 1) + rows.substr(rows.find('\n', last + 1) + 1));
+    BOOST_TEST(run({"import", pulled, "-o", (folder / "none.json").string()}).status != 0); // a contact is missing
+    BOOST_TEST(!fs::exists(folder / "none.json"));
 }
 
 BOOST_AUTO_TEST_CASE(prepare_makes_a_state_with_its_history_and_the_same_bits_again) {
@@ -150,9 +157,9 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
 BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
     const scratch::Folder folder;
     const std::string out = (folder / "run").string();
-    scratch::write(folder / "s.toml",
-                   scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n" +
-                                                                  "[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"),
+                                                       up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n" +
+                                                           "[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));
     const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", out});
     expect(outcome, 0);
     for (const char* word :
@@ -192,7 +199,7 @@ BOOST_AUTO_TEST_CASE(a_run_with_cycles_writes_everything_and_says_so) {
 
 BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "s.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "--json"});
     expect(outcome, 0);
     const json j = json::parse(outcome.out);
@@ -205,15 +212,16 @@ BOOST_AUTO_TEST_CASE(json_output_is_one_object_and_nothing_else) {
         run({"prepare", (folder / "p.toml").string(), "-o", (folder / "p.json").string(), "--json"});
     expect(prepared, 0);
     BOOST_TEST(json::parse(prepared.out)["contacts"] == 20);
-    BOOST_TEST(json::parse(run({"convert", (folder / "p.json").string(), "-o", (folder / "q.json").string(), "--json"})
-                               .out)["disks"] == 9);
+    BOOST_TEST(json::parse(run({"import", scratch::data("vertex100.txt"), "-o", (folder / "q.json").string(), "--json"})
+                               .out)["disks"] == 100);
     const Outcome report = run({"report", (folder / "run").string(), "--json", "--no-charts"});
     BOOST_TEST(json::parse(report.out)["files"].size() > 3U);
 }
 
 BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
     const scratch::Folder folder;
-    scratch::write(folder / "cap.toml", scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nmax_arcs = 3\n"));
+    scratch::write_scene(folder / "cap.toml",
+                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nmax_arcs = 3\n"));
     const Outcome cap = run({"run", (folder / "cap.toml").string(), "-o", (folder / "cap").string(), "-q"});
     expect(cap, 1, {"failed", "max_arcs"});
     BOOST_TEST(contains(scratch::read(folder / "cap/run.json"), "\"status\": \"failed: "));
@@ -229,8 +237,8 @@ BOOST_AUTO_TEST_CASE(a_sample_that_fails_is_a_result_and_a_tie_is_undecided) {
 
 BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml",
-                   scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"up\"\nto = 1.01\n"));
+    scratch::write_scene(folder / "s.toml",
+                         scene_from(scratch::data("vertex100.txt"), up_6 + "[[programme]]\ndo = \"up\"\nto = 1.01\n"));
     const Outcome outcome = run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"});
     expect(outcome, 1, {"s.toml:6", "larger ratio than 1.01"});
     BOOST_TEST(contains(scratch::read(folder / "run/run.json"), "failed"));
@@ -239,7 +247,7 @@ BOOST_AUTO_TEST_CASE(a_ratio_that_lies_behind_when_its_turn_comes_fails_the_run)
 BOOST_AUTO_TEST_CASE(figures_are_drawn_and_without_gnuplot_data_and_scripts_remain) {
     const scratch::Folder folder;
     const std::string out = (folder / "run").string();
-    scratch::write(
+    scratch::write_scene(
         folder / "s.toml",
         scene_from(scratch::data("vertex100.txt"),
                    up_6 + "[[programme]]\ndo = \"down\"\nto = 1\n[[programme]]\ndo = \"down\"\nfrom = 3\nto = 1\n"));

@@ -25,7 +25,7 @@ int status_with_output_to(const std::string& place, const std::vector<std::strin
 
 /// A scene with a short run from the sample of 100 disks.
 fs::path small_scene(const scratch::Folder& folder) {
-    scratch::write(folder / "s.toml", scene_from(vertex, "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
+    scratch::write_scene(folder / "s.toml", scene_from(vertex, "[[programme]]\ndo = \"up\"\nequilibria = 1\n"));
     return folder / "s.toml";
 }
 
@@ -50,7 +50,7 @@ BOOST_AUTO_TEST_CASE(an_answer_that_does_not_get_out_is_74_for_every_command) {
         {"verify", cert},
         {"verify", done_run},
         {"plan", scene},
-        {"convert", vertex, "-o", (folder / "v.json").string()},
+        {"import", vertex, "-o", (folder / "v.json").string()},
         {"plateau", vertex, "--thresholds", "1e-9:1e-8"},
         {"genericity", packing, "--samples", "1"},
         {"report", done_run, "--no-charts"},
@@ -71,7 +71,7 @@ BOOST_AUTO_TEST_CASE(names_of_files_may_be_any_bytes) {
              {"inspect", bad, "--json"},
              {"certify", bad, "-o", (folder / "\xfe.cert").string(), "--json"},
              {"verify", (folder / "\xfe.cert").string(), "--input", bad, "--json"},
-             {"convert", bad, "-o", (folder / "out\xff").string(), "--json"},
+             {"import", bad, "-o", (folder / "out\xff").string(), "--json"},
              {"plateau", bad, "--json", "--thresholds", "1e-9:1e-8"},
              {"report", bad, "-o", (folder / "fig\xff").string(), "--json", "--no-charts"},
          }) {
@@ -97,7 +97,7 @@ BOOST_AUTO_TEST_CASE(nesting_without_end_is_bad_input_for_every_command) {
     for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
              {"inspect", deep},
              {"certify", deep, "-o", (folder / "c.json").string()},
-             {"convert", deep, "-o", (folder / "o.json").string()},
+             {"import", deep, "-o", (folder / "o.json").string()},
              {"plateau", deep},
              {"genericity", deep},
              {"report", deep, "-o", folder.path().string()},

@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(what_no_vertex_is_near_is_refused_and_nothing_is_written) {
     BOOST_TEST(!fs::exists(moved));
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--stress", "1"}), 64, {"--stress", "S1,S2"});
     expect(import_text(folder, soft.table(), {"--box", soft.box, "--walls", "fixed"}), 64, {"--walls", "box"});
-    expect(import_text(folder, state_text(soft.state), {}), 65, {"is a state of this program", "convert"});
+    expect(import_text(folder, state_text(soft.state), {}), 65, {"is a state of this program", "--jitter"});
 }
 
 BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(a_jitter_makes_equal_disks_different) {
     BOOST_TEST((again.load.kind == LoadKind::true_stress));
     BOOST_TEST(again.packing.radius[0] != state.packing.radius[0]);
     fs::remove(out);
-    expect(run({"import", sample, "-o", out}), 65, {"is a state", "--jitter", "convert"});
+    expect(run({"import", sample, "-o", out}), 65, {"is a state", "--jitter"});
 }
 
 BOOST_AUTO_TEST_CASE(crafted_packings_keep_their_contacts_or_are_refused) {
@@ -239,8 +239,8 @@ BOOST_AUTO_TEST_CASE(what_is_exported_comes_back_as_the_same_vertex) {
 
 BOOST_AUTO_TEST_CASE(a_run_is_exported_as_frames_with_displacements) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml",
-                   scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
+    scratch::write_scene(folder / "s.toml",
+                         scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n"));
     expect(run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q"}), 0);
     expect(run({"export", (folder / "run").string(), "-o", (folder / "run.xyz").string()}), 0);
     const std::string text = scratch::read(folder / "run.xyz");

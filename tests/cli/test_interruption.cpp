@@ -49,7 +49,7 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(killed_runs_resume_to_the_files_of_a_whole_run) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     const std::string events = scratch::read(folder / "whole/events.jsonl");
     const auto arcs = std::count(events.begin(), events.end(), '\n');
@@ -101,7 +101,7 @@ BOOST_AUTO_TEST_CASE(runs_that_choose_are_the_same_resumed_and_with_any_number_o
 BOOST_AUTO_TEST_CASE(ctrl_c_leaves_valid_files_and_resumes) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
-    scratch::write(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex400.txt"), long_scene, "checkpoint_seconds = 0\n"));
     expect(run({"run", scene, "-o", (folder / "whole").string(), "-q"}), 0);
     for (const int signal : {SIGINT, SIGTERM}) {
         const fs::path out = folder / ("cut" + std::to_string(signal));
@@ -129,7 +129,7 @@ BOOST_AUTO_TEST_CASE(one_ctrl_c_ends_a_command_that_keeps_no_records) {
         int writer = -1;
         bool ended = false;
         bool sent = false;
-        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(10);
         while (!ended && std::chrono::steady_clock::now() < deadline) {
             if (!sent && (writer = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0) { // it reads
                 sent = ::kill(background.pid(), signal) == 0;
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(resuming_a_finished_run_changes_nothing) {
     const scratch::Folder folder;
     const std::string scene = (folder / "s.toml").string();
     const fs::path out = folder / "run";
-    scratch::write(scene, scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(scene, scene_from(scratch::data("vertex100.txt"), up_6));
     expect(run({"run", scene, "-o", out.string(), "-q"}), 0);
     std::vector<std::string> before;
     for (const char* name : {"events.jsonl", "equilibria.csv", "summary.json", "run.json", "states/last.json"}) {
@@ -172,7 +172,7 @@ BOOST_AUTO_TEST_CASE(a_run_killed_before_its_first_equilibrium_is_one_without_eq
     const std::string scene = (folder / "s.toml").string(), out = (folder / "run").string();
     scratch::write(scene, "[packing]\ndisks = 3000\n" + up_6);
     Background background({"run", scene, "-o", out, "-q"});
-    for (int k = 0; k < 60000 && !fs::exists(folder / "run/equilibria.csv"); ++k) {
+    for (int k = 0; k < 600000 && !fs::exists(folder / "run/equilibria.csv"); ++k) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     BOOST_TEST(background.signal_at(folder / "run/run.json", 1, SIGKILL));

@@ -53,6 +53,38 @@ BOOST_AUTO_TEST_CASE(a_stiffness_says_the_forces_that_the_file_does_not) {
            {"--stiffness", "is -1: expected a positive number"});
 }
 
+BOOST_AUTO_TEST_CASE(nominal_stresses_of_a_later_frame_press_on_the_lengths_that_are_stated) {
+    const scratch::Folder folder;
+    const auto rest = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"snap",
+                                       scratch::data("series/disks.dump"),
+                                       "--frame",
+                                       "4",
+                                       "--box",
+                                       "0:15.4667845567222,0:14.8785794068429",
+                                       "--contacts",
+                                       scratch::data("series/contacts.dump"),
+                                       "--contact-columns",
+                                       "i,j,force",
+                                       "--stress",
+                                       "1,1.18",
+                                       "--json",
+                                       "-o",
+                                       (folder / "state.json").string()};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome made = run(words);
+        expect(made, 0);
+        return std::stod(made.out.substr(made.out.find("\"rest\":") + 7));
+    };
+    BOOST_TEST(rest({}) > 1e-4);
+    BOOST_TEST(rest({"--reference-length", "15.459368964433708,14.885842749060064"}) < 1e-6);
+    for (const char* wrong : {"15", "15,0", "15,-1", "15,nan", "15,x"}) {
+        expect(run({"snap", scratch::data("series/disks.dump"), "--box", first_box, "--reference-length", wrong, "-o",
+                    (folder / "state.json").string()}),
+               64, {"--reference-length is '", "L1,L2, two positive numbers"});
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_wall_whose_digits_are_rounded_is_named) {
     const scratch::Folder folder;
     const fs::path state = folder / "state.json";
@@ -123,7 +155,7 @@ BOOST_AUTO_TEST_CASE(some_frames_of_a_series_are_compared_alone) {
 BOOST_AUTO_TEST_CASE(a_state_at_rest_snaps_to_itself_whatever_its_rattlers_rest_on) {
     const scratch::Folder folder;
     const std::string state = (folder / "state.json").string();
-    expect(run({"convert", scratch::data("vertex100.txt"), "-o", state}), 0);
+    expect(run({"import", scratch::data("vertex100.txt"), "-o", state}), 0);
     const Outcome made = run({"snap", state, "-o", (folder / "snapped.json").string()});
     expect(made, 0);
     BOOST_TEST(contains(made.out, "snap      vertex"), made.out);
@@ -184,8 +216,9 @@ BOOST_AUTO_TEST_CASE(a_series_that_departs_has_status_1_and_its_tables) {
 
 BOOST_AUTO_TEST_CASE(report_says_where_soft_grains_would_leave_the_structures_of_a_run) {
     const scratch::Folder folder;
-    scratch::write(folder / "s.toml", scene_from(scratch::data("vertex100.txt"),
-                                                 "[[programme]]\ndo = \"up\"\nequilibria = 2\n", "states_every = 1\n"));
+    scratch::write_scene(folder / "s.toml",
+                         scene_from(scratch::data("vertex100.txt"), "[[programme]]\ndo = \"up\"\nequilibria = 2\n",
+                                    "states_every = 1\n"));
     const std::string out = (folder / "out").string();
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q"}), 0);
     const auto ends = [&](const std::string& stiffness) {

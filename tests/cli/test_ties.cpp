@@ -15,9 +15,10 @@ std::string example(const std::string& name) {
 /// The scene under ties = "stop", next to the state that it reads.
 std::string stopped(const scratch::Folder& folder, const std::string& name) {
     const std::string text = scratch::read(example(name + ".toml"));
-    scratch::write(folder / "stop.toml",
-                   scratch::replaced(scratch::replaced(text, "ties = \"choose\"\nmax_choices = 0", "ties = \"stop\""),
-                                     "file = \"", "file = \"" + example("")));
+    scratch::write_scene(
+        folder / "stop.toml",
+        scratch::replaced(scratch::replaced(text, "ties = \"choose\"\nmax_choices = 0", "ties = \"stop\""), "file = \"",
+                          "file = \"" + example("")));
     return (folder / "stop.toml").string();
 }
 
@@ -81,8 +82,8 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_refused_with_its_self_stress_or_foll
 BOOST_AUTO_TEST_CASE(a_list_that_is_dependent_where_an_arc_ends_is_exchanged_before_and_recorded) {
     // 12 equal disks: the contact that closes does not stop the motion, a pair that rests does.
     const scratch::Folder folder;
-    scratch::write(folder / "scene.toml", "[packing]\ndisks = 12\ndiameters = [1.0, 1.0]\nseed = 7\n[run]\n"
-                                          "ties = \"choose\"\n[[programme]]\ndo = \"up\"\nequilibria = 30\n");
+    scratch::write_scene(folder / "scene.toml", "[packing]\ndisks = 12\ndiameters = [1.0, 1.0]\nseed = 7\n[run]\n"
+                                                "ties = \"choose\"\n[[programme]]\ndo = \"up\"\nequilibria = 30\n");
     expect(run({"run", (folder / "scene.toml").string(), "-o", (folder / "run").string(), "-q"}), 1,
            {"equilibrium 3 supports every load"});
     BOOST_TEST(contains(scratch::read(folder / "run/events.jsonl"), "\"decision\":\"end\",\"contact\":\"6-top\""));
@@ -96,10 +97,10 @@ BOOST_AUTO_TEST_CASE(a_run_with_a_force_at_zero_is_resumed_with_the_same_records
     const std::string text =
         scratch::replaced(scratch::read(example("two-forces.toml")), "file = \"", "file = \"" + example(""));
     // One segment of two limits against two segments of one: the second starts from what was stored.
-    scratch::write(folder / "one.toml", scratch::replaced(text, "equilibria = 1", "equilibria = 2"));
-    scratch::write(folder / "two.toml",
-                   scratch::replaced(text, "equilibria = 1",
-                                     "equilibria = 1\n\n[[programme]]\ndo = \"down\"\nfrom = 1\nequilibria = 1"));
+    scratch::write_scene(folder / "one.toml", scratch::replaced(text, "equilibria = 1", "equilibria = 2"));
+    scratch::write_scene(folder / "two.toml",
+                         scratch::replaced(text, "equilibria = 1",
+                                           "equilibria = 1\n\n[[programme]]\ndo = \"down\"\nfrom = 1\nequilibria = 1"));
     (void)run({"run", (folder / "one.toml").string(), "-o", (folder / "one").string(), "-q"});
     (void)run({"run", (folder / "two.toml").string(), "-o", (folder / "two").string(), "-q"});
     BOOST_TEST(scratch::read(folder / "one/events.jsonl") == scratch::read(folder / "two/events.jsonl"));

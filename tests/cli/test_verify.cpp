@@ -88,7 +88,7 @@ BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itsel
 
 BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     const scratch::Folder folder;
-    scratch::write(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     const std::string out = (folder / "out").string();
     expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
     const Outcome good = run({"verify", out, "--json"});

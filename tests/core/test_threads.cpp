@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(a_task_runs_beside_its_caller, *boost::unit_test::label("th
     const Threads threads(2);
     std::atomic<bool> begun{false};
     Task task([&] { begun = true; });
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(10);
     while (!begun && std::chrono::steady_clock::now() < until) {
         std::this_thread::yield();
     }
@@ -113,7 +113,7 @@ BOOST_AUTO_TEST_CASE(a_task_is_under_way_only_while_another_thread_has_it, *boos
     });
     BOOST_TEST(task.underway());
     go = true;
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(10);
     while (task.underway() && std::chrono::steady_clock::now() < until) {
         std::this_thread::yield();
     }

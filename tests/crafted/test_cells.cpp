@@ -2,6 +2,7 @@
 
 #include "examples.hpp"
 
+#include <isostat/certificate/inspect.hpp>
 #include <isostat/contact/contact.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/io/state_file.hpp>
@@ -264,6 +265,38 @@ BOOST_AUTO_TEST_CASE(the_index_of_critical_disks_is_k_less_what_moves_without_a_
         BOOST_TEST(motions_that_lengthen(packing, exact_contacts(packing).value()) == c.index, c.file);
         BOOST_TEST((found.one_sign.kind == isostat::exact::OneSign::strict),
                    c.file); // critical: a positive self-stress
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_state_is_jammed_as_the_exact_packing_where_own_images_touch_along_a_fixed_period) {
+    // Radii 1, r, r, heights of their rows h, g, h: the images of disk 0 touch along a period of 2 that does not move.
+    // Disks 1 and 2 lie flat upon each other; for r = 0.57 they press outwards more than a pressure bears, and
+    // disk 0 leaves its image. For r = 0.6 they do not.
+    struct Rows {
+        const char *r, *h, *g;
+        Verdict strict;
+    };
+    for (const Rows& rows : {Rows{"57/100", "1/100*sqrt(14649)", "1/100*sqrt(2996)", Verdict::refuted},
+                             Rows{"3/5", "1/5*sqrt(39)", "1/5*sqrt(11)", Verdict::proved}}) {
+        const std::string first = rows.h, second = first + " + " + rows.g, period = second + " + " + first;
+        const ExactPacking packing =
+            parse_packing("format = \"isostat-packing 1\"\ndisks = [[0, 0, 1], [1, \"" + first + "\", \"" + rows.r +
+                              "\"], [0, \"" + second + "\", \"" + rows.r + "\"]]\n[cell]\nperiod = [2, \"" + period +
+                              "\"]\ntilt = 1\nmoves = [\"y\", \"xy\"]\n",
+                          "rows")
+                .packing;
+        const Inspection exact = inspected(packing);
+        BOOST_REQUIRE(exact.jamming.has_value());
+        BOOST_TEST((exact.jamming->strict == rows.strict));
+        isostat::State<2> state;
+        state.packing = approximate(packing);
+        state.contacts = exact.contacts;
+        state.load.stress = {1, 1};
+        state.load.refer_to(state.packing);
+        const isostat::CellInspection seen = isostat::inspect_cell(state, isostat::certify(state));
+        BOOST_TEST((seen.collective.verdict == exact.jamming->collective));
+        BOOST_TEST((seen.strict.verdict == rows.strict), seen.strict.reason);
+        BOOST_TEST(same(*exact.strains, seen.all));
     }
 }
 

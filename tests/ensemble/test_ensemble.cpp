@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
                 }
             }
             // The samples of a killed parent get SIGTERM: they may still be ending.
-            for (int k = 0; k < 200; ++k) {
+            for (int k = 0; k < 60000; ++k) {
                 if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
                     break;
                 }
@@ -174,7 +174,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_refused_before_anything_is_made) {
     const scratch::Folder folder;
     scratch::write(folder / "s.toml", small);
     scratch::write(folder / "other.toml", small + "# another text\n");
-    scratch::write(folder / "read.toml", scene_from(scratch::data("vertex100.txt"), up_6));
+    scratch::write_scene(folder / "read.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     scratch::write(folder / "static.toml", "[packing]\ndisks = 12\n");
     const std::string out = (folder / "e").string();
     const auto with = [&](const char* scene, const std::vector<std::string>& more) {

@@ -59,6 +59,9 @@ inline std::string feared_word(Random& random) {
                                                 "true",
                                                 "\\",
                                                 "\\u0000",
+                                                "\\u001b[2J",
+                                                "`touch TRACE`",
+                                                "\x1b]0;owned\a",
                                                 "\xC3",
                                                 "99999999999999999999",
                                                 "18446744073709551615",
@@ -110,6 +113,76 @@ inline void replace_all(std::string& text, const std::string& from, const std::s
     }
 }
 
+/// A number in another spelling, or the next one: what an index, a counter or a column may not be.
+inline void respell_number(std::string& text, Random& random) {
+    const std::size_t at =
+        text.find_first_of("0123456789", static_cast<std::size_t>(random.integer(static_cast<int>(text.size()))));
+    if (at == std::string::npos) {
+        return;
+    }
+    const std::size_t size = std::min(text.find_first_not_of("0123456789", at), text.size()) - at;
+    const std::string digits = text.substr(at, size);
+    std::string next = digits;
+    next.back() = next.back() == '9' ? '0' : static_cast<char>(next.back() + 1);
+    text.replace(at, size,
+                 any_of({"+" + digits, "0" + digits, "-" + digits, digits + ".0", digits + ".9", digits + "e0",
+                         digits + "e99", next},
+                        random));
+}
+
+/// "3-7" to "7-3", "[3,7" to "[7,3".
+inline void turn_pair(std::string& text, Random& random) {
+    const auto is_digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
+    const std::size_t mark =
+        text.find_first_of("-,", static_cast<std::size_t>(random.integer(static_cast<int>(text.size()))));
+    if (mark == std::string::npos || mark == 0 || !is_digit(mark - 1) || !is_digit(mark + 1)) {
+        return;
+    }
+    std::size_t begin = mark, end = mark + 1;
+    for (; begin > 0 && is_digit(begin - 1); --begin) {
+    }
+    for (; is_digit(end); ++end) {
+    }
+    const std::string turned = text.substr(mark + 1, end - mark - 1) + text[mark] + text.substr(begin, mark - begin);
+    text.replace(begin, end - begin, turned);
+}
+
+/// A word of the file in the place of another: of an enumeration, a key, a contact, a name.
+inline void exchange_words(std::string& text, Random& random) {
+    constexpr const char* ends = " \t,:[]{}=\"\n";
+    const auto place = [&] {
+        const std::size_t at =
+            text.find_first_not_of(ends, static_cast<std::size_t>(random.integer(static_cast<int>(text.size()))));
+        return at == std::string::npos ? LineAt{}
+                                       : LineAt{at, std::min(text.find_first_of(ends, at), text.size()) - at};
+    };
+    const LineAt from = place(), to = place();
+    text.replace(to.begin, to.size, text.substr(from.begin, from.size));
+}
+
+/// A column of a table once more, in front: its name too.
+inline void double_column(std::string& text, Random& random) {
+    const LineAt line = some_line(text, random);
+    const auto columns = std::count(text.begin() + static_cast<std::ptrdiff_t>(line.begin),
+                                    text.begin() + static_cast<std::ptrdiff_t>(line.begin + line.size), ',');
+    const int which = random.integer(static_cast<int>(columns) + 1);
+    std::string doubled;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        std::size_t at = begin;
+        for (int k = 0; k < which && at < end; ++k) {
+            at = std::min(text.find(',', at), end - 1) + 1;
+        }
+        std::string field = text.substr(at, std::min(text.find(',', at), end) - at);
+        const std::size_t name = field.starts_with("# ") ? 2 : 0;
+        const std::size_t mark = text.compare(begin, 2, "# ") == 0 ? 2 : 0;
+        doubled +=
+            text.substr(begin, mark) + field.substr(name) + "," + text.substr(begin + mark, end + 1 - begin - mark);
+        begin = end + 1;
+    }
+    text = doubled;
+}
+
 /// Nesting without end, of both kinds.
 inline std::string deep(Random& random) {
     const int depth = 1 << random.integer(17);
@@ -140,7 +213,7 @@ inline std::string mutated(std::string text, Random& random) {
         const auto size = static_cast<int>(text.size());
         const auto at = static_cast<std::size_t>(random.integer(size));
         const auto length = static_cast<std::size_t>(1 + random.integer(std::min(size, 40)));
-        switch (random.integer(16)) {
+        switch (random.integer(21)) {
         case 0: text[at] = static_cast<char>(random.integer(256)); break;
         case 1: text[at] = static_cast<char>(text[at] ^ (1 << random.integer(8))); break;
         case 2: text.erase(at, length); break;
@@ -179,6 +252,10 @@ inline std::string mutated(std::string text, Random& random) {
                 text.insert(some_line(text, random).begin, deep(random));
             }
             break;
+        case 14: respell_number(text, random); break;
+        case 15: turn_pair(text, random); break;
+        case 16: exchange_words(text, random); break;
+        case 17: double_column(text, random); break;
         default: replace_word(text, random); break;
         }
     }

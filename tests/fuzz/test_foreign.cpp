@@ -1,7 +1,9 @@
 // Packings of other programs: mutants are refused by name, or read without losing a row.
 
 #include "fuzz/harness.hpp"
+#include "support/scratch.hpp"
 
+#include <isostat/compare/compare.hpp>
 #include <isostat/io/foreign.hpp>
 
 #include <cctype>
@@ -168,6 +170,33 @@ BOOST_AUTO_TEST_CASE(mutated_tables_with_stated_columns_lose_no_row) {
     const auto read = [&](const std::string& changed) { return check(changed, options); };
     BOOST_TEST(fuzz::fuzz("bare table", bare, 3000, read).refused > 100);
     BOOST_TEST(fuzz::fuzz("table with its own names", "x y radius\n" + bare, 1500, read).refused > 100);
+}
+
+BOOST_AUTO_TEST_CASE(mutated_series_of_frames_are_refused_by_name_or_have_sound_frames) {
+    const scratch::Folder folder;
+    std::filesystem::copy(scratch::data("series"), folder / "series");
+    const auto read = [&](const std::filesystem::path& file, const std::string& changed) {
+        scratch::write(file, changed);
+        try {
+            compare::SeriesReader reader(folder / "series/series.toml");
+            std::string wrong;
+            while (const auto frame = reader.next()) {
+                wrong += unsound(frame->packing);
+            }
+            return wrong;
+        } catch (const Error& error) { // of the file, or of one that does not fit it any longer
+            const std::string message = error.what();
+            BOOST_TEST(message.starts_with((folder / "series").string()), message);
+            throw Error(error.kind(), "FILE " + message);
+        }
+    };
+    for (const char* name : {"series.toml", "frames.csv", "disks.dump", "contacts.dump"}) {
+        const std::filesystem::path file = folder / "series" / name;
+        const std::string text = scratch::read(file);
+        const auto check = [&](const std::string& changed) { return read(file, changed); };
+        BOOST_TEST(fuzz::fuzz(name, text, 400, check).refused > 50);
+        scratch::write(file, text);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(files_with_announced_rows_are_refused_wherever_they_are_cut) {

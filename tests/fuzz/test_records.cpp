@@ -1,11 +1,14 @@
 // Records of a run: run.json, events.jsonl, equilibria.csv, checkpoint.json, stored states.
 
 #include "checker/run_records.hpp"
+#include "core/text.hpp"
 #include "fuzz/harness.hpp"
 #include "io/certificate_json.hpp"
 #include "io/files.hpp"
+#include "report/run_report.hpp"
 #include "report/tables.hpp"
 #include "support/crafted.hpp"
+#include "support/forger.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
@@ -45,7 +48,7 @@ void play(const fs::path& folder) {
     directory.finish(RunStatus::completed, "");
 }
 
-/// A run with one file of it changed; `read` reads the run.
+/// A run with one file of it changed and its digests made to fit; `read` reads the run.
 struct Damaged {
     scratch::Folder folder;
     fs::path run = folder / "run";
@@ -55,6 +58,7 @@ struct Damaged {
         const std::string original = scratch::read(run / name);
         const Count tally = fuzz::fuzz(name, original, samples, [&](const std::string& changed) {
             scratch::write(run / name, changed);
+            forger::seal(run);
             try {
                 return read(changed);
             } catch (const Error& error) {
@@ -64,6 +68,7 @@ struct Damaged {
             }
         });
         scratch::write(run / name, original);
+        forger::seal(run);
         return tally;
     }
 };
@@ -129,7 +134,16 @@ BOOST_AUTO_TEST_CASE(mutated_checkpoints_are_refused_by_name_or_are_resumed) {
                         scratch::replaced(error.what(), (run.folder / "copy").string(), run.run.string()));
         }
     };
-    BOOST_TEST(run.fuzz("checkpoint.json", 300, resume).refused > 200);
+    const std::string original = scratch::read(run.run / "checkpoint.json");
+    BOOST_TEST(fuzz::fuzz("checkpoint.json", original, 300, [&](const std::string& changed) {
+                   scratch::write(run.run / "checkpoint.json", changed);
+                   try {
+                       return resume(changed);
+                   } catch (const Error& error) {
+                       throw Error(error.kind(), std::string("FILE ") + error.what());
+                   }
+               }).refused > 200);
+    scratch::write(run.run / "checkpoint.json", original);
     // With a digest that fits.
     const std::string mark = ",\n\"digest\": ";
     const std::string whole = scratch::read(run.run / "checkpoint.json");
@@ -151,8 +165,30 @@ BOOST_AUTO_TEST_CASE(the_replay_of_mutated_records_ends_with_an_answer) {
         (void)verify_run(run.run);
         return std::string();
     };
-    for (const char* name : {"events.jsonl", "equilibria.csv", "states/eq_000000.json", "states/eq_000001.json"}) {
+    for (const char* name : {"events.jsonl", "equilibria.csv", "run.json", "start.json", "states/eq_000000.json",
+                             "states/eq_000001.json"}) {
         run.fuzz(name, 300, replay);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(reports_of_mutated_records_are_refused_by_name_or_are_text) {
+    Damaged run;
+    ReportOptions options;
+    options.charts = false;
+    options.vtk = options.html = true;
+    const auto draw = [&](const std::string&) {
+        const ReportResult report = report_run(run.run, run.folder / "figures", options);
+        for (const fs::path& file : report.files) {
+            const std::string text = scratch::read(file);
+            if (!file.string().ends_with(".html") && text::shown_lines(text) != text) {
+                return file.filename().string() + " commands a terminal";
+            }
+        }
+        return text::shown_lines(report.text) == report.text ? std::string()
+                                                             : std::string("the report commands a terminal");
+    };
+    for (const char* name : {"run.json", "events.jsonl", "equilibria.csv", "summary.json", "states/eq_000001.json"}) {
+        BOOST_TEST(run.fuzz(name, 150, draw).refused > 10);
     }
 }
 

@@ -6,6 +6,7 @@ import copy
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -120,6 +121,9 @@ def try_alterations(name, document, folder):
 
 
 def check_run(scene, folder, out):
+    if named := re.search(r'file = "(/.*/)(.*)"', scene):  # a scene names files of its folder
+        shutil.copy(named[1] + named[2], folder)
+        scene = scene.replace(named[1], "")
     (folder / "scene.toml").write_text(scene)
     done = isostat("run", "scene.toml", "-o", out, "--quiet", "--force", cwd=folder)
     check(done.returncode in (0, 1, 2), f"{out}: {done.stderr}")

@@ -1,7 +1,9 @@
 // Damaged folders: a resume says which file is wrong and changes nothing; a disk without room loses no record.
 #include "io/bad_input.hpp"
+#include "io/record_digests.hpp"
 #include "support/scratch.hpp"
 
+#include <isostat/io/certificate_file.hpp>
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
@@ -143,16 +145,86 @@ BOOST_FIXTURE_TEST_CASE(a_file_cut_short_or_missing_is_found, Killed) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(a_device_without_room_is_a_failed_write_that_names_the_file) {
-    if (!fs::exists("/dev/full")) {
-        return;
+/// A checkpoint that is signed again, with something else in one of its fields.
+void forge_checkpoint(const fs::path& run, const std::string& from, const std::string& to) {
+    const std::string old = scratch::read(run / "checkpoint.json");
+    std::string text = scratch::replaced(old.substr(0, old.rfind(before_digest)), from, to);
+    BOOST_REQUIRE(text != old.substr(0, old.rfind(before_digest)));
+    scratch::write(run / "checkpoint.json", text + before_digest + '"' + sha256(text) + "\"}\n");
+}
+
+BOOST_FIXTURE_TEST_CASE(a_checkpoint_names_no_file_but_those_of_its_run, Killed) {
+    scratch::write(folder / "thesis.txt", "precious");
+    scratch::write(run / "notes.txt", "precious");
+    for (const std::string& name :
+         {std::string("../thesis.txt"), (folder / "thesis.txt").string(), std::string("notes.txt"),
+          std::string("states/../events.jsonl"), std::string("run.json"), std::string("start.json")}) {
+        forge_checkpoint(run, "\"bytes\":{", "\"bytes\":{\"" + name + "\":0,");
+        forge_checkpoint(run, "\"digests\":{", "\"digests\":{\"" + name + "\":\"\",");
+        refused("checkpoint.json: bytes." + name);
     }
-    for (const char* name : {"events.jsonl", "equilibria.csv"}) {
-        const scratch::Folder folder;
-        fs::create_directories(folder / "run");
-        fs::create_symlink("/dev/full", folder / "run" / name);
-        expect_error([&] { play(folder / "run", RunDirectory::Mode::fresh, goal); }, ErrorKind::cannot_write,
-                     {name, "No space left"});
+    for (const std::string& name : {"../thesis.txt", "states/last.json", "events.jsonl", "states/eq_1.json"}) {
+        forge_checkpoint(run, "\"files\":{", "\"files\":{\"" + name + "\":\"\",");
+        refused("checkpoint.json: files." + name);
+    }
+    BOOST_TEST(scratch::read(folder / "thesis.txt") == "precious");
+    BOOST_TEST(scratch::read(run / "notes.txt") == "precious");
+}
+
+BOOST_FIXTURE_TEST_CASE(a_checkpoint_has_a_strain_for_each_axis_and_a_segment_of_the_run, Killed) {
+    const std::string text = files.at("checkpoint.json");
+    const std::size_t begin = text.find("\"strain\":[");
+    const std::string strain = text.substr(begin, text.find(']', begin) + 1 - begin);
+    for (const char* other : {"\"strain\":[]", "\"strain\":[0.5]", "\"strain\":[0,0,0]", "\"strain\":[0,null]"}) {
+        forge_checkpoint(run, strain, other);
+        refused("checkpoint.json: strain");
+    }
+    forge_checkpoint(run, "\"segment\":0", "\"segment\":7");
+    refused("checkpoint.json: segment");
+}
+
+BOOST_FIXTURE_TEST_CASE(no_link_leads_out_of_the_folder_of_a_run, Killed) {
+    for (const std::string& name : needed) {
+        fs::rename(run / name, folder / "elsewhere");
+        fs::create_symlink(folder / "elsewhere", run / name);
+        expect_bad_input([&] { play(run, RunDirectory::Mode::resume, goal); }, {name, "no link"});
+        const RunCounters counters;
+        expect_error([&] { const RunDirectory forced(run, faulty_header(), RunDirectory::Mode::force, counters); },
+                     ErrorKind::usage, {name, "no link"});
+        BOOST_TEST(scratch::read(folder / "elsewhere") == files.at(name));
+        fs::remove(run / name);
+        fs::rename(folder / "elsewhere", run / name);
+    }
+    fs::rename(run / "states", folder / "states");
+    fs::create_directory_symlink(folder / "states", run / "states");
+    expect_bad_input([&] { play(run, RunDirectory::Mode::resume, goal); }, {"states", "no link"});
+}
+
+BOOST_FIXTURE_TEST_CASE(what_a_kill_left_is_removed_by_a_resume_and_what_others_put_there_stays, Killed) {
+    const std::vector<std::string> left{"preparation_failed.json", "checkpoint.json.0123456789abcdef.part",
+                                        "states/last.json.fedcba9876543210.part", "run.json.part"};
+    const std::vector<std::string> of_others{"notes.txt", "states/notes.json", "notes.txt.0123456789abcdef.part",
+                                             "states/eq_7.json"};
+    for (const std::string& name : left) {
+        scratch::write(run / name, "left");
+    }
+    for (const std::string& name : of_others) {
+        scratch::write(run / name, "mine");
+    }
+    const RunCounters counters;
+    {
+        const RunDirectory directory(run, faulty_header(), RunDirectory::Mode::resume, counters);
+        BOOST_TEST(directory.notes().size() == of_others.size());
+    }
+    for (const std::string& name : left) {
+        BOOST_TEST(!fs::exists(run / name), name);
+    }
+    const RunDirectory forced(run, faulty_header(), RunDirectory::Mode::force, counters);
+    for (const std::string& name : of_others) {
+        BOOST_TEST(scratch::read(run / name) == "mine", name);
+    }
+    for (const std::string& name : {"states/eq_000000.json", "checkpoint.json", "start.json"}) {
+        BOOST_TEST(!fs::exists(run / name), name);
     }
 }
 

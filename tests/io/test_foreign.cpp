@@ -183,6 +183,32 @@ BOOST_AUTO_TEST_CASE(periodic_boundaries_are_refused_unless_the_user_takes_them_
     expect_bad_input([&] { read(s, with_walls(ForeignWalls::box)); }, {"shrink-wrapped", "--box"});
 }
 
+BOOST_AUTO_TEST_CASE(gaps_are_known_to_the_digits_of_the_file) {
+    const auto rounding = [](const std::string& x, const std::string& r) {
+        return read("x y r\n" + x + " 0.25 " + r + "\n1.5 0.25 " + r + "\n").rounding;
+    };
+    // Places off by half a unit, 2 sqrt 2 of it for a pair; radii twice.
+    const auto near = [](double found, double expected) { return std::abs(found - expected) < 1e-3 * expected; };
+    BOOST_TEST(rounding("0.5", "0.5") < 2e-15); // as they stand, but for doubles
+    BOOST_TEST(rounding("0.5", "0.5") > 0);
+    BOOST_TEST(near(rounding("1.234567", "0.5"), std::sqrt(8.0) * 5e-7));
+    BOOST_TEST(near(rounding("1.23457e1", "0.5"), std::sqrt(8.0) * 5e-5));
+    BOOST_TEST(near(rounding("0.5", "0.123456"), 2 * 5e-7));
+    BOOST_TEST(near(rounding("0.500000", "0.5"), std::sqrt(8.0) * 5e-6)); // digits as written, of the largest
+    BOOST_TEST(rounding("0.12345678901234567890123", "0.5") < 2e-15);
+    // In other formats, of a box, of diameters, and scaled to the box.
+    const std::string digits = replaced(dump, "1 1 0 1.25", "1 1 0 1.234567");
+    BOOST_TEST(near(read(digits).rounding, std::sqrt(8.0) * 5e-7));
+    const std::string scaled = replaced(digits, "id type x y z radius", "id type xs ys zs radius");
+    BOOST_TEST(near(read(scaled).rounding, 4 * std::sqrt(8.0) * 5e-7));
+    const std::string size = replaced(data_file, "1 1 0.5 2.5", "1 1 0.500001 2.5");
+    BOOST_TEST(near(read(size).rounding, 5e-6));
+    const std::string box = replaced(dump, "-1 3\n", "-1 3.000001\n");
+    BOOST_TEST(near(read(box, with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
+    BOOST_TEST(read(box).rounding < 1e-14); // without walls they are not used
+    BOOST_TEST(near(read(replaced(xyz, "4 0 0", "4.000001 0 0"), with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
+}
+
 BOOST_AUTO_TEST_CASE(scaled_and_unwrapped_coordinates) {
     const std::string scaled =
         scratch::replaced(scratch::replaced(scratch::replaced(dump, "id type x y z", "id type xs ys zs"), "2 1 2 1.5 0",
@@ -226,6 +252,33 @@ BOOST_AUTO_TEST_CASE(what_does_not_fit_is_refused_with_line_value_and_what_was_e
     refused("x,y,r\n1,,2\n", {"FILE:2", "y of disk 0"});
     refused("x,y,r\n1,2\n", {"FILE:2", "3 values"});
     refused("x,y,r\n1,2,1e999\n", {"finite"});
+}
+
+BOOST_AUTO_TEST_CASE(columns_and_header_lines_come_once_whether_they_are_asked_for_or_not) {
+    const auto refused = [&](const std::string& text, const std::string& where, const std::string& what) {
+        expect_bad_input([&] { read(text); }, {where, what});
+    };
+    refused("x,y,r,name,name\n1,1,1,a,b\n", "FILE:1", "'name' is given twice");
+    refused("# x y r q q\n1 1 1 0 0\n", "FILE:1", "'q' is given twice");
+    refused(replaced(dump, "id type x y z radius", "id type x y z radius type"), "FILE:19", "'type' is given twice");
+    refused(replaced(xyz, "radius:R:1", "radius:R:1:pos.0:R:1"), "FILE:2", "'pos.0' is given twice");
+    refused(replaced(dump, "ITEM: NUMBER OF ATOMS\n1", "ITEM: NUMBER OF ATOMS\n2\nITEM: NUMBER OF ATOMS\n1"), "FILE:5",
+            "once");
+    refused(replaced(data_file, "-0.5 0.5 zlo zhi", "-0.5 0.5 zlo zhi\n-0.5 0.5 zlo zhi"), "FILE:9", "once");
+    refused(replaced(data_file, "1 atom types", "1 atom types\n1 atom types"), "FILE:5", "once");
+    ForeignOptions options;
+    options.columns = {"x", "y", "r", "-", "-"};
+    BOOST_TEST(read("1 1 1 0 0\n", options).packing.disk_count() == 1);
+    options.columns = {"x", "y", "r", "z", "z"};
+    expect_bad_input([&] { read("1 1 1 0 0\n", options); }, {"FILE", "'z' is given twice"});
+}
+
+BOOST_AUTO_TEST_CASE(integers_of_files_are_written_as_integers) {
+    for (const char* id : {"+7", "07", "-0", "7.0", "7e0", "1e99", "0x7", "nan", ""}) {
+        expect_bad_input([&] { read(std::string("id,x,y,r\n") + id + ",1,1,1\n"); },
+                         {"FILE:2", "id of disk 0", "an integer"});
+    }
+    BOOST_TEST(read("id,x,y,r\n7,+1,1,1\n").ids.front() == 7); // a number may have its sign
 }
 
 BOOST_AUTO_TEST_CASE(more_rows_in_a_data_file_than_atoms_are_refused) {

@@ -163,6 +163,40 @@ BOOST_AUTO_TEST_CASE(every_row_of_equilibria_has_a_number_for_every_column) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(numbers_of_a_table_of_equilibria_are_finite_and_its_integers_written_as_such) {
+    const scratch::Folder folder;
+    play(folder / "run", RunDirectory::Mode::fresh, -1, true);
+    const fs::path file = folder / "run/equilibria.csv";
+    const std::string text = scratch::read(file);
+    const std::vector<std::string> names = equilibria_columns();
+    /// The last row with a word in one column.
+    const auto altered = [&](const std::string& name, const std::string& word) {
+        std::size_t begin = text.rfind('\n', text.size() - 2) + 1;
+        for (auto at = names.begin(); *at != name; ++at) {
+            begin = text.find(',', begin) + 1;
+        }
+        scratch::write(file, text.substr(0, begin) + word + text.substr(text.find(',', begin)));
+    };
+    for (const char* name : {"sigma2", "ratio", "eps1", "eps2", "solid_fraction", "sigma2_high", "margin"}) {
+        for (const char* word : {"nan", "1e301", "-1e400", "0x1p3", "1,5", "", "one"}) {
+            altered(name, word);
+            expect_bad_input([&] { (void)read_equilibria(file); }, {"equilibria.csv:8"});
+        }
+        altered(name, "inf");
+        if (name == std::string("sigma2_high") || name == std::string("margin")) {
+            BOOST_TEST(read_equilibria(file).size() == 7U);
+        } else {
+            expect_bad_input([&] { (void)read_equilibria(file); }, {name, "'inf'", "a finite number"});
+        }
+    }
+    for (const char* name : {"number", "previous", "segment", "arcs", "rattlers", "backbone", "h", "proved"}) {
+        for (const char* word : {"4.9", "4.0", "-0", "+4", "04", "1e1", "1e99", "2147483648", "-2", "nan"}) {
+            altered(name, word);
+            expect_bad_input([&] { (void)read_equilibria(file); }, {name, word, "an integer"});
+        }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(an_interrupted_run_goes_on_to_the_same_files) {
     const scratch::Folder folder;
     BOOST_REQUIRE(play(folder / "whole", RunDirectory::Mode::fresh, -1, true));
@@ -238,17 +272,6 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run_is_kept_unless_told_otherwise) {
     BOOST_TEST(scratch::read(folder / "run/events.jsonl").empty());
     BOOST_TEST(!fs::exists(folder / "run/summary.json"));
     BOOST_TEST(!fs::exists(folder / "run/states/last.json"));
-}
-
-BOOST_AUTO_TEST_CASE(files_of_others_in_a_new_folder_are_not_touched) {
-    const scratch::Folder folder;
-    fs::create_directories(folder / "run/states");
-    scratch::write(folder / "run/states/mine.txt", "mine");
-    scratch::write(folder / "run/start.json", "mine");
-    const RunCounters counters;
-    const RunDirectory directory(folder / "run", header(), RunDirectory::Mode::fresh, counters);
-    BOOST_TEST(scratch::read(folder / "run/states/mine.txt") == "mine");
-    BOOST_TEST(!directory.start().has_value());
 }
 
 BOOST_AUTO_TEST_CASE(resuming_something_else_is_refused) {

@@ -213,8 +213,18 @@ BOOST_AUTO_TEST_CASE(bad_contacts_are_named) {
     refuses_state(replaced(text, "[0,1]", "[0,\"ceiling\"]"), {"contacts[2][1]", "ceiling", "left"});
     refuses_state(replaced(text, "[0,1]", "[0,\"left\"]"), {"contacts[2]", "0-left", "contacts[0]", "once"});
     refuses_state(replaced(text, "[0,1]", "[\"held\",6]"), {"contacts[2]", "from 0 to 5"});
-    // The order of two disks means nothing: the same contact twice.
-    refuses_state(replaced(text, "[0,1]", "[0,1], [1,0]"), {"contacts[3]", "0-1", "contacts[2]"});
+    // A contact has one spelling.
+    refuses_state(replaced(text, "[0,1]", "[0,1], [0,1]"), {"contacts[3]", "0-1", "contacts[2]"});
+    refuses_state(replaced(text, "[0,1]", "[1,0]"), {"contacts[2]", "[1,0]", "[0,1]", "one spelling"});
+}
+
+BOOST_AUTO_TEST_CASE(entries_of_a_list_come_once_and_bounds_are_not_negative) {
+    const std::string text = two_disk_text();
+    refuses_state(replaced(text, "\"contacts\"", "\"fixed\": [1, 1],\n  \"contacts\""), {"fixed[1]", "once"});
+    refuses_state(
+        replaced(text, "\"contacts\"",
+                 "\"perturbation\": {\"seed\": 1, \"rho\": [0, 0], \"zero\": [[[0, 1], 0, -1]]},\n  \"contacts\""),
+        {"perturbation.zero[0][2]", "-1", "not negative"});
 }
 
 BOOST_AUTO_TEST_CASE(a_state_that_is_not_finite_is_not_written) {
@@ -240,16 +250,9 @@ BOOST_AUTO_TEST_CASE(failed_writing_keeps_the_old_file_and_leaves_nothing_else) 
     expect_error([&] { write_atomically(folder.path(), "new"); }, ErrorKind::cannot_write, {folder.path().string()});
     expect_error([&] { make_directory(folder / "plain/below"); }, ErrorKind::cannot_write, {"plain/below"});
     expect_error([&] { make_directory(folder / "plain"); }, ErrorKind::cannot_write, {"plain"});
-    // A name that is free for the file but not for its ".part": the old content must survive.
-    scratch::write(folder / "state.json", "old");
-    std::filesystem::create_directory(folder / "state.json.part");
-    expect_error([&] { write_atomically(folder / "state.json", "new"); }, ErrorKind::cannot_write, {"state.json.part"});
-    BOOST_TEST(scratch::read(folder / "state.json") == "old");
     BOOST_TEST(scratch::read(folder / "plain") == "old");
-    std::filesystem::remove(folder / "state.json.part");
-    write_atomically(folder / "state.json", "new");
-    BOOST_TEST(scratch::read(folder / "state.json") == "new");
-    BOOST_TEST(!std::filesystem::exists(folder / "state.json.part"));
+    const auto names = std::distance(std::filesystem::directory_iterator(folder.path()), {});
+    BOOST_TEST(names == 1);
 }
 
 BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_new_one) {
@@ -272,7 +275,7 @@ BOOST_AUTO_TEST_CASE(a_disk_that_is_full_leaves_the_old_file_and_no_part_of_the_
     std::signal(SIGXFSZ, handler);
     BOOST_TEST(refused);
     BOOST_TEST(scratch::read(folder / "state.json") == "old");
-    BOOST_TEST(!std::filesystem::exists(folder / "state.json.part"));
+    BOOST_TEST(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
 BOOST_AUTO_TEST_CASE(links_are_kept_and_pipes_are_not_replaced) {
@@ -293,6 +296,38 @@ BOOST_AUTO_TEST_CASE(links_are_kept_and_pipes_are_not_replaced) {
     ::close(reader);
     BOOST_TEST(std::string(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0))) == "through");
     BOOST_TEST(std::filesystem::is_fifo(pipe));
+}
+
+BOOST_AUTO_TEST_CASE(no_stress_presses_over_a_side_whose_wall_is_absent) {
+    // The force on the top wall was 4 or 400 with the place of a right wall that is not there.
+    const auto state = [](const std::string& lower, const std::string& upper, const std::string& load) {
+        return R"({"format": "isostat-state", "version": 2, "disks": [[0.5, 1, 0.5], [2, 1, 1]], "length": [400, 2],
+            "walls": {"lower": [")" +
+               lower + R"(", "fixed"], "upper": [")" + upper +
+               R"(", "movable"]}, "fixed": [0], "contacts": [[1, "bottom"], [1, "top"], [0, 1]], "load": {)" + load +
+               R"(, "stress": [1, 1]}})";
+    };
+    const std::string present = R"("kind": "true", "reference_length": [4, 2])", dead = R"("reference_length": [4, 2])";
+    for (const auto& [lower, upper] : {std::pair("fixed", "absent"), std::pair("absent", "fixed")}) {
+        expect_bad_input([&, l = lower, u = upper] { (void)parse_state<2>(state(l, u, present), "FILE"); },
+                         {"FILE", "\"true\"", "length along x", "absent", "expected nominal"});
+        expect_bad_input(
+            [&, l = lower, u = upper] { (void)parse_state<2>(state(l, u, R"("kind": "nominal")"), "FILE"); },
+            {"FILE", "no reference_length", "length along x"});
+        const State<2> stated = parse_state<2>(state(lower, upper, dead), "FILE").state;
+        BOOST_TEST(stated.load.wall_forces(stated.packing).front().length == 4);
+        State<2> other = stated; // as [load] of a scene says it
+        other.load.kind = LoadKind::true_stress;
+        expect_bad_input([&] { isostat::check_start(other, "SCENE"); }, {"SCENE", "length along x"});
+    }
+    for (const std::string& load : {present, std::string(R"("kind": "nominal")")}) {
+        BOOST_TEST(parse_state<2>(state("fixed", "fixed", load), "FILE").state.load.reference_length[1] == 2);
+    }
+    // The right wall is pressed over the height, which both walls bound.
+    const std::string beside =
+        R"({"format": "isostat-state", "version": 2, "disks": [[1, 1, 1]], "length": [2, 2], "walls":
+        {"lower": ["fixed", "fixed"], "upper": ["movable", "fixed"]}, "contacts": [], "load": {"kind": "true"}})";
+    BOOST_TEST((parse_state<2>(beside, "FILE").state.load.kind == LoadKind::true_stress));
 }
 
 BOOST_AUTO_TEST_CASE(files_that_cannot_be_read_are_named) {

@@ -1,6 +1,7 @@
 """isostat.load: a run as arrays, finished, killed or going on."""
 
 import json
+import shutil
 import unittest
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 from common import Folder, project
 
 import isostat
+import isostat.plot
 
 
 class Records(Folder):
@@ -47,23 +49,27 @@ class Records(Folder):
         with self.assertRaises(KeyError):
             run.at(1e9)
 
-    def test_forces_at_any_shear_of_a_run_in_a_cell(self):
-        start = project / "examples/cells/tilted-100.json"
-        run = isostat.load(
+    def sheared(self, equilibria=2):
+        """A run of a cell whose tilt is loaded."""
+        shutil.copy(project / "examples/cells/tilted-100.json", self.folder)
+        return isostat.load(
             self.run_scene(
                 text=f"""
 [packing]
-file = "{start}"
+file = "tilted-100.json"
 [load]
 loaded = "tilt"
 [[programme]]
 do = "up"
-equilibria = 2
+equilibria = {equilibria}
 [output]
 states_every = 1
 """
             )
         )
+
+    def test_forces_at_any_shear_of_a_run_in_a_cell(self):
+        run = self.sheared()
         row = run.equilibria[1]
         shear = 0.5 * (row["sigma2"] + row["sigma2_high"])
         state, forces = run.at(shear)
@@ -73,6 +79,28 @@ states_every = 1
         self.assertEqual(state.tilt, json.loads(state.text())["cell"]["tilt"][0])
         seen = isostat.inspect(state)
         self.assertTrue(np.all(forces[:, 0] <= seen.forces) and np.all(seen.forces <= forces[:, 1]))
+
+    def test_events_of_a_cell_have_the_images_of_their_contacts(self):
+        run = self.sheared(8)
+        lines = [json.loads(line) for line in (run.path / "events.jsonl").read_text().splitlines()]
+        self.assertGreater(len(lines), 1)
+        self.assertTrue(any("(" in line["opened"] + line["closed"] for line in lines))
+        for event, line in zip(run.events, lines):
+            for name in ("opened", "closed"):
+                (i, j), (mx, my) = event[name], event[name + "_image"]
+                self.assertEqual(f"{i}-{j}" + (f"({mx},{my})" if mx or my else ""), line[name])
+        again = isostat.Run(run.path.parent / "scene.toml", self.folder / "again")
+        self.assertEqual([(arc.opened_image, arc.closed_image) for arc in again.arcs()],
+                         [(tuple(e["opened_image"]), tuple(e["closed_image"])) for e in run.events])
+        end = run.states[1]  # what closed last is a contact there
+        last = run.events[run.events["equilibrium"] == 1][-1]
+        same = (end.contacts == last["closed"]) & (end.images == last["closed_image"])
+        self.assertEqual(same.all(axis=1).sum(), 1)
+
+    def test_the_axes_of_a_sheared_run_are_those_of_its_load(self):
+        run = self.sheared()
+        self.assertIn("shear", isostat.plot.staircase(run).get_xlabel())
+        self.assertIn("\\tau", isostat.plot.increments(run, "stress").get_xlabel())
 
     def test_events_are_those_of_the_file(self):
         run = isostat.load(self.run_scene())
@@ -135,16 +163,34 @@ states_every = 1
         from isostat._records import contact_of_name
 
         known = {
-            "3-7": (3, 7),
-            "3-left": (3, -1),
-            "3-top": (3, -4),
-            "held x of grain 3": (6, -9),
-            "held y of grain 10": (21, -9),
+            "3-7": (3, 7, 0, 0),
+            "3-8(1,0)": (3, 8, 1, 0),
+            "3-12(-1,-2)": (3, 12, -1, -2),
+            "3-3(1,0)": (3, 3, 1, 0),
+            "3-left": (3, -1, 0, 0),
+            "3-top": (3, -4, 0, 0),
+            "held x of grain 3": (6, -9, 0, 0),
+            "held y of grain 10": (21, -9, 0, 0),
         }
         for name, contact in known.items():
             self.assertEqual(contact_of_name(name), contact)
-        with self.assertRaises(isostat.BadInput):
-            contact_of_name("3-nowhere")
+        for name in ("3-nowhere", "7-3", "03-7", "+3-7", "held x of grain 03", "3-3", "3-7(1)", "3-7(1,0,0)", "3-left(1,0)", "3-7 ", "٣-7"):
+            with self.assertRaises(isostat.BadInput, msg=name):
+                contact_of_name(name)
+
+    def test_columns_and_fields_come_once_and_integers_are_integers(self):
+        out = self.folder / "out"
+        out.mkdir()
+        (out / "run.json").write_text('{"status": "a", "status": "b"}')
+        with self.assertRaisesRegex(isostat.BadInput, "status.*twice"):
+            isostat.load(out).status
+        (out / "run.json").write_text('{"status": "completed"}')
+        for table in ("number,eps2,eps2\n0,1,1", "number,eps2\n4.9,1", "number,eps2\n+4,1", "number,eps2\n1"):
+            (out / "equilibria.csv").write_text(f"# {table}\n")
+            with self.assertRaisesRegex(isostat.BadInput, "equilibria.csv"):
+                isostat.load(out).equilibria
+        (out / "equilibria.csv").write_text("# number,eps2\n4,1\n")
+        self.assertEqual(isostat.load(out).equilibria["number"].tolist(), [4])
 
 
 if __name__ == "__main__":

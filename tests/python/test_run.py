@@ -139,7 +139,7 @@ except KeyboardInterrupt:
             process = self.script(code, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             process.stdout.readline()
             process.send_signal(signal.SIGINT)
-            out, errors = process.communicate(timeout=60)
+            out, errors = process.communicate(timeout=600)
             self.assertEqual(process.returncode, 0, errors)
             self.assertRegex(out.splitlines()[-1], "^interrupted [0-9]+$")
 

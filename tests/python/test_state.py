@@ -48,6 +48,22 @@ class States(Folder):
         with self.assertRaisesRegex(isostat.CannotWrite, "nowhere"):
             two_disks().write(self.folder / "nowhere" / "state.json")
 
+    def test_numbers_are_finite_and_integers_are_integers(self):
+        state = two_disks()
+        for wrong in (np.nan, np.inf, -np.inf):
+            for ask in (
+                lambda: isostat.forces_at(state, wrong),
+                lambda: state.with_stress([1, wrong]),
+                lambda: isostat.snap(state, stiffness=wrong),
+            ):
+                with self.assertRaisesRegex(isostat.BadInput, "State|finite"):
+                    ask()
+        arrays = state.positions, state.radii, state.length
+        with self.assertRaises(TypeError):
+            isostat.State.from_arrays(*arrays, [(0.5, 1)])
+        turned = isostat.State.from_arrays(*arrays, [(1, 0), (1, -3)])
+        self.assertEqual(turned.contacts.tolist(), [[0, 1], [1, -3]])
+
     def test_matrix_balances_the_load_and_has_the_rank_that_is_counted(self):
         state = two_disks()
         matrix = isostat.contact_matrix(state)

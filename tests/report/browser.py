@@ -40,6 +40,8 @@ class Browser:
     def close(self):
         self._process.kill()
         self._process.wait()
+        os.close(self._write)
+        os.close(self._read)
         shutil.rmtree(self._profile, ignore_errors=True)
 
     def _receive(self, until):
@@ -68,7 +70,7 @@ class Browser:
         if self._session:
             message["sessionId"] = self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
-        until = time.monotonic() + 60
+        until = time.monotonic() + 600
         while True:
             answer = self._receive(until)
             if answer.get("id") == self._number:
@@ -83,7 +85,7 @@ class Browser:
             raise RuntimeError(str(answer["exceptionDetails"]))
         return answer["result"].get("value")
 
-    def wait(self, expression, seconds=60):
+    def wait(self, expression, seconds=600):
         until = time.monotonic() + seconds
         while not self.value(expression):
             if time.monotonic() > until:

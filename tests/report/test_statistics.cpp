@@ -71,4 +71,11 @@ BOOST_AUTO_TEST_CASE(a_histogram_integrates_to_the_share_inside) {
     BOOST_TEST(histogram(values, 0, 1, 4).back().second == 2 / (6 * 0.25), boost::test_tools::tolerance(1e-15));
 }
 
+BOOST_AUTO_TEST_CASE(a_histogram_whose_bins_have_no_width_keeps_its_values) {
+    constexpr double tiny = 5e-324, huge = 1.7e308;
+    for (const auto& [low, high] : {std::pair{0.0, tiny}, {tiny, tiny}, {-huge, huge}, {0.0, HUGE_VAL}}) {
+        BOOST_TEST(histogram({low, high}, low, high, 4).size() == 4U);
+    }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

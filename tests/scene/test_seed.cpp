@@ -41,11 +41,11 @@ BOOST_AUTO_TEST_CASE(a_missing_seed_is_added) {
     refused("packing = {disks = 3}", 4, "seed");
 }
 
-BOOST_AUTO_TEST_CASE(a_list_of_radii_is_found_from_another_folder) {
+BOOST_AUTO_TEST_CASE(a_list_of_radii_stands_in_the_scene_of_a_sample) {
     const scratch::Folder folder;
-    scratch::write(folder / "radii.txt", "1\n2\n");
+    scratch::write(folder / "radii.txt", "1\n2.5\n");
     const std::string text = "[packing]\nradii_file = \"radii.txt\"\nseed = 3\n";
-    const std::string expected = "[packing]\nradii_file = \"" + (folder / "radii.txt").string() + "\"\nseed = 5\n";
+    const std::string expected = "[packing]\nradii = [1, 2.5]\nseed = 5\n";
     BOOST_TEST(with_seed(text, 5, "s.toml", folder.path()) == expected);
     BOOST_TEST(parse_scene(expected, "s.toml", "/elsewhere").preparation.radii.size() == 2U);
 }

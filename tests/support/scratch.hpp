@@ -53,6 +53,20 @@ inline std::string replaced(std::string text, const std::string& from, const std
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+/// Writes a scene. The packing that it names by its whole name is copied beside it: scenes name files of their folder.
+inline void write_scene(const std::filesystem::path& path, const std::string& text) {
+    const std::string key = "\nfile = \"/";
+    std::string scene = text;
+    if (const std::size_t at = text.find(key); at != std::string::npos) {
+        const std::size_t begin = at + key.size() - 1;
+        const std::filesystem::path named = text.substr(begin, text.find('"', begin) - begin);
+        std::filesystem::copy_file(named, path.parent_path() / named.filename(),
+                                   std::filesystem::copy_options::overwrite_existing);
+        scene.replace(begin, named.string().size(), named.filename().string());
+    }
+    write(path, scene);
+}
+
 /// equilibria.csv without its last column, the time.
 inline std::string without_times(const std::string& csv) {
     std::istringstream in(csv);

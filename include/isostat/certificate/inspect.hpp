@@ -57,8 +57,9 @@ struct JammingAnswer {
 /// - collectively jammed: no motion of its disks in the fixed cell keeps all gaps >= 0, but for translations of all;
 /// - strictly jammed: no motion of its disks and of the cell with a volume that does not grow, but for the same.
 /// `proved` and `refuted` need an equilibrium that is proved: positive forces are the self-stress that such proofs ask
-/// for. Without one all are `undecided`, whatever the counts. Strictly, where every strain of the cell moves: by the
-/// forces under an isotropic pressure, which are known when the tilt bears no shear stress.
+/// for. Without one all are `undecided`, whatever the counts. Strictly, where every strain of the cell moves or closes
+/// an own image: by the forces under an isotropic pressure. Own images that touch are counted in all rows, also those
+/// between which nothing moves.
 struct CellInspection {
     StrainCounts all;
     std::optional<StrainCounts> backbone; ///< none: the forces are not known
@@ -66,7 +67,7 @@ struct CellInspection {
     JammingAnswer local, collective, strict;
 };
 
-/// \pre every axis is periodic; `truth` is of this state. Cost: up to eight ranks.
+/// \pre every axis is periodic; `truth` is of this state. Cost: up to eight ranks and two certificates.
 template <int Dim> CellInspection inspect_cell(const State<Dim>& state, const Certification& truth);
 
 extern template Result<std::vector<Interval>> forces_at<2>(State<2>, double);

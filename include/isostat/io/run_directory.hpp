@@ -50,6 +50,13 @@ struct MoreColumns {
     bool touching = false; ///< where ties are settled at first order: pairs that touch without being contacts
 };
 
+/// How a folder is taken for output.
+enum class FolderMode {
+    fresh, ///< it does not exist or is empty, else `Error(usage)`
+    force, ///< or it is of the same kind: what such a folder holds by its fixed names is removed first
+    resume ///< goes on; `Error(bad_input)` when there is nothing of this kind
+};
+
 /// Receives the records of a run and writes them as they come. Files (all of them JSON but equilibria.csv):
 /// - run.json: what was asked, by which program, and the status ("running" until `finish`);
 /// - events.jsonl: one object per arc, handed to the system line by line;
@@ -68,12 +75,7 @@ struct MoreColumns {
 /// Every failure to write throws `Error(cannot_write)`, also out of the observer's calls.
 class RunDirectory final : public RunObserver<2> {
   public:
-    enum class Mode {
-        fresh, ///< `Error(usage)` when the folder holds a run
-        force, ///< its files are deleted first
-        resume ///< goes on; `Error(bad_input)` when there is none, or when it is the run of another scene or program
-               ///< version
-    };
+    using Mode = FolderMode; ///< resume: also `Error(bad_input)` when it is the run of another scene or program version
     /// Makes the folder if needed and locks it: `Error(cannot_write)` when a running program holds it. `counters` must
     /// outlive this object: they are read after every equilibrium (and set from the checkpoint by the caller on
     /// resume).
@@ -89,6 +91,8 @@ class RunDirectory final : public RunObserver<2> {
     /// The state that the interrupted run started from, kept beside it (start.json); none in a fresh run.
     [[nodiscard]] std::optional<State<2>> start() const;
     void store_start(const State<2>& state);
+    /// What a resumed run found in its folder that no run writes, in words.
+    [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
     /// The state of an equilibrium that was stored. Throws `Error(bad_input)` when it was not.
     [[nodiscard]] State<2> stored(int equilibrium) const;
 
@@ -120,6 +124,7 @@ class RunDirectory final : public RunObserver<2> {
     /// The last equilibrium completed its segment.
     [[nodiscard]] bool segment_done() const;
     void open_for_resume();
+    void read_checkpoint();
     std::filesystem::path directory_;
     RunHeader header_;
     const RunCounters& counters_;
@@ -127,6 +132,7 @@ class RunDirectory final : public RunObserver<2> {
     std::unique_ptr<Files> files_;
     std::optional<Checkpoint> checkpoint_;
     std::string previous_status_, provenance_, summary_;
+    std::vector<std::string> notes_;
     /// What a checkpoint of the last equilibrium says besides the state.
     struct Point {
         int segment = 0;

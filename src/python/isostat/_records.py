@@ -30,22 +30,49 @@ def _complete_lines(path: Path) -> list[str]:
         text = path.read_text()
     except FileNotFoundError:
         return []
-    return text[: text.rfind("\n") + 1].splitlines()
+    return text.split("\n")[:-1]
 
 
 def _column(name: str) -> tuple[str, type]:
     return name, int if name in _integers or name.endswith(("_i", "_j")) else float
 
 
-def contact_of_name(name: str) -> tuple[int, int]:
-    """(i, j) of ``"3-7"``, ``"3-left"``, ``"held x of grain 3"``; walls -1 to -4, held coordinates -9."""
-    if match := re.fullmatch(r"(\d+)-(\d+|left|bottom|right|top)", name):
-        j = match[2]
-        return int(match[1]), _walls[j] if j in _walls else int(j)
-    if match := re.fullmatch(r"held ([xy]) of grain (\d+)", name):  # walls: after the last disk
-        return 2 * int(match[2]) + "xy".index(match[1]), -9
+def _integer(word: str) -> int:
+    if str(int(word)) != word:
+        raise ValueError(f"{word!r}: expected an integer")
+    return int(word)
+
+
+def _once(pairs: list[tuple[str, object]]) -> dict:
+    names = [name for name, _ in pairs]
+    if twice := {name for name in names if names.count(name) > 1}:
+        raise ValueError(f"the field {twice.pop()!r} comes twice in one object: expected once")
+    return dict(pairs)
+
+
+def _parsed(text: str, where: str) -> dict:
+    """JSON as the library reads it: no name comes twice in one object."""
+    try:
+        return json.loads(text, object_pairs_hook=_once)
+    except ValueError as error:
+        raise BadInput(f"{where}: {error}") from None
+
+
+def contact_of_name(name: str) -> tuple[int, int, int, int]:
+    """(i, j, m_x, m_y) of ``"3-7"``, ``"3-8(1,0)"``, ``"3-left"``, ``"held x of grain 3"``.
+
+    Walls are j = -1 to -4, held coordinates -9; the second disk is moved by m_x and m_y periods.
+    """
+    if match := re.fullmatch(r"(0|[1-9]\d*)-(0|[1-9]\d*)(?:\((-?\d+),(-?\d+)\))?", name, re.ASCII):
+        i, j, mx, my = (int(number or 0) for number in match.groups())
+        if i < j or (i == j and (mx or my)):
+            return i, j, mx, my
+    if match := re.fullmatch(r"(0|[1-9]\d*)-(left|bottom|right|top)", name, re.ASCII):
+        return int(match[1]), _walls[match[2]], 0, 0
+    if match := re.fullmatch(r"held ([xy]) of grain (0|[1-9]\d*)", name, re.ASCII):  # walls: after the last disk
+        return 2 * int(match[2]) + "xy".index(match[1]), -9, 0, 0
     raise BadInput(
-        f"events.jsonl: contact '{name}': expected two disks, a disk and a wall, or a held coordinate"
+        f"events.jsonl: contact '{name}': expected two disks i < j, as 3-7 or 3-8(1,0), a disk and a wall, or a held coordinate"
     )
 
 
@@ -60,7 +87,8 @@ class States:
 
     def numbers(self) -> list[int]:
         """Numbers of the equilibria whose states were stored, increasing."""
-        return sorted(int(path.stem[3:]) for path in self._folder.glob("eq_*.json"))
+        names = (re.fullmatch(r"eq_(\d{6,})\.json", path.name) for path in self._folder.glob("eq_*"))
+        return sorted(int(name[1]) for name in names if name)
 
     def __len__(self) -> int:
         return len(self.numbers())
@@ -108,13 +136,13 @@ class Records:
 
     def reload(self) -> None:
         """Reads the files again when they are next asked for: of a run that goes on."""
-        for name in ("header", "equilibria", "event_records", "events", "_stored"):
+        for name in ("header", "equilibria", "event_records", "events", "_stored", "_first"):
             self.__dict__.pop(name, None)
 
     @functools.cached_property
     def header(self) -> dict:
         """run.json: program, command, scene, settings, status."""
-        return json.loads((self.path / "run.json").read_text())
+        return _parsed((self.path / "run.json").read_text(), str(self.path / "run.json"))
 
     @property
     def status(self) -> str:
@@ -131,27 +159,34 @@ class Records:
         """
         lines = _complete_lines(self.path / "equilibria.csv")
         names = lines[0].lstrip("# ").split(",") if lines else []
-        kinds = np.dtype([_column(name) for name in names])
         rows = csv.reader(io.StringIO("\n".join(lines[1:])))
-        casts = [kinds[name].type for name in names]
-        return np.array(
-            [tuple(cast(x) for cast, x in zip(casts, row)) for row in rows], dtype=kinds
-        )
+        try:
+            kinds = np.dtype([_column(name) for name in names])  # refuses a name that comes twice
+            casts = [_integer if kinds[name].kind == "i" else float for name in names]
+            return np.array(
+                [tuple(cast(x) for cast, x in zip(casts, row, strict=True)) for row in rows],
+                dtype=kinds,
+            )
+        except ValueError as error:
+            raise BadInput(f"{self.path / 'equilibria.csv'}: {error}") from None
 
     @functools.cached_property
     def event_records(self) -> list[dict]:
         """events.jsonl as it stands: one dictionary per arc."""
-        return [json.loads(line) for line in _complete_lines(self.path / "events.jsonl")]
+        file = self.path / "events.jsonl"
+        return [_parsed(line, str(file)) for line in _complete_lines(file)]
 
     @functools.cached_property
     def events(self) -> np.ndarray:
         """(arcs,) structured array of events.jsonl; what is not known is NaN.
 
-        ``opened``, ``closed``: (2,) int, walls -1 to -4, held coordinates -9. ``decided_by``: word.
+        ``opened``, ``closed``: (2,) int, walls -1 to -4, held coordinates -9; ``opened_image``, ``closed_image``: (2,)
+        int, periods of the cell by which the second disk is moved, 0 in a box. ``decided_by``: word.
         """
         kinds = np.dtype(
             [("step", int), ("equilibrium", int), ("arc", int), ("kind", "U8")]
-            + [("opened", int, 2), ("closed", int, 2), ("power_turn", bool), ("steps", int)]
+            + [("opened", int, 2), ("closed", int, 2), ("opened_image", int, 2), ("closed_image", int, 2)]
+            + [("power_turn", bool), ("steps", int)]
             + [("decided_by", "U13")]
             + [(name, float) for name in _numbers]
         )
@@ -160,7 +195,8 @@ class Records:
             for name in ("step", "equilibrium", "arc", "kind", "power_turn", "steps", "decided_by"):
                 row[name] = record[name]
             for name in ("opened", "closed"):
-                row[name] = contact_of_name(record[name])
+                contact = contact_of_name(record[name])
+                row[name], row[name + "_image"] = contact[:2], contact[2:]
             for name in _numbers:
                 value = record.get(name)
                 row[name] = np.nan if value is None else value
@@ -170,12 +206,14 @@ class Records:
     def _stored(self) -> list[State]:
         return [self.states[number] for number in self.states]
 
+    @functools.cached_property
+    def _first(self) -> State:
+        return self.states[0] if 0 in self.states else State.read(self.path / "start.json")
+
     @property
     def radii(self) -> np.ndarray:
         """(n,) radii; unit of length: that of the scene."""
-        return (
-            self.states[0].radii if 0 in self.states else State.read(self.path / "start.json").radii
-        )
+        return self._first.radii
 
     @property
     def positions(self) -> np.ndarray:
@@ -186,8 +224,7 @@ class Records:
     def cell(self) -> np.ndarray:
         """(m, 2) lengths (Lx, Ly) of the box at every equilibrium."""
         # L1 is along the axis that is not loaded.
-        axis = self.states[0].loaded_axis if 0 in self.states else 1
-        columns = {0: ("L2", "L1"), 1: ("L1", "L2"), 2: ("L3", "L1")}[axis]  # 2: the tilt
+        columns = {0: ("L2", "L1"), 1: ("L1", "L2"), 2: ("L3", "L1")}[self._first.loaded_axis]  # 2: the tilt
         return np.column_stack([self.equilibria[name] for name in columns])
 
     @property

@@ -81,7 +81,13 @@ class Run:
             weakref.finalize(self, shutil.rmtree, self.path, ignore_errors=True)
         if isinstance(scene, Mapping):
             sections = dict(scene) if start is None else {"packing": {"file": "start"}, **scene}
-            text, name, folder = scene_text(sections), "scene", Path.cwd()
+            folder = Path.cwd()
+            for key in ("file", "radii_file"):  # a scene names files of its folder alone
+                if start is None and key in sections.get("packing", {}):
+                    named = Path(sections["packing"][key]).resolve()
+                    folder = named.parent
+                    sections["packing"] = {**sections["packing"], key: named.name}
+            text, name = scene_text(sections), "scene"
         else:
             name, folder = Path(scene).name, Path(scene).parent
             text = Path(scene).read_text()

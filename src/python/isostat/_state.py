@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from operator import index
 from typing import Any, Iterable, Sequence
 
 import numpy as np
@@ -16,14 +17,14 @@ def contact_pair(contact: Sequence[Any]) -> tuple[int, int]:
     """(i, j) with the codes of walls, from ``(0, 1)``, ``(0, "left")`` or ``(0, -1)``."""
     i, j = contact
     codes = {name: code for code, name in _walls.items()}
-    return int(i), codes[j] if isinstance(j, str) else int(j)
+    return index(i), codes[j] if isinstance(j, str) else index(j)
 
 
 def _json_contact(contact: Sequence[Any]) -> list[object]:
-    i, j = contact
+    i, j = index(contact[0]), contact[1]
     if isinstance(j, str):
-        return [int(i), j]
-    return [int(i), _walls.get(int(j), int(j))]
+        return [i, j]
+    return [min(i, index(j)), max(i, index(j))] if index(j) >= 0 else [i, _walls.get(index(j), index(j))]
 
 
 def from_arrays(
@@ -57,7 +58,7 @@ def from_arrays(
     stress : (2,) float
         sigma_1 on the right, sigma_2 on the top wall; positive in compression.
     reference_length : (2,) float, optional
-        Lengths at which nominal stress and strain are defined; default: `length`.
+        Lengths at which nominal stress and strain are defined; default: `length`, where no wall is absent.
     load : "nominal" or "true"
     infinitesimal : (n, 2) float, optional
         Infinitesimal loads, on which rattlers rest.
@@ -78,24 +79,21 @@ def from_arrays(
     radii = np.asarray(radii, dtype=float)
     if positions.shape != (len(radii), 2):
         raise ValueError(f"positions has shape {positions.shape}: expected ({len(radii)}, 2)")
-    reference = length if reference_length is None else reference_length
-    content: dict[str, object] = {
+    content: dict[str, Any] = {
         "format": "isostat-state",
         "version": 2,
         "disks": np.column_stack((positions, radii)).tolist(),
         "length": [float(value) for value in length],
         "walls": {"lower": list(lower), "upper": list(upper)},
-        "load": {
-            "kind": load,
-            "stress": [float(value) for value in stress],
-            "reference_length": [float(value) for value in reference],
-        },
+        "load": {"kind": load, "stress": [float(value) for value in stress]},
         "contacts": [_json_contact(contact) for contact in contacts],
     }
+    if reference_length is not None:
+        content["load"]["reference_length"] = [float(value) for value in reference_length]
     for name, value in (("infinitesimal", infinitesimal), ("disk_force", disk_force)):
         if value is not None:
             content[name] = np.asarray(value, dtype=float).tolist()
-    if held := [int(disk) for disk in fixed]:
+    if held := [index(disk) for disk in fixed]:
         content["fixed"] = held
     return State.parse(json.dumps(content), "State.from_arrays")
 
@@ -136,8 +134,8 @@ def mechanism(state: State, contact: Sequence[object]) -> np.ndarray:
     ----------
     state : State
         With N = N_f contacts and a regular contact matrix.
-    contact : (i, j)
-        One of its contacts.
+    contact : (i, j) or (i, j, (m_x, m_y))
+        One of its contacts; where a disk touches several images of another one, with the image.
 
     Returns
     -------
@@ -146,10 +144,15 @@ def mechanism(state: State, contact: Sequence[object]) -> np.ndarray:
     """
     from scipy.sparse.linalg import spsolve
 
-    wanted = contact_pair(contact)
-    places = np.flatnonzero((state.contacts == wanted).all(axis=1))
+    wanted = contact_pair(contact[:2])
+    same = (state.contacts == wanted).all(axis=1)
+    for image in contact[2:]:
+        same &= (state.images == image).all(axis=1)
+    places = np.flatnonzero(same)
     if len(places) != 1:
-        raise ValueError(f"{wanted} is not a contact of this state")
+        raise ValueError(
+            f"{tuple(contact)} is {len(places)} contacts of this state: expected one, (i, j) or (i, j, (m_x, m_y))"
+        )
     matrix = contact_matrix(state)
     if matrix.shape[0] != matrix.shape[1]:
         raise ValueError(
@@ -163,12 +166,16 @@ def mechanism(state: State, contact: Sequence[object]) -> np.ndarray:
 def disk_velocities(
     state: State | Packing, velocities: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Velocities of degrees of freedom as those of disks (n, 2) and of the upper walls (2,)."""
-    disks, walls = np.zeros((len(state), 2)), np.zeros(2)
+    """Velocities of degrees of freedom as those of disks (n, 2), and those of the lengths (2,), of a cell with its tilt (3,).
+
+    A length is that of the box, where its upper wall moves, or a period of the cell.
+    """
+    lengths = {"right wall": 0, "period along x": 0, "top wall": 1, "period along y": 1, "tilt xy": 2}
+    disks, sizes = np.zeros((len(state), 2)), np.zeros(2 if state.tilt is None else 3)
     for name, value in zip(state.dof_names, velocities):
         if " of disk " in name:
             axis, _, number = name.partition(" of disk ")
             disks[int(number), "xy".index(axis)] = value
         else:
-            walls[("right wall", "top wall").index(name)] = value
-    return disks, walls
+            sizes[lengths[name]] = value
+    return disks, sizes

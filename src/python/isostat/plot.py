@@ -22,12 +22,22 @@ def _axes(ax: Optional[Axes]) -> Axes:
     return ax
 
 
-def _ends(state: State, contacts: np.ndarray) -> np.ndarray:
-    """(N, 2, 2): from centre to centre, or to the wall."""
+def _shifts(packing: State | Packing, images: np.ndarray) -> np.ndarray:
+    """(N, 2): by how much images are moved; 0 in a box."""
+    return images @ [[packing.length[0], 0], [packing.tilt or 0, packing.length[1]]]
+
+
+def _lines(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of the contacts that are drawn, and their lines (lines, 2, 2).
+
+    From centre to centre, or to the wall. A contact with an image is drawn twice, through either border of the cell.
+    """
+    numbers = np.flatnonzero(state.contacts[:, 1] != -9)
+    contacts, shifts = state.contacts[numbers], _shifts(state, state.images[numbers])
     first = state.positions[contacts[:, 0]]
     second = first.copy()
     pairs = contacts[:, 1] >= 0
-    second[pairs] = state.positions[contacts[pairs, 1]]
+    second[pairs] = state.positions[contacts[pairs, 1]] + shifts[pairs]
     for code, axis, place in (
         (-1, 0, 0.0),
         (-2, 1, 0.0),
@@ -35,17 +45,18 @@ def _ends(state: State, contacts: np.ndarray) -> np.ndarray:
         (-4, 1, state.length[1]),
     ):
         second[contacts[:, 1] == code, axis] = place
-    return np.stack((first, second), axis=1)
+    lines = np.stack((first, second), axis=1)
+    through = state.images[numbers].any(axis=1)
+    back = lines[through] - shifts[through][:, None, :]
+    return np.concatenate((numbers, numbers[through])), np.concatenate((lines, back))
 
 
 def _draw_forces(state: State, forces: np.ndarray, ax: Axes) -> np.ndarray:
     """Lines of width in proportion to the force; returns which disks carry one."""
-    contacts = state.contacts
-    real = contacts[:, 1] != -9
-    contacts, forces = contacts[real], np.asarray(forces)[: len(real)][real]
+    numbers, ends = _lines(state)
+    contacts, forces = state.contacts[numbers], np.asarray(forces)[numbers]
     carried = forces != 0
     mean = np.abs(forces[carried]).mean() if carried.any() else 1.0
-    ends = _ends(state, contacts)
     ax.add_collection(LineCollection(ends[~carried], colors="0.6", linewidths=0.4))
     for sign, colour in ((1, "#a50f15"), (-1, "#08519c")):
         chosen = carried & (np.sign(forces) == sign)
@@ -61,6 +72,38 @@ def _draw_forces(state: State, forces: np.ndarray, ax: Axes) -> np.ndarray:
     return holding
 
 
+def _images(state: State) -> tuple[np.ndarray, np.ndarray]:
+    """The images of disks that contacts reach through a border of the cell: numbers (k,), centres (k, 2)."""
+    through = state.images.any(axis=1)
+    (first, second), images = state.contacts[through].T, state.images[through]
+    shown = np.column_stack((np.concatenate((second, first)), np.concatenate((images, -images))))
+    disks, *periods = np.unique(shown, axis=0).T
+    return disks, state.positions[disks] + _shifts(state, np.column_stack(periods))
+
+
+def _draw_disks(
+    packing: State | Packing, disks: np.ndarray, places: np.ndarray, holding: np.ndarray, ax: Axes, alpha: float = 1
+) -> None:
+    for carries, colour in ((True, "#d9d9d9"), (False, "#deebf7")):
+        chosen = holding[disks] == carries
+        size = 2 * packing.radii[disks[chosen]]
+        ax.add_collection(
+            EllipseCollection(
+                size,
+                size,
+                np.zeros(len(size)),
+                units="xy",
+                offsets=places[chosen],
+                transOffset=ax.transData,
+                facecolors=colour,
+                edgecolors="0.35",
+                linewidths=0.4,
+                alpha=alpha,
+                zorder=1,
+            )
+        )
+
+
 def packing(
     state: State | Packing,
     forces: Optional[np.ndarray] = None,
@@ -69,6 +112,8 @@ def packing(
 ) -> Axes:
     """The disks and walls, the forces as lines, a mechanism as arrows.
 
+    A periodic cell is outlined with dashes; disks are where the state has them, and images that contacts reach are paler.
+
     Parameters
     ----------
     state : State or Packing
@@ -76,7 +121,8 @@ def packing(
         One per contact (``inspect(state).forces``); default: those of the state's file. Line width is in
         proportion to the force, red: compression, blue: traction. Disks without force are pale.
     mechanism : (N_f,) float, optional
-        Velocities of the degrees of freedom (`isostat.mechanism`); the longest arrow has the mean radius.
+        Velocities of the degrees of freedom (`isostat.mechanism`); the longest arrow has the mean radius. In a cell
+        those of the disks themselves: images also move with the periods.
     ax : matplotlib axes, optional
 
     Returns
@@ -91,23 +137,12 @@ def packing(
         if not isinstance(state, State):
             raise BadInput("forces: expected a State, whose contacts carry them")
         holding = _draw_forces(state, forces, ax)
-    diameters = 2 * state.radii
-    for chosen, colour in ((holding, "#d9d9d9"), (~holding, "#deebf7")):
-        size = diameters[chosen]
-        ax.add_collection(
-            EllipseCollection(
-                size,
-                size,
-                np.zeros(len(size)),
-                units="xy",
-                offsets=state.positions[chosen],
-                transOffset=ax.transData,
-                facecolors=colour,
-                edgecolors="0.35",
-                linewidths=0.4,
-                zorder=1,
-            )
-        )
+    disks, places = np.arange(len(state)), state.positions
+    _draw_disks(state, disks, places, holding, ax)
+    if isinstance(state, State):
+        images, there = _images(state)
+        _draw_disks(state, images, there, holding, ax, alpha=0.4)
+        disks, places = np.concatenate((disks, images)), np.concatenate((places, there))
     if mechanism is not None:
         velocity, _ = disk_velocities(state, mechanism)
         longest = np.hypot(*velocity.T).max() or 1.0
@@ -121,15 +156,15 @@ def packing(
             width=0.004,
             zorder=3,
         )
-    _draw_walls(state, ax)
+    sizes = state.radii[disks][:, None]
+    _draw_walls(state, (places - sizes).min(axis=0), (places + sizes).max(axis=0), ax)
     ax.set_aspect("equal")
     ax.set_axis_off()
     return ax
 
 
-def _draw_walls(state: State | Packing, ax: Axes) -> None:
-    low = (state.positions - state.radii[:, None]).min(axis=0)
-    high = (state.positions + state.radii[:, None]).max(axis=0)
+def _draw_walls(state: State | Packing, low: np.ndarray, high: np.ndarray, ax: Axes) -> None:
+    """Walls and the outline of a cell, and the limits of the picture; `low`, `high`: of what is drawn already."""
     places = {}
     for side, place in {"lower": np.zeros(2), "upper": np.asarray(state.length)}.items():
         for axis, kind in enumerate(state.walls[side]):
@@ -140,6 +175,12 @@ def _draw_walls(state: State | Packing, ax: Axes) -> None:
         ends = np.array([low, high])
         ends[:, axis] = at
         ax.plot(*ends.T, color="0.1" if kind == "fixed" else "0.5", linewidth=1.5, zorder=4)
+    corners = _shifts(state, np.array([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0)]))
+    for edge in range(4):
+        if state.periodic[(edge + 1) % 2]:  # edges 0 and 2 are along x: they repeat along y
+            ax.plot(*corners[edge : edge + 2].T, color="0.2", linewidth=0.8, linestyle="--", zorder=4)
+    if any(state.periodic):
+        low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
     margin = 0.02 * (high - low).max()
     ax.set_xlim(low[0] - margin, high[0] + margin)
     ax.set_ylim(low[1] - margin, high[1] + margin)
@@ -173,7 +214,7 @@ def comparison(compared, ax: Optional[Axes] = None) -> Axes:
 
 
 def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
-    """Stress ratio against axial strain: one structure carries a growing load, then a rearrangement.
+    """Stress ratio against strain, axial or of shear: one structure carries a growing load, then a rearrangement.
 
     Parameters
     ----------
@@ -199,8 +240,9 @@ def staircase(run: Records, ax: Optional[Axes] = None) -> Axes:
         ax.plot(
             strain, ratio, styles[segment % len(styles)], label=f"segment {segment}", linewidth=1.2
         )
-    ax.set_xlabel("axial strain $\\varepsilon_2$")
-    ax.set_ylabel("stress ratio $\\sigma_2/\\sigma_1$")
+    shear = run._first.loaded_axis == 2
+    ax.set_xlabel("shear strain $\\gamma$" if shear else "axial strain $\\varepsilon_2$")
+    ax.set_ylabel("stress ratio " + ("$\\tau/\\sigma_2$" if shear else "$\\sigma_2/\\sigma_1$"))
     if len(ax.get_lines()) > 1:
         ax.legend(frameon=False)
     return ax
@@ -226,9 +268,10 @@ def increments(run: Records, quantity: str = "strain", ax: Optional[Axes] = None
     ax.step(values, 1 - np.arange(len(values)) / max(len(values), 1), where="pre", linewidth=1.2)
     ax.set_xscale("log")
     ax.set_yscale("log")
+    shear = run._first.loaded_axis == 2
     symbols = {
-        "strain": "$|\\Delta\\varepsilon_2|$",
-        "stress": "$|\\Delta\\sigma_2|/\\sigma_1$",
+        "strain": "$|\\Delta\\gamma|$" if shear else "$|\\Delta\\varepsilon_2|$",
+        "stress": "$|\\Delta\\tau|/\\sigma_2$" if shear else "$|\\Delta\\sigma_2|/\\sigma_1$",
     }
     ax.set_xlabel(f"{quantity} increment {symbols[quantity]}")
     ax.set_ylabel("share at least as large")

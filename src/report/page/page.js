@@ -37,7 +37,7 @@ function* integers(bytes) {
 const film = { count: 0, positions: [], arrows: [], forces: [], frameOf: new Map() };
 
 async function decode() {
-  const n = run.packing.radii.length, size = 2 * n + 2;
+  const size = recorded.coordinates;
   const next = integers(await unpack(recorded.moves));
   const here = new Float64Array(size);
   for (let f = 0; f < recorded.event.length; ++f) {
@@ -88,7 +88,7 @@ function contactsOf(equilibrium) {
     from = rows.previous[from] ?? -1;
   }
   if (from < 0) return null;
-  let list = listCache.get(from) ?? Int32Array.from(relisted.get(from));
+  let list = listCache.get(from) ?? Float64Array.from(relisted.get(from));
   listCache.set(from, list);
   for (const to of way.reverse()) {
     list = list.slice();
@@ -115,7 +115,7 @@ function contactsAt(frame) {
   return list;
 }
 
-const most = 1 << 24; // more than there are disks; j is from -9
+const most = 2 ** 34; // more than there are disks with images; j is from -9
 const pairs = (list) => { const all = []; for (let l = 0; l < list.length; l += 2) all.push(list[l] * most + list[l + 1] + 9); return all; };
 const pairOf = (number) => [Math.floor(number / most), number % most - 9];
 
@@ -129,6 +129,13 @@ function changesAt(frame) {
   return { opened: [...was].filter((p) => !is.has(p)).map(pairOf), closed: [...is].filter((p) => !was.has(p)).map(pairOf) };
 }
 
+/// The second disk of a contact, and by how many periods it is moved: two signed bytes above its number.
+const diskOf = (j) => j % run.packing.radii.length;
+function imageOf(j) {
+  const k = j < 0 ? 0 : Math.floor(j / run.packing.radii.length);
+  return [k << 24 >> 24, k << 16 >> 24];
+}
+
 function rattlersOf(equilibrium) {
   const frame = film.frameOf.get(equilibrium), flags = new Uint8Array(run.packing.radii.length);
   const forces = frame === undefined ? undefined : film.forces[recorded.force[frame]], list = forces && contactsOf(equilibrium);
@@ -137,7 +144,7 @@ function rattlersOf(equilibrium) {
   for (let l = 0; l < forces.length; ++l) {
     if (forces[l] === 0) continue;
     flags[list[2 * l]] = 0;
-    if (list[2 * l + 1] >= 0) flags[list[2 * l + 1]] = 0;
+    if (list[2 * l + 1] >= 0) flags[diskOf(list[2 * l + 1])] = 0;
   }
   return flags;
 }
@@ -145,7 +152,8 @@ function rattlersOf(equilibrium) {
 const wallNames = { "-1": "left", "-2": "bottom", "-3": "right", "-4": "top" };
 function contactName([i, j]) {
   if (j === -9) return i < 0 ? "?" : `held ${"xy"[i % 2]} of grain ${Math.floor(i / 2)}`;
-  return `${i}-${wallNames[j] ?? j}`;
+  const [mx, my] = imageOf(j);
+  return `${i}-${wallNames[j] ?? diskOf(j)}` + (mx || my ? `(${mx},${my})` : "");
 }
 
 // --- canvases --------------------------------------------------------------------------------------------------------
@@ -161,24 +169,52 @@ function prepared(canvas) {
   return { pen, width, height };
 }
 
-const view = { zoom: 1, x: 0, y: 0 }; // x, y: centre, in parts of the box
+const view = { zoom: 1, x: 0, y: 0 }; // x, y: centre, in parts of the frame
 let current = 0;
 
-function boxOf(q) {
-  const radii = run.packing.radii, n = radii.length, size = [q[2 * n], q[2 * n + 1]];
+/// So many periods of the cell; nothing in a box.
+function periods(q, [mx, my]) {
+  const n = run.packing.radii.length;
+  return [mx * q[2 * n] + my * (q[2 * n + 2] ?? 0), my * q[2 * n + 1]];
+}
+const cornersOf = (q) => [[0, 0], [1, 0], [1, 1], [0, 1]].map((m) => periods(q, m));
+
+/// What is drawn: the box, or the cell with room for images.
+function frameOf(q) {
+  const { radii, upper, periodic } = run.packing, n = radii.length, low = [0, 0], high = [q[2 * n], q[2 * n + 1]];
   for (let a = 0; a < 2; ++a) {
-    if (run.packing.upper[a] !== "absent") continue;
-    size[a] = 0;
-    for (let i = 0; i < n; ++i) size[a] = Math.max(size[a], q[2 * i + a] + radii[i]);
+    if (periodic[0] || periodic[1]) {
+      const corners = cornersOf(q).map((c) => c[a]), room = periodic[a] ? 2.5 * Math.max(...radii) : 0;
+      [low[a], high[a]] = [Math.min(...corners) - room, Math.max(...corners) + room];
+    }
+    if (periodic[a] || upper[a] !== "absent") continue;
+    high[a] = 0;
+    for (let i = 0; i < n; ++i) high[a] = Math.max(high[a], q[2 * i + a] + radii[i]);
   }
-  return size;
+  return { low, high, size: [high[0] - low[0], high[1] - low[1]] };
+}
+
+/// Coordinates with the disks in the cell, and by how many periods each was moved to get there.
+function inCell(q) {
+  const { radii, periodic } = run.packing, n = radii.length, turns = new Int32Array(2 * n), wrapped = q.slice();
+  for (let i = 0; i < n; ++i) {
+    for (const a of [1, 0]) {
+      if (!periodic[a]) continue;
+      const turn = Math.floor((wrapped[2 * i + a] - (a === 0 ? wrapped[2 * i + 1] / q[2 * n + 1] * (q[2 * n + 2] ?? 0) : 0)) / q[2 * n + a]);
+      const [x, y] = periods(q, a === 0 ? [turn, 0] : [0, turn]);
+      turns[2 * i + a] = turn;
+      wrapped[2 * i] -= x;
+      wrapped[2 * i + 1] -= y;
+    }
+  }
+  return { q: wrapped, turns };
 }
 
 function placed(canvas, q) {
-  const { pen, width, height } = prepared(canvas), box = boxOf(q), border = 12;
-  const scale = view.zoom * Math.min((width - 2 * border) / box[0], (height - 2 * border) / box[1]);
-  const left = width / 2 - scale * box[0] * (0.5 + view.x), low = height / 2 + scale * box[1] * (0.5 + view.y);
-  return { pen, box, scale, x: (u) => left + scale * u, y: (v) => low - scale * v, width, height };
+  const { pen, width, height } = prepared(canvas), frame = frameOf(q), [w, h] = frame.size, border = 12;
+  const scale = view.zoom * Math.min((width - 2 * border) / w, (height - 2 * border) / h);
+  const left = width / 2 - scale * (frame.low[0] + w * (0.5 + view.x)), low = height / 2 + scale * (frame.low[1] + h * (0.5 + view.y));
+  return { pen, frame, scale, x: (u) => left + scale * u, y: (v) => low - scale * v, width, height };
 }
 
 /// Draws many small shapes, some at a time: long paths are slow.
@@ -191,7 +227,18 @@ function inParts(count, pen, add, finish) {
   }
 }
 
+/// The disks, and in a cell their images: those are paler.
 function drawDisks(at, q, flags) {
+  const along = (a) => run.packing.periodic[a] ? [-1, 0, 1] : [0];
+  for (const mx of along(0)) for (const my of along(1)) {
+    const [x, y] = periods(q, [mx, my]);
+    at.pen.globalAlpha = mx || my ? 0.4 : 1;
+    drawCopy({ ...at, x: (u) => at.x(u + x), y: (v) => at.y(v + y) }, q, flags);
+  }
+  at.pen.globalAlpha = 1;
+}
+
+function drawCopy(at, q, flags) {
   const radii = run.packing.radii;
   for (const rattler of [0, 1]) {
     at.pen.fillStyle = rattler ? colour.rattler : colour.disk;
@@ -208,15 +255,26 @@ function drawDisks(at, q, flags) {
   }
 }
 
-/// From the centre of the disk to that of the other, or to the wall.
-function segment(at, q, i, j) {
+/// From the centre of the disk to that of the other, moved by so many periods, or to the wall.
+function segment(at, q, i, j, image = [0, 0]) {
   const x = at.x(q[2 * i]), y = at.y(q[2 * i + 1]), n = run.packing.radii.length;
-  if (j >= 0) return [x, y, at.x(q[2 * j]), at.y(q[2 * j + 1])];
+  if (j >= 0) {
+    const [dx, dy] = periods(q, image);
+    return [x, y, at.x(q[2 * j] + dx), at.y(q[2 * j + 1] + dy)];
+  }
   const axis = (-1 - j) % 2, wall = j >= -2 ? 0 : q[2 * n + axis];
   return axis === 0 ? [x, y, at.x(wall), y] : [x, y, x, at.y(wall)];
 }
 
-function drawContacts(at, q, list, forces) {
+/// The line of a contact; two where it goes through a border of the cell: from either side.
+function segments(at, { q, turns }, i, j) {
+  if (j < 0) return [segment(at, q, i, j)];
+  const disk = diskOf(j), image = imageOf(j).map((m, a) => m + turns[2 * disk + a] - turns[2 * i + a]);
+  const there = segment(at, q, i, disk, image);
+  return image[0] || image[1] ? [there, segment(at, q, disk, i, [-image[0], -image[1]])] : [there];
+}
+
+function drawContacts(at, place, list, forces) {
   const mean = 0.2 * at.scale * run.packing.radii.reduce((a, b) => a + b, 0) / run.packing.radii.length;
   const groups = new Map(); // lines of one width together
   for (let l = 0; l < list.length / 2; ++l) {
@@ -230,21 +288,24 @@ function drawContacts(at, q, list, forces) {
     at.pen.strokeStyle = width > 0 ? colour.force : colour.contact;
     at.pen.lineWidth = width > 0 ? Math.max(0.3, mean * width / recorded.parts) : 0.4;
     const add = (k) => {
-      const l = members[k], [a, b, c, d] = segment(at, q, list[2 * l], list[2 * l + 1]);
-      at.pen.moveTo(a, b);
-      at.pen.lineTo(c, d);
+      const l = members[k];
+      for (const [a, b, c, d] of segments(at, place, list[2 * l], list[2 * l + 1])) {
+        at.pen.moveTo(a, b);
+        at.pen.lineTo(c, d);
+      }
     };
     inParts(members.length, at.pen, add, () => at.pen.stroke());
   }
 }
 
-function drawChange(at, q, [i, j], style, dash) {
+function drawChange(at, place, [i, j], style, dash) {
   if (i < 0 || j === -9) return;
-  const [a, b, c, d] = segment(at, q, i, j);
   for (const [ink, width] of [["#fff", 7], [style, 4]]) {
     at.pen.beginPath();
-    at.pen.moveTo(a, b);
-    at.pen.lineTo(c, d);
+    for (const [a, b, c, d] of segments(at, place, i, j)) {
+      at.pen.moveTo(a, b);
+      at.pen.lineTo(c, d);
+    }
     at.pen.setLineDash(ink === "#fff" ? [] : dash);
     at.pen.lineCap = "butt";
     at.pen.strokeStyle = ink;
@@ -276,8 +337,9 @@ function drawMotion(at, q, arrows) {
 }
 
 function drawWalls(at, q) {
-  const [w, h] = at.box, { lower, upper } = run.packing;
-  const sides = [[lower[0], 0, 0, 0, h], [lower[1], 0, 0, w, 0], [upper[0], w, 0, w, h], [upper[1], 0, h, w, h]];
+  const { low: [left, down], high: [right, up] } = at.frame, { lower, upper, radii, periodic } = run.packing;
+  const [w, h] = [q[2 * radii.length], q[2 * radii.length + 1]];
+  const sides = [[lower[0], 0, down, 0, up], [lower[1], left, 0, right, 0], [upper[0], w, down, w, up], [upper[1], left, h, right, h]];
   for (const [kind, a, b, c, d] of sides) {
     if (kind === "absent") continue;
     at.pen.beginPath();
@@ -287,6 +349,19 @@ function drawWalls(at, q) {
     at.pen.lineWidth = 3;
     at.pen.stroke();
   }
+  const corners = cornersOf(q);
+  at.pen.setLineDash([8, 5]);
+  at.pen.strokeStyle = "#222";
+  at.pen.lineWidth = 1.5;
+  for (let side = 0; side < 4; ++side) { // sides 0 and 2 are along x: they repeat along y
+    if (!periodic[(side + 1) % 2]) continue;
+    const [[a, b], [c, d]] = [corners[side], corners[(side + 1) % 4]];
+    at.pen.beginPath();
+    at.pen.moveTo(at.x(a), at.y(b));
+    at.pen.lineTo(at.x(c), at.y(d));
+    at.pen.stroke();
+  }
+  at.pen.setLineDash([]);
 }
 
 function drawPacking() {
@@ -297,15 +372,15 @@ function drawPacking() {
     pen.fillText("no packing is known: see What is drawn", 12, 24);
     return;
   }
-  const q = film.positions[current], list = contactsAt(current), isEquilibrium = recorded.equilibrium[current] >= 0;
+  const place = inCell(film.positions[current]), q = place.q, list = contactsAt(current), isEquilibrium = recorded.equilibrium[current] >= 0;
   const at = placed(canvas, q);
   drawDisks(at, q, byId("rattlers").checked ? rattlersOf(baseOf(current)) : new Uint8Array(run.packing.radii.length));
-  if (list) drawContacts(at, q, list, isEquilibrium ? film.forces[recorded.force[current]] : undefined);
+  if (list) drawContacts(at, place, list, isEquilibrium ? film.forces[recorded.force[current]] : undefined);
   drawWalls(at, q);
   if (byId("changes").checked) {
     const changes = changesAt(current);
-    for (const pair of changes.opened) drawChange(at, q, pair, colour.opened, [7, 5]);
-    for (const pair of changes.closed) drawChange(at, q, pair, colour.closed, []);
+    for (const pair of changes.opened) drawChange(at, place, pair, colour.opened, [7, 5]);
+    for (const pair of changes.closed) drawChange(at, place, pair, colour.closed, []);
   }
   const arrows = film.arrows[isEquilibrium ? recorded.whole[current] : recorded.arrow[current]];
   if (byId("motion").checked && arrows) drawMotion(at, q, arrows);
@@ -314,7 +389,7 @@ function drawPacking() {
 // --- the staircase ---------------------------------------------------------------------------------------------------
 
 const ratioOf = (event) => { // events have the stress only
-  const k = Math.min(events.equilibrium[event], rowCount - 1);
+  const k = [Math.min(events.equilibrium[event], rowCount - 1), ...rows.sigma2.keys()].find((row) => rows.sigma2[row]) ?? 0;
   return events.sigma2[event] * rows.ratio[k] / rows.sigma2[k];
 };
 const placeOf = (frame) => recorded.equilibrium[frame] >= 0
@@ -565,9 +640,9 @@ function listen() {
   window.addEventListener("resize", fit);
 }
 
-/// The canvas of the packing has the shape of the box.
+/// The canvas of the packing has the shape of what is drawn.
 function fit() {
-  const canvas = byId("packing"), box = film.count ? boxOf(film.positions[0]) : [2, 1], most = 0.82 * window.innerHeight;
+  const canvas = byId("packing"), box = film.count ? frameOf(film.positions[0]).size : [2, 1], most = 0.82 * window.innerHeight;
   canvas.style.height = Math.round(Math.max(160, Math.min(most, canvas.clientWidth * box[1] / box[0]))) + "px";
   draw();
 }
@@ -577,8 +652,8 @@ function introduce() {
   document.title = `${name} – Isostat`;
   byId("name").textContent = name;
   for (const word of ["ratio", "strain"]) for (const place of document.getElementsByClassName(word)) place.textContent = run.words[word];
-  const arcs = events?.arc.length ?? 0, disks = run.packing ? `${run.packing.radii.length} disks, ` : "";
-  byId("summary").textContent = `${run.program}: ${disks}${rowCount} equilibria, ${arcs} arcs; the run is: ${run.status}`;
+  const disks = run.packing ? `${run.packing.radii.length} disks, ` : "";
+  byId("summary").textContent = `${run.program}: ${disks}${rowCount} equilibria, ${run.arcs} arcs; the run is: ${run.status}`;
   const proved = rows.proved.filter((p) => p === 1).length;
   byId("proved").textContent = `${proved} of ${rowCount} equilibria were proved when the run was made, at the level certify = "${run.level}":`;
   byId("levels").querySelector(`tr[data-level="${CSS.escape(run.level)}"]`)?.classList.add("here");

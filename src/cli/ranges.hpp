@@ -1,0 +1,28 @@
+#pragma once
+/// \file
+/// The ranges of numbers on the command line. Each is finite, all of its word, and within its bounds: CLI11's own
+/// checks take nan for a number in any range, and 010 for 8.
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+namespace CLI {
+class Validator;
+}
+
+namespace isostat::cli::ranges {
+
+constexpr double largest = 1e100; ///< of stresses and stiffnesses, as in scenes
+constexpr double smallest = 1 / largest;
+constexpr std::int64_t largest_seed = std::numeric_limits<std::int64_t>::max(); ///< as in scenes
+
+CLI::Validator number(double low, double high);
+CLI::Validator integer(std::int64_t low, std::int64_t high);
+
+/// A number on the command line that is part of a word; nothing where it is none or beyond its bounds.
+std::optional<double> number_in(std::string_view word, double low = -largest, double high = largest);
+std::optional<std::int64_t> integer_in(std::string_view word, std::int64_t low, std::int64_t high);
+
+} // namespace isostat::cli::ranges

@@ -1,0 +1,94 @@
+#include "compare/dashpot.hpp"
+
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace isostat::compare {
+
+namespace {
+
+/// A wall is no faster than this times the fastest disk.
+constexpr double fast_wall = 10;
+/// What the least squares may leave of the largest force of a dashpot: other programs take velocities half a step
+/// later.
+constexpr double left_over = 0.1;
+
+/// w, of one way to weigh; with `hertz` times the root of the overlap and of R_i R_j / (R_i + R_j).
+double weight(const Packing<2>& packing, const Contact& c, int power, bool hertz) {
+    const double r = packing.radius[static_cast<std::size_t>(c.i)];
+    const double s = c.kind == ContactKind::disk_disk ? packing.radius[static_cast<std::size_t>(c.j)] : HUGE_VAL;
+    const auto reduced = [&](int p) {
+        const double a = std::pow(r, p), b = std::pow(s, p);
+        return std::isinf(b) ? a : a * b / (a + b);
+    };
+    const double mass = power == 0 ? 1 : reduced(power);
+    return hertz ? mass * std::sqrt(std::max(0.0, -gap(packing, c)) * reduced(1)) : mass;
+}
+
+/// One row per contact: what a constant of 1 makes of the velocities of the disks, then what a speed of 1 of each
+/// coordinate beyond the disks does that moves.
+Eigen::MatrixXd equations(const Frame& frame, const std::map<Contact, double>& beyond, int power, bool hertz) {
+    const Packing<2>& packing = frame.packing;
+    const std::size_t disks = 2 * packing.radius.size();
+    Eigen::MatrixXd a =
+        Eigen::MatrixXd::Zero(static_cast<int>(beyond.size()), 1 + static_cast<int>(packing.q.size() - disks));
+    int row = 0;
+    for (const auto& [contact, force] : beyond) {
+        const GapGradient<2> g = gap_gradient(packing, contact);
+        const double w = weight(packing, contact, power, hertz);
+        for (int e = 0; e < g.count; ++e) {
+            const auto k = static_cast<std::size_t>(g.coordinate[static_cast<std::size_t>(e)]);
+            const double value = -w * g.value[static_cast<std::size_t>(e)];
+            if (k < disks) {
+                a(row, 0) += value * frame.velocity[k];
+            } else {
+                a(row, 1 + static_cast<int>(k - disks)) += value;
+            }
+        }
+        ++row;
+    }
+    return a;
+}
+
+} // namespace
+
+std::string Dashpot::words() const {
+    return fmt::format("the forces are those of the law and of a dashpot, {:.4g} times the speed{}", constant,
+                       power == 0 ? "" : fmt::format(" and the reduced mass (R^{})", power));
+}
+
+std::optional<Dashpot> find_dashpot(const Frame& frame, const std::map<Contact, double>& beyond, ForceLaw law,
+                                    double allowance) {
+    if (frame.velocity.empty() || beyond.empty()) {
+        return std::nullopt;
+    }
+    Eigen::VectorXd b(static_cast<int>(beyond.size()));
+    std::transform(beyond.begin(), beyond.end(), b.begin(), [](const auto& entry) { return entry.second; });
+    double fastest = 0;
+    for (const double v : frame.velocity) {
+        fastest = std::max(fastest, std::abs(v));
+    }
+    double least = allowance + left_over * b.cwiseAbs().maxCoeff();
+    std::optional<Dashpot> out;
+    for (const bool hertz : {false, true}) {
+        for (const int power : {3, 2, 0}) {
+            const Eigen::MatrixXd a = equations(frame, beyond, power, hertz);
+            if ((hertz && law != ForceLaw::hertz) || a.rows() < 2 * a.cols()) {
+                continue;
+            }
+            const Eigen::VectorXd x = a.colPivHouseholderQr().solve(b);
+            const double sides = x.tail(x.size() - 1).cwiseAbs().maxCoeff();
+            const double off = (a * x - b).cwiseAbs().maxCoeff();
+            if (x[0] > 0 && sides <= fast_wall * x[0] * fastest && off <= least) {
+                least = off;
+                out = Dashpot{x[0], power};
+            }
+        }
+    }
+    return out;
+}
+
+} // namespace isostat::compare

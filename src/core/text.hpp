@@ -1,0 +1,42 @@
+#pragma once
+/// \file
+/// Text that somebody else wrote (names, titles, words of files), made harmless for whoever reads it. Each language has
+/// one function; no such text goes into a file or to the screen without that of its language. JSON has its library.
+
+#include <string>
+#include <string_view>
+
+namespace isostat::text {
+
+/// For people: one line of UTF-8 that commands no terminal and no reader. A control character becomes \xNN (ESC \x1b, a
+/// line feed \x0a, C1 and DEL too), a byte that is not UTF-8 as well; what reverses or breaks lines in Unicode \u202e.
+std::string shown(std::string_view text);
+
+/// The same for text of several lines that is put together from such pieces: line feeds stay.
+std::string shown_lines(std::string_view text);
+
+/// Whether the text is one line that is shown as it is.
+bool is_plain_line(std::string_view text);
+
+/// A string of gnuplot: in single quotes nothing is a command, not even a backquote.
+std::string gnuplot(std::string_view text);
+
+/// A field of a CSV table, quoted where it must be. A spreadsheet takes none for a formula.
+std::string csv(std::string_view text);
+
+/// Between two tags of SVG or HTML, or in the value of an attribute.
+std::string markup(std::string_view text);
+
+/// JSON of its library for a terminal: it leaves DEL, C1 and what turns lines as they are, here they are \uNNNN.
+std::string json(std::string_view document);
+
+/// JSON that may stand in a script element of HTML: no "<", ">" or "&", which only its strings can hold.
+std::string in_script(std::string_view json);
+
+/// Lines of a manual page.
+std::string man(std::string_view text);
+
+/// A word of a POSIX shell.
+std::string shell(std::string_view word);
+
+} // namespace isostat::text

@@ -1,0 +1,28 @@
+#pragma once
+// What the digits of a file leave open of its numbers.
+
+#include <string_view>
+
+namespace isostat {
+
+/// Numbers of one kind as they were written, with at most so many significant digits. Numbers of few digits all, like
+/// 0.5 or 15.46, are taken as they stand; where there are more, the digits after the last one were cut off.
+class Digits {
+  public:
+    void see(std::string_view number);
+    /// So far may the numbers be from what was meant: half a unit of the last digit of the largest one, and what
+    /// doubles round.
+    [[nodiscard]] double rounding() const;
+    /// Largest size.
+    [[nodiscard]] double largest() const { return largest_; }
+
+  private:
+    int most_ = 0;
+    double largest_ = 0;
+};
+
+/// Bound of the change of a gap of disks and walls when every coordinate is off by `place`, every side or period by
+/// `side`, every radius by `radius`.
+double rounding_of_gaps(double place, double side, double radius);
+
+} // namespace isostat

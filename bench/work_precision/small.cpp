@@ -1,8 +1,8 @@
 // The approximation of small displacements against the exact path: one arc, and whole trajectories.
 #include "bench/work_precision/report.hpp"
 #include "motion/arc.hpp"
-#include "support/shortcuts/small_displacements.hpp"
 #include "support/recorder.hpp"
+#include "support/shortcuts/small_displacements.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
 

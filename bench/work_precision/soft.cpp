@@ -1,7 +1,7 @@
 // Soft grains against the rigid states that they approximate: contacts, forces, strain, the next rearrangement.
 #include "bench/work_precision/report.hpp"
-#include "support/shortcuts/soft_grains.hpp"
 #include "support/recorder.hpp"
+#include "support/shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/trajectory/trajectory.hpp>

@@ -643,6 +643,7 @@ RunVerification verify_run(const std::filesystem::path& directory,
         return result;
     }
     const RunRecords records = read_records(directory);
+    result.notes = files_apart(records);
     if (const Objections damage = check_folder(directory, records)) {
         result.wrong = damage->text;
     } else {

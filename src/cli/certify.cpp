@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/rounding.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 #include "io/files.hpp"
@@ -24,12 +25,15 @@ int certify(const CertifyArguments& arguments) {
     certificate.state = file.state;
     Certification result = isostat::certify(certificate.state);
     certificate.claims = result.claims;
+    const Untold untold = untold_by(imported_rounding(file.state), file.state, result);
+    const Verdict verdict = withheld(untold, result.verdict);
     write_certificate(arguments.output, certificate);
     if (arguments.common.json) {
         Json object;
         object["file"] = arguments.input;
         object["certificate"] = arguments.output;
-        object["verdict"] = to_string(result.verdict);
+        object["verdict"] = to_string(verdict);
+        add_untold(object, untold, result.verdict);
         object["claims"] = claims_json(result);
         object["refuted"] = result.refuted;
         object["undecided"] = result.claims.undecided;
@@ -38,13 +42,14 @@ int certify(const CertifyArguments& arguments) {
     } else {
         print_claims(result);
         print_forces_in_file(file, result);
-        say("{:<14} {}: {}\n", to_string(result.verdict),
-            result.verdict == Verdict::proved    ? "an isostatic, stable equilibrium without overlap at the true vertex"
-            : result.verdict == Verdict::refuted ? "not such an equilibrium"
-                                                 : "some claims could not be made",
+        say("{:<14} {}: {}\n", to_string(verdict),
+            verdict == Verdict::proved    ? "an isostatic, stable equilibrium without overlap at the true vertex"
+            : verdict == Verdict::refuted ? "not such an equilibrium"
+            : untold.any()                ? fmt::format("the claims are of the stored doubles; {}", untold.words())
+                                          : "some claims could not be made",
             arguments.output);
     }
-    return status_of(result.verdict);
+    return status_of(verdict);
 }
 
 } // namespace isostat::cli

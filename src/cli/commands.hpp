@@ -121,6 +121,7 @@ struct ImportArguments {
     std::string cell; ///< what of a cell moves: "rectangular" or "tilted"; none: as the file is
     std::uint64_t seed = 1;
     double jitter = 0;
+    bool far = false; ///< disks may move by more than their radius
 };
 /// A packing made elsewhere -> the vertex next to it, as a state. 0: certified; 1: there is none with the contacts of
 /// the file; 2: undecided.

@@ -1,6 +1,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
+#include "cli/rounding.hpp"
 #include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
@@ -38,6 +39,10 @@ struct Imported {
     std::vector<double> from; ///< coordinates of the file
     std::string contacts;     ///< words
     Certification truth;
+    Untold untold; ///< by the rounding of the file
+    bool load_of_file = false;
+    bool copy = false; ///< more is untold by the jitter: the state is of a copy
+    [[nodiscard]] Verdict verdict() const { return withheld(untold, truth.verdict); }
 };
 
 /// Stresses and kind of load of a state, which were not stated anew.
@@ -60,7 +65,7 @@ Strain strain_of(const Cell<2>& cell) {
 }
 
 /// The contacts of the widest range of thresholds with an isostatic backbone, or at the threshold given.
-Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing) {
+Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing, double rounding) {
     const double largest = a.threshold.value_or(nearly_touching * packing.min_radius());
     if (a.threshold) {
         const crafted::PlateauStep step = crafted::plateau(packing, {largest}, strain_of(packing.cell)).steps.front();
@@ -75,7 +80,8 @@ Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing)
         return Wanted{false, crafted::backbone_at(packing, largest), fmt::format("gaps up to {}", largest)};
     }
     const double deepest = std::min(crafted::plateau(packing, {largest}).deepest_overlap, largest);
-    const crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1, strain_of(packing.cell));
+    crafted::Plateau plateau = crafted::plateau(packing, deepest, largest, 1, strain_of(packing.cell), rounding);
+    std::erase_if(plateau.ranges, [](const crafted::PlateauRange& range) { return !range.told; });
     if (plateau.ranges.empty()) {
         return Failure{plateau.special.empty() ? FailureKind::not_isostatic : FailureKind::undecided,
                        fmt::format("the backbone is isostatic at no threshold up to {:.6g}: isostat plateau shows the "
@@ -84,7 +90,7 @@ Result<Wanted> wanted_below(const ImportArguments& a, const Packing<2>& packing)
     }
     const auto range =
         *std::max_element(plateau.ranges.begin(), plateau.ranges.end(),
-                          [](const auto& x, const auto& y) { return x.last - x.first < y.last - y.first; });
+                          [&](const auto& x, const auto& y) { return plateau.width(x) < plateau.width(y); });
     return Wanted{
         false, crafted::backbone_at(packing, range.first),
         fmt::format("isostatic backbone at every threshold from {:.6g} to {:.6g}, proved", range.first, range.last)};
@@ -140,7 +146,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     check_nearness(a.file, file.packing);
     Wanted wanted{true, {}, ""};
     if (a.threshold || a.contacts == "plateau") {
-        auto below = wanted_below(a, file.packing);
+        auto below = wanted_below(a, file.packing, file.rounding);
         if (!below.ok()) {
             return below.failure();
         }
@@ -230,6 +236,7 @@ Result<Imported> from_vertex_text(const ImportArguments& a) {
     out.from = out.state.packing.q;
     out.truth = isostat::certify(out.state);
     out.contacts = "those of the vertex text";
+    out.load_of_file = true;
     return out;
 }
 
@@ -253,6 +260,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     state.load.stress = parse_stress(a.stress);
     state.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     state.load.refer_to(state.packing);
+    out.load_of_file = file.packing.load.has_value();
     if (file.packing.load) {
         for (std::size_t b = 0; b < 2; ++b) {
             const double length = state.load.reference_length[1 - b];
@@ -310,6 +318,33 @@ Moves moves_of(const Imported& found) {
     return moves;
 }
 
+/// The disk with a force that moved most, in its radii.
+std::pair<int, double> farthest(const Moves& moves, const Packing<2>& packing) {
+    std::pair<int, double> out{0, 0};
+    for (std::size_t i = 0; i < moves.disk.size(); ++i) {
+        if (const double radii = moves.disk[i] / packing.radius[i]; moves.rattler[i] == 0 && radii > out.second) {
+            out = {static_cast<int>(i), radii};
+        }
+    }
+    return out;
+}
+
+/// Notes where a disk moved by more than a tenth of its radius. Throws `Error(bad_input)` where it is more than one and
+/// nobody asked for it: then the vertex is not that of the file.
+void judge_moves(const ImportArguments& a, const Imported& found, const Moves& moves, std::vector<std::string>& notes) {
+    constexpr double far = 0.1;
+    const auto [disk, radii] = farthest(moves, found.state.packing);
+    const std::string words = fmt::format("disk {} moved by {} of its radius", disk, rounded_up(radii, 3));
+    if (radii > 1 && !a.far && std::isfinite(radii)) {
+        refuse(a.file, words +
+                           ": expected at most one on the way to the vertex (are the sizes wrong by a factor, or the "
+                           "box? --far takes it)");
+    }
+    if (radii > far) {
+        notes.push_back(words + ", more than a tenth: the vertex may not be that of the file");
+    }
+}
+
 constexpr const char* moves_head = "disk,x,y,moved,rattler\n";
 
 std::string moves_csv(const Imported& found, const Moves& moves) {
@@ -330,9 +365,19 @@ Json provenance_of(const ImportArguments& a, const std::string& format, const Im
     out["contacts"] = found.contacts;
     out["seed"] = a.seed;
     out["jitter"] = a.jitter;
+    out["rounding"] = number(found.untold.rounding);
     out["moved"] = {
         {"backbone", number(moves.backbone)}, {"rattlers", number(moves.rattlers)}, {"walls", number(moves.walls)}};
     return out;
+}
+
+/// Which part of the load nobody stated.
+std::string load_by_default(const ImportArguments& a, const Imported& found) {
+    return found.load_of_file                   ? ""
+           : a.stress.empty() && a.load.empty() ? " (taken by default: --stress, --load)"
+           : a.stress.empty()                   ? " (stresses taken by default: --stress)"
+           : a.load.empty()                     ? " (its kind taken by default: --load)"
+                                                : "";
 }
 
 void print_import(const ImportArguments& a, const ReadPacking& file, const Imported& found, const Moves& moves) {
@@ -348,10 +393,17 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
     say("{}\n", rattlers == 0 ? ""
                               : fmt::format(", {} rattlers, which rest on infinitesimal loads, {}", rattlers,
                                             rounded_up(moves.rattlers, 3)));
-    say("load      sigma = ({}, {}), {}\n", state.load.stress[0], state.load.stress[1],
-        state.load.kind == LoadKind::nominal ? "nominal" : "true stresses");
-    say("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}\n", to_string(found.truth.verdict), a.output,
-        state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction());
+    say("load      sigma = ({}, {}), {}{}\n", state.load.stress[0], state.load.stress[1],
+        state.load.kind == LoadKind::nominal ? "nominal" : "true stresses", load_by_default(a, found));
+    if (found.copy) {
+        say("jitter    this is a copy with other radii: gaps or forces are so small that h, the contacts and the "
+            "strict verdict may differ from those of the file\n");
+    }
+    say("{:<9} {}: {} disks, {} contacts, solid fraction {:.6f}{}\n", to_string(found.verdict()), a.output,
+        state.packing.disk_count(), state.contacts.size(), state.packing.solid_fraction(),
+        found.untold.any()
+            ? fmt::format("; {}; {} of the stored doubles", found.untold.words(), to_string(found.truth.verdict))
+            : "");
 }
 
 /// What may help where no vertex is proved. Empty: nothing.
@@ -387,7 +439,13 @@ int import(const ImportArguments& arguments) {
     ReadPacking file = listed ? ReadPacking{} : read_imported(a, crafted, own);
     file.format = listed ? format : file.format;
     auto found = listed ? from_vertex_text(a) : crafted ? from_crafted(a, text) : from_foreign(a, file);
-    const bool refuted = found.ok() && found.value().truth.verdict == Verdict::refuted;
+    if (found.ok() && !crafted && !listed) {
+        Imported& f = found.value();
+        f.untold = untold_by(file.rounding, f.state, f.truth);
+        const double jitter = 2 * a.jitter * file.packing.max_radius();
+        f.copy = a.jitter > 0 && untold_by(jitter + file.rounding, f.state, f.truth).any();
+    }
+    const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
     if (!found.ok() || refuted) {
         const std::string why = found.ok() ? found.value().truth.refuted.front() : found.failure().message();
         say(stderr, "isostat: {}: {}{}\n", a.file, why, advice(a, crafted, file.packing.radius));
@@ -395,6 +453,9 @@ int import(const ImportArguments& arguments) {
     }
     Imported& imported = found.value();
     const Moves moves = moves_of(imported);
+    if (imported.truth.claims.vertex) {
+        judge_moves(a, imported, moves, file.notes);
+    }
     const Json provenance = provenance_of(a, format, imported, moves);
     imported.state.provenance = json::dumped(provenance);
     if (imported.truth.verdict != Verdict::proved) {
@@ -413,12 +474,18 @@ int import(const ImportArguments& arguments) {
         object["state"] = a.output;
         object["notes"] = file.notes;
         object["disks"] = imported.state.packing.disk_count();
-        object["verdict"] = to_string(imported.truth.verdict);
+        object["load"] = {{"stress", {imported.state.load.stress[0], imported.state.load.stress[1]}},
+                          {"kind", imported.state.load.kind == LoadKind::nominal ? "nominal" : "true"},
+                          {"by_default",
+                           {{"stress", a.stress.empty() && !imported.load_of_file},
+                            {"kind", a.load.empty() && !imported.load_of_file}}}};
+        object["verdict"] = to_string(imported.verdict());
+        add_untold(object, imported.untold, imported.truth.verdict);
         print_json(object);
     } else {
         print_import(a, file, imported, moves);
     }
-    return status_of(imported.truth.verdict);
+    return status_of(imported.verdict());
 }
 
 } // namespace isostat::cli

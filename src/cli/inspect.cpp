@@ -2,6 +2,7 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/face_text.hpp"
+#include "cli/rounding.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 
@@ -196,9 +197,16 @@ int inspect(const InspectArguments& arguments) {
         state.load.loaded_stress() = *arguments.at;
         file.forces.clear(); // of another load
     }
-    const Result<Inspection<2>> result = inspect_vertex(state);
+    Result<Inspection<2>> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
-    const auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
+    auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
+    const Untold untold = untold_by(imported_rounding(state), state, truth);
+    if (result.ok()) {
+        withhold(untold, result.value());
+    }
+    if (cell) {
+        withhold(untold, *cell);
+    }
     const bool refuted = !result.ok() && result.failure().kind == FailureKind::not_isostatic;
     if (arguments.common.json) {
         Json object = counting_json(arguments.file, state, truth.counting);
@@ -208,6 +216,7 @@ int inspect(const InspectArguments& arguments) {
             object["verdict"] = refuted ? "refuted" : "undecided";
             object["remark"] = result.failure().message();
         }
+        add_untold(object, untold, truth.verdict);
         object["true_configuration"] = true_vertex_json(truth);
         object["forces"] = forces_json(state, truth);
         if (cell) {

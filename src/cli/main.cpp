@@ -158,7 +158,8 @@ struct Program {
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");
         command.add_option("-o,--output", a.output, "folder of the run")->required()->type_name("DIR");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption");
-        command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the run that the folder holds first, and nothing else there")
+            ->excludes(resume);
         add_threads(command, a.common);
         does(command, a, run, true);
     }
@@ -191,7 +192,8 @@ struct Program {
             ->check(ranges::integer(0, ranges::largest_seed))
             ->type_name("SEED");
         CLI::Option* resume = command.add_flag("--resume", a.resume, "go on after an interruption, or add samples");
-        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")->excludes(resume);
+        command.add_flag("--force", a.force, "delete the ensemble that the folder holds first, and nothing else there")
+            ->excludes(resume);
         does(command, a, ensemble, true);
     }
 
@@ -349,6 +351,10 @@ struct Program {
             "rounded to doubles and keeps its contacts and its load; a vertex text keeps them too. With --jitter a "
             "state is taken as well.\n"
             "In a periodic cell or a channel: the vertex downhill whatever its contacts, unless --contacts says more.\n"
+            "Proofs are of the doubles written. Where gaps or forces are below what the digits of the file tell, so "
+            "that "
+            "they may be 0 in its\n"
+            "packing, they are named and the answer is undecided, here and when inspect or certify read the state.\n"
             "Exit status 0: written and certified; 1: no such equilibrium; 2: undecided.\n"
             "Examples: isostat import disks.dump --box 0:15.46,0:14.88 -o start.json\n"
             "          isostat import disks.dump --box 0:15.46,0:14.88 --contacts pairs.dump --contact-columns "
@@ -377,6 +383,7 @@ struct Program {
             ->check(ranges::number(0, 0.1));
         command.add_option("--moved", a.moved, "write the way of each disk from the file to the vertex")
             ->type_name("FILE.csv");
+        command.add_flag("--far", a.far, "disks with a force may move by more than their radius");
         add_cell(command, a.cell);
         add_foreign(command, a.foreign);
         add_periodic(command, a.foreign);
@@ -535,8 +542,11 @@ struct Program {
             "are compared exactly,\n"
             "for the doubles that the file gives. Ranges of thresholds in which the backbone (no rattlers) is "
             "isostatic are proved at\n"
-            "every threshold, not only at those of the table.\n"
-            "Exit status 0: isostatic at some threshold, proved; 1: at none; 2: undecided.\n"
+            "every threshold, not only at those of the table. The answer is that of the widest range on a logarithmic "
+            "scale; thresholds\n"
+            "between gaps that the digits of the file do not tell apart do not count.\n"
+            "Exit status 0: the widest range is isostatic, proved; 1: it is not; 2: undecided, or no range is wider "
+            "than the digits tell.\n"
             "Examples: isostat plateau dump.lammpstrj --thresholds=-1e-3:1e-2 --walls box\n"
             "          isostat plateau disks.txt --columns x,y,d --thresholds 1e-12:0.1");
         command.add_option("file", a.file, "packing")->required()->type_name("FILE");

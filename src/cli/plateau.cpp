@@ -5,6 +5,7 @@
 #include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
+#include "preparation/neighbours.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/plateau.hpp>
@@ -30,9 +31,42 @@ Strain strain_of(const std::string& name) {
                                 : Strain::isotropic;
 }
 
-/// The backbone where it is isostatic first, or at the largest threshold.
+/// What counts of the isostatic ranges.
+struct Told {
+    std::vector<PlateauRange> backbone, all; ///< in the widest range: the answer
+    std::vector<PlateauRange> elsewhere;     ///< of the backbone, less wide
+    int noise = 0;                           ///< of the backbone, less wide than the rounding: so many are left out
+    bool special = false;                    ///< the widest range has N = N_f and no full rank
+};
+
+/// Of two ranges one is a part of the other.
+bool meet(const PlateauRange& a, const PlateauRange& b) {
+    return a.candidates == b.candidates || std::max(a.first, b.first) < std::min(a.last, b.last);
+}
+
+Told told_of(const crafted::Plateau& plateau) {
+    Told out;
+    for (const PlateauRange& range : plateau.ranges) {
+        if (!range.told) {
+            ++out.noise;
+        } else {
+            (meet(range, plateau.widest->range) ? out.backbone : out.elsewhere).push_back(range);
+        }
+    }
+    for (const PlateauRange& range : plateau.ranges_all) {
+        if (range.told && meet(range, plateau.widest->range)) {
+            out.all.push_back(range);
+        }
+    }
+    out.special = plateau.widest && std::any_of(plateau.special.begin(), plateau.special.end(), [&](const auto& range) {
+                      return range.told && meet(range, plateau.widest->range);
+                  });
+    return out;
+}
+
+/// The backbone of the widest range, or at the largest threshold.
 std::vector<Contact> shown_backbone(const ReadPacking& file, const crafted::Plateau& plateau, double& threshold) {
-    threshold = plateau.ranges.empty() ? threshold : plateau.ranges.front().first;
+    threshold = plateau.widest ? plateau.widest->range.first : threshold;
     return crafted::backbone_at(file.packing, threshold);
 }
 
@@ -81,7 +115,48 @@ void print_ranges(const std::string& title, const std::vector<PlateauRange>& ran
     }
 }
 
-void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+std::string noise_text(const Told& told, double rounding) {
+    return told.noise == 0
+               ? ""
+               : fmt::format(
+                     "the order of gaps that differ by less than 2 x {} is not known: {} range{} that rest{} on "
+                     "it {} left out",
+                     rounded_up(rounding, 2), told.noise, told.noise == 1 ? "" : "s", told.noise == 1 ? "s" : "",
+                     told.noise == 1 ? "is" : "are");
+}
+
+/// Where there is none, as far as the rounding of gaps leaves it open.
+std::string self_stress_text(const crafted::Plateau& plateau) {
+    const double end = plateau.no_self_stress_below;
+    if (plateau.no_self_stress_open) {
+        return fmt::format("up to the largest threshold {:.17g}, proved", end);
+    }
+    return plateau.widest && plateau.widest->range.first >= end
+               ? fmt::format("below the widest range, at {:.17g} of the stored doubles", end)
+               : fmt::format("below {:.17g}, proved", end);
+}
+
+/// What the packing says: the widest range.
+void print_headline(const crafted::Plateau& plateau, const Told& told, const std::array<double, 2>& thresholds) {
+    const std::string none = fmt::format("at no threshold of [{:.6g}, {:.6g}]", thresholds[0], thresholds[1]);
+    if (plateau.widest) {
+        const auto& [range, counts] = *plateau.widest;
+        say("{:<28}{}\n", "widest range (in log)", range_text(range));
+        say("{:<28}  from N = {} with {} rattlers; h = {}, k = {} {}{}\n", "", range.contacts, range.rattlers,
+            bound(counts.hyperstaticity, counts), bound(counts.mechanisms, counts),
+            range.open ? "at its end" : "up to its end", range.told ? "" : "; below the rounding of gaps");
+    }
+    print_ranges("backbone isostatic, proved", told.backbone, none);
+    print_ranges("all disks isostatic, proved", told.all, none);
+    if (!told.elsewhere.empty()) {
+        print_ranges("isostatic in less wide ones", told.elsewhere, "");
+    }
+    if (const std::string noise = noise_text(told, plateau.rounding); !noise.empty()) {
+        say("{:<28}{}\n", "rounding", noise);
+    }
+}
+
+void print_text(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau, const Told& told,
                 const std::array<double, 2>& thresholds) {
     say("file                        {} ({})\n", a.file, file.format);
     for (const std::string& note : file.notes) {
@@ -92,6 +167,7 @@ void print_text(const PlateauArguments& a, const ReadPacking& file, const crafte
     say("thresholds                  {:.6g} to {:.6g} (unit of the file)\n", thresholds[0], thresholds[1]);
     say("candidates                  {}, smallest gap {:.6g}; the contact list changes at {} thresholds\n",
         plateau.candidates, plateau.deepest_overlap, plateau.changes);
+    say("gaps known to               {}: digits of the file, doubles, shifts\n", rounded_up(plateau.rounding, 2));
     say("rows                        {} of these, {} ranks computed, the rest follows from monotony\n\n",
         plateau.steps.size(), plateau.ranks_computed);
     say("{:>14} {:>10} | {:>8} {:>8} {:>8} {:>8} {:>7} {:>7} {:<10}| {:>8} {:>7} {:>7}\n", "threshold", "candidates",
@@ -107,15 +183,11 @@ void print_text(const PlateauArguments& a, const ReadPacking& file, const crafte
     say("\nN_f, N, rank, h, k: backbone, that is without disks and contacts that can carry no force by the "
         "position of the normals;\nall: every disk. k includes {} common rigid motions. <=: proved bound.\n\n",
         rigid);
-    print_ranges("backbone isostatic, proved", plateau.ranges, "at no threshold");
-    print_ranges("all disks isostatic, proved", plateau.ranges_all, "at no threshold");
-    if (!plateau.special.empty()) {
+    print_headline(plateau, told, thresholds);
+    if (told.special) {
         print_ranges("N = N_f but rank deficient", plateau.special, "");
     }
-    say("no self-stress (h = 0)      {}\n",
-        plateau.no_self_stress_open
-            ? fmt::format("up to the largest threshold {:.17g}, proved", plateau.no_self_stress_below)
-            : fmt::format("below {:.17g}, proved", plateau.no_self_stress_below));
+    say("no self-stress (h = 0)      {}\n", self_stress_text(plateau));
     if (file.packing.cell.all()) {
         say("cell                        {}, as --cell says: its strains are among the N_f above\n", a.strain);
         print_strains(file, plateau, thresholds[1]);
@@ -139,6 +211,7 @@ Json ranges_json(const std::vector<PlateauRange>& ranges) {
         out.push_back({{"first", number(r.first)},
                        {"last", number(r.last)},
                        {"open", r.open},
+                       {"told", r.told},
                        {"N", r.contacts},
                        {"rattlers", r.rattlers},
                        {"candidates", r.candidates}});
@@ -146,7 +219,7 @@ Json ranges_json(const std::vector<PlateauRange>& ranges) {
     return out;
 }
 
-Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau,
+Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::Plateau& plateau, const Told& told,
              const std::array<double, 2>& thresholds) {
     Json out;
     out["format"] = "isostat-plateau 1";
@@ -161,8 +234,16 @@ Json to_json(const PlateauArguments& a, const ReadPacking& file, const crafted::
     out["candidates"] = plateau.candidates;
     out["changes"] = plateau.changes;
     out["ranks_computed"] = plateau.ranks_computed;
-    out["isostatic"] = ranges_json(plateau.ranges);
-    out["isostatic_all_disks"] = ranges_json(plateau.ranges_all);
+    out["rounding"] = number(plateau.rounding);
+    out["widest"] = nullptr;
+    if (plateau.widest) {
+        out["widest"] = ranges_json({plateau.widest->range})[0];
+        out["widest"]["counts"] = counts_json(plateau.widest->counts);
+    }
+    out["isostatic"] = ranges_json(told.backbone);
+    out["isostatic_all_disks"] = ranges_json(told.all);
+    out["isostatic_elsewhere"] = ranges_json(told.elsewhere);
+    out["isostatic_by_rounding"] = told.noise;
     out["rank_deficient"] = ranges_json(plateau.special);
     out["no_self_stress_below"] = number(plateau.no_self_stress_below);
     out["no_self_stress_open"] = plateau.no_self_stress_open;
@@ -233,6 +314,30 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Read
     }
 }
 
+/// Words where the sizes seem to be wrong by a factor; empty: they do not.
+std::string far_disks(const Packing<2>& packing, double largest, const crafted::Plateau& plateau) {
+    const double radius = packing.min_radius();
+    if (plateau.deepest_overlap < -0.5 * radius) {
+        return fmt::format("two disks overlap by {:.3g} of the smallest radius: are the sizes diameters, taken for "
+                           "radii (--diameter COLUMN)?",
+                           -plateau.deepest_overlap / radius);
+    }
+    double nearest = plateau.deepest_overlap;
+    constexpr double farthest = 8; // radii
+    for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
+         reach *= 2) {
+        for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
+            nearest = std::min(nearest, gap<2>(packing, c));
+        }
+    }
+    return nearest <= std::max(largest, nearly_touching * radius)
+               ? ""
+               : fmt::format(
+                     "the smallest gap is {:.3g} of the smallest radius: are the sizes wrong by a factor (radii "
+                     "taken for diameters)?",
+                     nearest / radius);
+}
+
 } // namespace
 
 int plateau(const PlateauArguments& a) {
@@ -251,20 +356,26 @@ int plateau(const PlateauArguments& a) {
         thresholds[0] =
             std::min(crafted::plateau(file.packing, {thresholds[1]}, strain).deepest_overlap, thresholds[1]);
     }
-    const crafted::Plateau result = crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain);
+    const crafted::Plateau result =
+        crafted::plateau(file.packing, thresholds[0], thresholds[1], a.rows, strain, file.rounding);
+    const Told told = told_of(result);
     note_walls(a, result, file);
+    if (const std::string sizes = far_disks(file.packing, thresholds[1], result); !sizes.empty()) {
+        file.notes.push_back(sizes);
+    }
     if (!a.csv.empty()) {
         write_output(a.csv, to_csv(result), plateau_head);
     }
     if (a.common.json) {
-        print_json(to_json(a, file, result, thresholds));
+        print_json(to_json(a, file, result, told, thresholds));
     } else {
-        print_text(a, file, result, thresholds);
+        print_text(a, file, result, told, thresholds);
     }
-    if (!result.ranges.empty()) {
+    if (!told.backbone.empty()) {
         return done;
     }
-    return result.special.empty() ? failed : undecided;
+    // Nothing is known of the list where no range is wider than the rounding.
+    return told.special || (result.widest && !result.widest->range.told) ? undecided : failed;
 }
 
 } // namespace isostat::cli

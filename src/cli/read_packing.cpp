@@ -1,6 +1,8 @@
 #include "cli/read_packing.hpp"
 
 #include "cli/ranges.hpp"
+#include "cli/rounding.hpp"
+#include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/vertex_text.hpp"
 
@@ -11,6 +13,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace isostat::cli {
@@ -80,6 +84,29 @@ ForeignOptions options_of(const ForeignArguments& a) {
     return out;
 }
 
+/// What the digits of --box, --radius and --diameter leave open of a gap.
+double rounding_of(const ForeignArguments& a) {
+    Digits sides, sizes;
+    for (const std::string& axis : parse_list(a.box)) {
+        for (const std::string& side : parse_list(axis, ':')) {
+            sides.see(side);
+        }
+    }
+    sizes.see(a.radius);
+    sizes.see(a.diameter);
+    return rounding_of_gaps(0, sides.rounding(), a.radius.empty() ? sizes.rounding() / 2 : sizes.rounding());
+}
+
+/// What the doubles of a file of this program leave open of a gap.
+double rounding_of(const Packing<2>& packing) {
+    double largest = packing.max_radius();
+    for (const double x : packing.q) {
+        largest = std::max(largest, std::abs(x));
+    }
+    const double rounding = 0x1p-53 * largest;
+    return rounding_of_gaps(rounding, rounding, rounding);
+}
+
 } // namespace
 
 std::vector<std::string> parse_list(const std::string& text, char at) {
@@ -110,8 +137,8 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     const bool own = format == "state" || format == "vertex" || format == "packing";
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
-        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes),
-                std::move(foreign.ids)};
+        return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes), std::move(foreign.ids),
+                foreign.rounding + rounding_of(arguments)};
     }
     if (options.size || options.box || options.select || !arguments.walls.empty() || !options.columns.empty() ||
         options.frame || options.not_periodic || options.periodic) {
@@ -122,16 +149,15 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     }
     if (format == "packing") {
         const crafted::PackingFile crafted = crafted::parse_packing(text, file);
-        ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}};
+        ReadPacking out{crafted::approximate(crafted.packing), format, {}, {}, 0};
+        out.rounding = rounding_of(out.packing);
         out.notes.emplace_back("exact numbers rounded to the nearest doubles: inspect decides contacts exactly");
         return out;
     }
-    ReadPacking out{format == "state"
-                        ? (arguments.cells ? parse_any_state<2>(text, file) : parse_state<2>(text, file)).state.packing
-                        : parse_vertex_text(text, file).packing,
-                    format,
-                    {},
-                    {}};
+    const State<2> state = format != "state" ? parse_vertex_text(text, file)
+                           : arguments.cells ? parse_any_state<2>(text, file).state
+                                             : parse_state<2>(text, file).state;
+    ReadPacking out{state.packing, format, {}, {}, std::max(rounding_of(state.packing), imported_rounding(state))};
     out.notes.emplace_back("the contact list of the file is not used");
     return out;
 }

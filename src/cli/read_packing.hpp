@@ -16,6 +16,7 @@ struct ReadPacking {
     std::string format;
     std::vector<std::string> notes;
     std::vector<long> ids; ///< of the disks in a file of another program, or none
+    double rounding = 0;   ///< bound of what digits and doubles leave open of a gap
 };
 
 /// States, vertex texts, crafted packings (rounded to doubles) and files of other programs. Throws `Error(usage)` for

@@ -1,5 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
+#include "cli/rounding.hpp"
 #include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
 #include "compare/force_split.hpp"
@@ -25,6 +26,7 @@ namespace {
 struct Read : compare::SoftForces {
     std::string words;
     std::vector<std::string> notes;
+    double rounding = 0; ///< of gaps
 };
 
 /// A state says contacts and load itself.
@@ -36,6 +38,7 @@ Read from_state(const SnapArguments& a) {
     const StateFile<2> file = read_any_state<2>(a.file);
     Read out;
     static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
+    out.rounding = imported_rounding(file.state);
     out.words = fmt::format("{} contacts of the state, those that can carry a force", file.state.contacts.size());
     return out;
 }
@@ -58,6 +61,7 @@ Read from_foreign(const SnapArguments& a) {
     out.words = list.words;
     out.forces = list.forces;
     out.notes = file.notes;
+    out.rounding = file.rounding;
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
     out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
@@ -163,8 +167,14 @@ int snap(const SnapArguments& a) {
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
     std::optional<State<2>> state = state_of(a, read, snap, report);
+    Untold untold;
     if (state) {
-        state->provenance = json::dumped(report);
+        const Certification truth = certify(*state);
+        untold = untold_by(read.rounding, *state, truth);
+        add_untold(report, untold, truth.verdict);
+        Json provenance = report;
+        provenance["rounding"] = number(read.rounding);
+        state->provenance = json::dumped(provenance);
         write_state<2>(a.output, *state);
     }
     if (a.common.json) {
@@ -172,8 +182,12 @@ int snap(const SnapArguments& a) {
         print_json(report);
     } else {
         print(a, read, snap, report, state.has_value());
+        if (untold.any()) {
+            say("undecided {}\n", untold.words());
+        }
     }
-    return state                                                                                             ? done
+    return untold.any()                                                                                      ? undecided
+           : state                                                                                           ? done
            : snap.outcome == compare::SnapOutcome::vertex || snap.outcome == compare::SnapOutcome::undecided ? undecided
                                                                                                              : failed;
 }

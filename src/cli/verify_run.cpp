@@ -61,6 +61,7 @@ Json json_of(const RunVerification& run, const std::string& folder) {
     object["equilibria_proved"] = run.equilibria_proved;
     object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
     object["undecided"] = run.undecided;
+    object["notes"] = run.notes;
     object["finished"] = run.finished;
     object["verdict"] = words(run);
     return object;
@@ -83,6 +84,9 @@ void print_totals(const RunVerification& run) {
     say("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
     for (const std::string& open : run.undecided) {
         say("undecided      {}\n", open);
+    }
+    for (const std::string& note : run.notes) {
+        fmt::print("note           {}\n", note);
     }
     if (!run.wrong.empty()) {
         say("first wrong    {}\n", run.wrong);

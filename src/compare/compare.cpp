@@ -182,6 +182,9 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     run.rule = options.rule;
     run.stop = options.stop;
     std::optional<State<2>> start = options.start;
+    if (start) {
+        reader.begin_after(start->packing);
+    }
     std::vector<JudgedFrame> judged = judge_all(reader, options, run, start);
     Path path;
     std::vector<double> loads;
@@ -205,6 +208,8 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
         place(judged[k], path, path.at_load[k]);
         place(judged[k], out.bundle);
         add_others(judged[k], path, out.bundle);
+        std::string& reason = judged[k].result.reason;
+        reason += (reason.empty() || judged[k].note.empty() ? "" : "; ") + judged[k].note;
         out.frames.push_back(judged[k].result);
     }
     out.departure = find_departure(series, judged, path, out.bundle, options);

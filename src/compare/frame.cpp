@@ -101,6 +101,7 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
     out.result = begin(frame, reading);
     out.list = reading.contacts;
     out.pressed = reading.pressed;
+    out.note = frame.note;
     FrameResult& r = out.result;
     if (!reading.contradiction.empty()) {
         r.status = FrameStatus::file;

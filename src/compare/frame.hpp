@@ -15,6 +15,7 @@ struct JudgedFrame {
     std::vector<Contact> list;     ///< of the file
     std::vector<Contact> pressed;  ///< of a frame in motion, every contact with a positive force
     std::vector<Contact> downhill; ///< of the vertex that exchange found, proved; or none
+    std::string note;              ///< on its cell
     std::optional<State<2>> state; ///< complete, where one was asked for or exchange found it
 };
 

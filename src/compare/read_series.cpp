@@ -4,6 +4,7 @@
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/frame_file.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -207,6 +208,9 @@ class Disks {
             sides = sides.at ? sides : sides_of(rows.header);
         }
         const std::array<double, 4> walls = sides.at.value();
+        if (!last_.radius.empty() && manifest_.periodic) {
+            sides.tilt = unflipped(frame, sides.tilt, walls[2] - walls[0]);
+        }
         const std::vector<std::size_t> speeds = speeds_of(rows);
         Digits places, sizes;
         for (const auto& [number, row] : by_id) {
@@ -231,7 +235,7 @@ class Disks {
                 places.see(row->field(column));
             }
             for (const std::size_t column : speeds) {
-                frame.velocity.push_back(foreign::to_number(row->field(column)).value_or(NAN) * f);
+                frame.velocity.push_back(finite_number(row->field(column)).value_or(NAN) * f);
             }
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }
@@ -252,10 +256,16 @@ class Disks {
         if (frame.number == 0) {
             ids_ = frame.ids;
             first_ = frame.packing;
-        } else if (manifest_.periodic) {
+        }
+        if (manifest_.periodic && last_.radius.size() == frame.packing.radius.size()) {
             unwrap(frame.packing);
         }
         last_ = frame.packing;
+    }
+    void begin_after(const Packing<2>& packing) {
+        if (packing.cell.all()) {
+            last_ = packing;
+        }
     }
 
   private:
@@ -280,7 +290,7 @@ class Disks {
     [[nodiscard]] Sides sides_of(const FrameHeader& header) const {
         const double f = manifest_.length_factor;
         const std::array<double, 4> box = header.box.value();
-        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f};
+        return {std::array{box[0] * f, box[2] * f, box[1] * f, box[3] * f}, header.tilt * f, header.sides};
     }
 
     /// Walls, or both axes periodic: as the manifest says. A cell is stated once.
@@ -308,6 +318,21 @@ class Disks {
                             : "walls, or a [cell] in the manifest (in XYZ pbc=\"F F F\" says that there are walls)"));
             }
         }
+    }
+
+    /// Other programs flip a box that is sheared far, by whole periods: the tilt next to the one before.
+    double unflipped(Frame& frame, double tilt, double period) {
+        const double periods = std::round((last_.lattice(0, 1) - tilt) / period);
+        const double out = tilt + periods * period;
+        if (periods != flipped_) {
+            frame.note =
+                fmt::format("box flipped by {} along x: the tilt {} of the file is {} here, the same lattice",
+                            std::abs(periods - flipped_) == 1 ? "one period"
+                                                              : fmt::format("{} periods", std::abs(periods - flipped_)),
+                            tilt, out);
+            flipped_ = periods;
+        }
+        return out;
     }
 
     /// Other programs wrap disks that leave the cell. Each is put where it has moved least since the frame before,
@@ -343,6 +368,7 @@ class Disks {
     FrameFile dump_;
     std::vector<long> ids_;
     Packing<2> first_, last_;
+    double flipped_ = 0; ///< periods between the tilt of the file and that of the frames
 };
 
 /// Rows of the file of contacts. A contact that comes twice stays twice: `compare` names it.
@@ -403,6 +429,10 @@ SeriesReader::~SeriesReader() = default;
 
 const Series& SeriesReader::series() const {
     return files_->manifest.series;
+}
+
+void SeriesReader::begin_after(const Packing<2>& packing) {
+    files_->disks.begin_after(packing);
 }
 
 std::optional<Frame> SeriesReader::next() {

@@ -20,6 +20,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <set>
 
 namespace isostat::crafted {
@@ -128,8 +129,14 @@ class Sequence {
         return out;
     }
 
-    void find_ranges(Plateau& out) {
-        const auto excess = [](const PlateauCounts& c) { return c.contact_count - (c.dof_count - c.rigid_motions); };
+    /// Of thresholds from \p first on; none: all.
+    void find_ranges(Plateau& out, std::optional<double> first) {
+        out.rounding = rounding_ = std::max(out.rounding, 0x1p-52 * packing_.max_radius());
+        lowest_ = first;
+        if (first) {
+            start_ =
+                static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), below(*first)) - ends_.begin());
+        }
         // h >= N - N_f + rigid motions, and h only grows.
         const auto most = [&](auto counts) {
             const auto first = std::find_if(ends_.begin(), ends_.end(), [&](int m) { return excess(counts(m)) > 0; });
@@ -139,6 +146,7 @@ class Sequence {
         const int unstressed = backbone_stress_->last_without(ends_, most(backbone));
         out.no_self_stress_open = unstressed == size();
         out.no_self_stress_below = out.no_self_stress_open ? largest_ : threshold_after(unstressed);
+        find_widest(out);
         const auto balanced = [&](int m) {
             return carrying_[static_cast<std::size_t>(m)] > 0 && excess(backbone(m)) == 0;
         };
@@ -301,6 +309,31 @@ class Sequence {
         return out;
     }
 
+    /// N - N_f, rigid motions apart.
+    static int excess(const PlateauCounts& c) { return c.contact_count - (c.dof_count - c.rigid_motions); }
+
+    void find_widest(Plateau& out) {
+        double widest = -1;
+        for (std::size_t e = start_; e < ends_.size(); ++e) {
+            const std::size_t begin = e;
+            const auto same = [&](std::size_t k) {
+                return excess(backbone_counts(ends_[k])) == excess(backbone_counts(ends_[begin]));
+            };
+            while (e + 1 < ends_.size() && same(e + 1)) {
+                ++e;
+            }
+            const PlateauRange range = range_of(begin, e);
+            if (const double width = out.width(range); range.contacts > 0 && width > widest) {
+                widest = width;
+                out.widest = {range, backbone_counts(ends_[e])};
+                last_of_widest_ = ends_[e];
+            }
+        }
+        if (out.widest) {
+            settle(out.widest->counts, backbone_stress_->at(last_of_widest_));
+        }
+    }
+
     static void settle(PlateauCounts& counts, int h) {
         counts.hyperstaticity = h;
         counts.rank = counts.contact_count - h;
@@ -328,7 +361,7 @@ class Sequence {
 
     /// Maximal runs of ends that `holds` takes.
     template <class Holds> void add_ranges(std::vector<PlateauRange>& out, Holds holds) const {
-        for (std::size_t e = 0; e < ends_.size(); ++e) {
+        for (std::size_t e = start_; e < ends_.size(); ++e) {
             if (!holds(ends_[e]) || ends_[e] == 0) {
                 continue;
             }
@@ -336,16 +369,23 @@ class Sequence {
             while (e + 1 < ends_.size() && holds(ends_[e + 1])) {
                 ++e;
             }
-            const int m = ends_[begin];
-            PlateauRange range;
-            range.first = threshold_of(m);
-            range.open = ends_[e] == size();
-            range.last = range.open ? largest_ : threshold_after(ends_[e]);
-            range.contacts = carrying_[static_cast<std::size_t>(m)];
-            range.rattlers = rattlers_[static_cast<std::size_t>(m)];
-            range.candidates = m;
-            out.push_back(range);
+            out.push_back(range_of(begin, e));
         }
+    }
+    /// From one of the ends to another.
+    [[nodiscard]] PlateauRange range_of(std::size_t begin, std::size_t end) const {
+        const int m = ends_[begin];
+        PlateauRange range;
+        const double low = m == 0 ? -largest_length : threshold_of(m);
+        range.first = std::max(low, lowest_.value_or(low));
+        range.open = ends_[end] == size();
+        range.last = range.open ? largest_ : threshold_after(ends_[end]);
+        range.contacts = carrying_[static_cast<std::size_t>(m)];
+        range.rattlers = rattlers_[static_cast<std::size_t>(m)];
+        range.candidates = m;
+        range.told = low + 2 * rounding_ < range.last &&
+                     std::max(range.first, low + rounding_) <= range.last - (range.open ? 0 : rounding_);
+        return range;
     }
 
     Packing<2> packing_;
@@ -359,6 +399,10 @@ class Sequence {
     std::vector<int> carrying_, rattlers_, free_; ///< with the first m candidates
     int moving_ = 0;                              ///< walls, and the period of a channel
     int all_dofs_ = 0;
+    double rounding_ = 0;          ///< of gaps
+    std::optional<double> lowest_; ///< threshold; none: ranges begin where a gap does
+    std::size_t start_ = 0;        ///< of the ends, at it
+    int last_of_widest_ = 0;
     std::unique_ptr<Hyperstaticity> backbone_stress_, all_stress_;
 };
 
@@ -411,16 +455,21 @@ std::set<int> thinned(const Sequence& sequence, int begin, int end, int rows, co
     return out;
 }
 
-Plateau begin(Sequence& sequence) {
+Plateau begin(Sequence& sequence, std::optional<double> first = {}, double rounding = 0) {
     Plateau out;
+    out.rounding = rounding;
     out.candidates = sequence.size();
     out.changes = static_cast<int>(sequence.ends().size()) - 1;
     out.deepest_overlap = sequence.size() == 0 ? std::numeric_limits<double>::infinity() : sequence.threshold_of(1);
-    sequence.find_ranges(out);
+    sequence.find_ranges(out, first);
     return out;
 }
 
 } // namespace
+
+double Plateau::width(const PlateauRange& range) const {
+    return std::asinh(range.last / rounding) - std::asinh(range.first / rounding);
+}
 
 Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds, Strain strain) {
     require_floating_point();
@@ -439,11 +488,11 @@ Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds
     return out;
 }
 
-Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain) {
+Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain, double rounding) {
     require_floating_point();
     assert(first <= last);
     Sequence sequence(packing, last, strain);
-    Plateau out = begin(sequence);
+    Plateau out = begin(sequence, first, rounding);
     std::vector<int> lists{sequence.below(first)};
     std::vector<double> thresholds{first};
     for (const int m : thinned(sequence, lists.front() + 1, sequence.size(), rows, out)) {

@@ -10,8 +10,8 @@ namespace isostat {
 class Digits {
   public:
     void see(std::string_view number);
-    /// So far may the numbers be from what was meant: half a unit of the last digit of the largest one, and what doubles
-    /// round.
+    /// So far may the numbers be from what was meant: half a unit of the last digit of the largest one, and what
+    /// doubles round.
     [[nodiscard]] double rounding() const;
     /// Largest size.
     [[nodiscard]] double largest() const { return largest_; }

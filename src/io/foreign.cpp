@@ -109,8 +109,9 @@ void add_wall_pair(ForeignPacking& out, std::size_t a, const Raw& raw, const std
     packing.walls.upper[a] = options.walls == ForeignWalls::box ? WallKind::movable : WallKind::fixed;
 }
 
-/// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it.
-void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
+/// Periodic axes: the cell of the file, which does not move, with its lower corner at 0 and the disks in it. By how
+/// much that rounds a coordinate.
+double add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     Packing<2>& packing = out.packing;
     if (!raw.box) {
         refuse(source, "periodic, and the file has no bounds of a box: expected some");
@@ -152,9 +153,11 @@ void add_cell(ForeignPacking& out, const Raw& raw, const std::string& source, co
     if (worst > 0) {
         out.notes.push_back(fmt::format("coordinates were moved into the cell: rounded by up to {:.2g}", worst));
     }
+    return worst;
 }
 
-void add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
+/// By how much the shift to them rounds a coordinate.
+double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, const ForeignOptions& options) {
     Packing<2>& packing = out.packing;
     packing.walls = Walls<2>::none();
     if (options.walls == ForeignWalls::none) {
@@ -165,7 +168,7 @@ void add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, c
         if (raw.box) {
             out.notes.emplace_back("no walls: the bounds of the box in the file are not used");
         }
-        return;
+        return 0;
     }
     if (!options.box && !raw.box) {
         refuse(source, "walls were asked for and the file has no bounds of a box: expected --box xlo:xhi,ylo:yhi");
@@ -181,6 +184,17 @@ void add_walls(ForeignPacking& out, const Raw& raw, const std::string& source, c
     if (worst > 0) {
         out.notes.push_back(fmt::format("coordinates were shifted to the lower walls: rounded by up to {:.2g}", worst));
     }
+    return worst;
+}
+
+/// \p moved: the rounding of a coordinate that came with the walls or the cell.
+double rounding_of(const Raw& raw, const ForeignPacking& found, bool stated_box, double moved) {
+    const double scaled = raw.scale == 1 ? 0 : 0x1p-51 * raw.scale; // three operations
+    const double size = raw.sizes.largest() == 0 ? 0x1p-53 * found.packing.max_radius() : raw.sizes.rounding();
+    const bool sides = found.packing.cell.any() || (!(found.packing.walls == Walls<2>::none()) && !stated_box);
+    return rounding_of_gaps(raw.places.rounding() * raw.scale + scaled + moved,
+                            sides ? raw.sides.rounding() + moved : 0,
+                            raw.meaning == SizeMeaning::radius ? size : size / 2);
 }
 
 } // namespace
@@ -278,8 +292,9 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
         out.packing.radius.push_back(raw.meaning == SizeMeaning::radius ? raw.size[i] : raw.size[i] / 2);
     }
     const bool periodic = raw.boundary[0] == Boundary::periodic || raw.boundary[1] == Boundary::periodic;
-    (periodic ? add_cell : add_walls)(out, raw, source, options);
+    const double moved = (periodic ? add_cell : add_walls)(out, raw, source, options);
     check_range(out.packing, source);
+    out.rounding = rounding_of(raw, out, options.box.has_value(), moved);
     return out;
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -84,6 +85,7 @@ bool is_counter(const std::string& keyword) {
 struct DataHeader {
     long atoms = -1;
     double tilt = 0; ///< xy
+    Digits sides;
     std::array<std::optional<std::array<double, 2>>, 2> bounds;
     std::set<std::string> seen; ///< keywords
 
@@ -108,11 +110,14 @@ struct DataHeader {
                 line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
             }
             if (axis < 2) {
+                sides.see(line.field(0));
+                sides.see(line.field(1));
                 bounds[axis] = {low, high};
             }
         } else if (header.keyword == "xy xz yz") {
             numbers(3);
             tilt = line.number(0, "tilt");
+            sides.see(line.field(0));
             for (std::size_t k = 1; k < 3; ++k) {
                 if (line.number(k, "tilt") != 0) {
                     line.fail(line.field(k), "tilt of the box", "0: only packings in a plane are read");
@@ -251,6 +256,7 @@ Raw read_lammps_data(const std::string& text, const std::string& source, const F
     if (header.bounds[0] && header.bounds[1]) {
         raw.box = {(*header.bounds[0])[0], (*header.bounds[0])[1], (*header.bounds[1])[0], (*header.bounds[1])[1]};
         raw.tilt = header.tilt;
+        raw.sides = header.sides;
     }
     return raw;
 }
@@ -296,10 +302,12 @@ Raw read_lammps_dump(const std::string& text, const std::string& source, const F
         rows.finish(raw);
         raw.box = frame.box;
         raw.tilt = frame.tilt;
+        raw.sides = frame.sides;
         raw.boundary = frame.boundary;
         raw.loose = frame.loose;
         if (coordinates.scaled) {
             const std::array<double, 4> box = frame.box.value();
+            raw.scale = std::max(box[1] - box[0] + std::abs(frame.tilt), box[3] - box[2]);
             for (std::size_t i = 0; i < raw.x.size(); ++i) {
                 raw.x[i] = box[0] + raw.x[i] * (box[1] - box[0]) + raw.y[i] * frame.tilt;
                 raw.y[i] = box[2] + raw.y[i] * (box[3] - box[2]);

@@ -195,6 +195,8 @@ void Rows::add(const Line& line, Raw& raw) {
     };
     raw.x.push_back(number(columns_.x, "x"));
     raw.y.push_back(number(columns_.y, "y"));
+    raw.places.see(line.field(static_cast<std::size_t>(columns_.x)));
+    raw.places.see(line.field(static_cast<std::size_t>(columns_.y)));
     if (columns_.z >= 0) {
         const double z = number(columns_.z, "z");
         if (z != z_.value_or(z)) {
@@ -212,6 +214,7 @@ void Rows::add(const Line& line, Raw& raw) {
     const std::string name = columns_.meaning == SizeMeaning::radius ? "radius" : "diameter";
     if (columns_.size >= 0) {
         size = number(columns_.size, name.c_str());
+        raw.sizes.see(line.field(static_cast<std::size_t>(columns_.size)));
         if (!(size > 0)) {
             line.fail(line.field(static_cast<std::size_t>(columns_.size)), fmt::format("{} of disk {}", name, disk),
                       "a positive number");

@@ -1,6 +1,8 @@
 #pragma once
 // What the readers of foreign formats share: lines with numbers, named columns, the raw packing.
 
+#include "io/digits.hpp"
+
 #include <isostat/io/foreign.hpp>
 
 #include <array>
@@ -82,6 +84,7 @@ struct FrameHeader {
     double tilt = 0;                          ///< x component of the second period
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks
+    Digits sides;                ///< of box and tilt
 };
 
 /// Of a LAMMPS dump, up to the names of the columns. \p item: "ATOMS" or "ENTRIES".
@@ -101,7 +104,9 @@ struct Raw {
     std::array<Boundary, 2> boundary{Boundary::unknown, Boundary::unknown};
     std::array<bool, 2> loose{}; ///< the bounds only follow the disks: no walls there
     std::vector<std::string> notes;
-    std::string types; ///< empty, or which there are, and that all are taken for disks; a note too
+    Digits places, sides, sizes; ///< digits of coordinates, of box and tilt, of radii or diameters
+    double scale = 1;            ///< of coordinates in units of the box: the largest length that multiplied them
+    std::string types;           ///< empty, or which there are, and that all are taken for disks; a note too
 };
 
 /// Which columns hold what.

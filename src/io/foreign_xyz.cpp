@@ -86,7 +86,8 @@ std::vector<std::string> property_columns(const Line& line, const std::string& p
     return names;
 }
 
-std::vector<double> numbers_of(const Line& line, const std::string& key, const std::string& value, std::size_t count) {
+std::vector<double> numbers_of(const Line& line, const std::string& key, const std::string& value, std::size_t count,
+                               Digits& digits) {
     std::string blanks = value;
     std::replace(blanks.begin(), blanks.end(), ',', ' ');
     const std::string source;
@@ -98,6 +99,7 @@ std::vector<double> numbers_of(const Line& line, const std::string& key, const s
             line.fail(fields.field(k), key, "a finite number");
         }
         out.push_back(*number);
+        digits.see(fields.field(k));
     }
     if (out.size() != count) {
         line.fail(value, key, fmt::format("{} numbers", count));
@@ -108,10 +110,10 @@ std::vector<double> numbers_of(const Line& line, const std::string& key, const s
 void read_box(const Line& line, const std::map<std::string, std::string>& keys, FrameHeader& out) {
     const auto lattice = keys.find("lattice");
     if (lattice != keys.end()) {
-        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9);
+        const std::vector<double> v = numbers_of(line, "Lattice", lattice->second, 9, out.sides);
         std::array<double, 2> origin{};
         if (const auto o = keys.find("origin"); o != keys.end()) {
-            const std::vector<double> w = numbers_of(line, "Origin", o->second, 3);
+            const std::vector<double> w = numbers_of(line, "Origin", o->second, 3, out.sides);
             origin = {w[0], w[1]};
         }
         for (const std::size_t off : {1U, 2U, 5U, 6U, 7U}) { // of the second vector its x may differ from 0
@@ -206,6 +208,7 @@ Raw read_xyz(const std::string& text, const std::string& source, const ForeignOp
         find_selection(columns, names, options, where);
         raw.box = header.box;
         raw.tilt = header.tilt;
+        raw.sides = header.sides;
         raw.boundary = header.boundary;
         if (header.box && ((*header.box)[0] != 0 || (*header.box)[2] != 0)) {
             raw.notes.emplace_back("upper bounds = Origin + Lattice in double: rounded at 2^-53 of them");

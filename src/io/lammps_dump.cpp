@@ -40,6 +40,9 @@ void read_bounds(Lines& lines, std::string_view flags_text, FrameHeader& frame) 
         if (!(low <= high)) {
             line.fail(line.field(1), "upper bound", fmt::format("a number above the lower bound {}", low));
         }
+        for (std::size_t k = 0; a < 2 && k < line.size(); ++k) {
+            frame.sides.see(line.field(k));
+        }
         if (tilted && a == 0) {
             frame.tilt = line.number(2, "tilt");
         } else if (tilted && line.number(2, "tilt") != 0) {

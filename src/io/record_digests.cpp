@@ -41,8 +41,8 @@ void check_names(const json::Field& list, bool of_states) {
         const bool records = name == "events.jsonl" || name == "equilibria.csv" || name == witness_records;
         const bool state = name == "start.json" || (name.starts_with("states/eq_") && run_folder.owns(name));
         if (!(of_states ? state : records)) {
-            list.at(name.c_str()).fail(of_states ? "no file but start.json and states/eq_*.json"
-                                                 : "no file but the records of a run");
+            list.at(name.c_str())
+                .fail(of_states ? "no file but start.json and states/eq_*.json" : "no file but the records of a run");
         }
     }
 }

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 using namespace isostat;
@@ -27,7 +28,9 @@ constexpr double drift_per_step = 0.013;
 /// Dumps as LAMMPS writes them: disks wrapped into a box that does not begin at 0, pairs without images.
 class PeriodicSeries {
   public:
-    PeriodicSeries(const std::string& name, const std::vector<double>& loads) {
+    /// \p flips: periods that are added to the tilt of each frame, which is the same lattice; none: as it is.
+    PeriodicSeries(const std::string& name, const std::vector<double>& loads, std::vector<int> flips = {})
+        : flips_(std::move(flips)) {
         State<2> state = read_any_state<2>(scratch::data("cells/" + name + ".json")).state;
         snap_to_grid(state.packing);
         tilted_ = state.packing.cell.tilt_moves[0];
@@ -58,7 +61,7 @@ class PeriodicSeries {
         return out;
     }
 
-    [[nodiscard]] Comparison compare() const {
+    [[nodiscard]] Comparison compare(const std::optional<State<2>>& start = {}) const {
         scratch::write(*folder_ / "disks.dump", disks);
         scratch::write(*folder_ / "contacts.dump", contacts);
         scratch::write(*folder_ / "frames.csv", frames);
@@ -72,6 +75,7 @@ class PeriodicSeries {
         compare::SeriesReader reader(*folder_ / "series.toml");
         compare::CompareOptions options;
         options.bundle = 2;
+        options.start = start;
         return compare::compare(reader, options);
     }
 
@@ -86,7 +90,8 @@ class PeriodicSeries {
             std::copy_n(&soft->packing.q[2 * b], 2, &packing.q[2 * static_cast<std::size_t>(exact.disks[b])]);
         }
         std::copy(soft->packing.q.end() - 3, soft->packing.q.end(), packing.q.end() - 3);
-        const double tilt = packing.lattice(0, 1);
+        const double flip = flips_.empty() ? 0 : flips_[static_cast<std::size_t>(step_ / 100)];
+        const double tilt = packing.lattice(0, 1) + flip * packing.length(0);
         for (std::size_t k = 0; k < 2 * packing.radius.size(); ++k) {
             packing.q[k] += drift_per_step * static_cast<double>(step_); // disks leave the cell on one side
         }
@@ -117,6 +122,7 @@ class PeriodicSeries {
         step_ += 100;
     }
 
+    std::vector<int> flips_;
     double low_ = -1.25;
     long step_ = 0;
     bool tilted_ = false;
@@ -129,6 +135,34 @@ class PeriodicSeries {
 } // namespace
 
 BOOST_AUTO_TEST_SUITE(compare_periodic)
+
+BOOST_AUTO_TEST_CASE(a_box_that_is_flipped_by_whole_periods_is_the_same_lattice) {
+    const std::vector<double> loads{1, 1.05, 1.1, 1.15};
+    const PeriodicSeries plain("tilt_16", loads), flipped("tilt_16", loads, {0, -1, -1, 2});
+    const Comparison expected = plain.compare();
+    for (const PeriodicSeries& series : {flipped, flipped.as_tables()}) {
+        const Comparison found = series.compare();
+        BOOST_TEST(found.status == expected.status);
+        for (std::size_t k = 0; k < loads.size(); ++k) {
+            BOOST_TEST_CONTEXT("frame " << k) {
+                BOOST_TEST(compare::to_string(found.frames[k].status) == compare::to_string(expected.frames[k].status));
+                BOOST_TEST(found.frames[k].found == expected.frames[k].found);
+                BOOST_TEST(std::abs(found.frames[k].true_eps2 - expected.frames[k].true_eps2) < 1e-12);
+                const bool said = found.frames[k].reason.find("box flipped by") != std::string::npos;
+                BOOST_TEST(said == (k == 1 || k == 3));
+            }
+        }
+        BOOST_TEST(found.frames[1].reason.find("by one period along x") != std::string::npos);
+        BOOST_TEST(found.frames[3].reason.find("by 3 periods along x") != std::string::npos);
+    }
+    // The start of the exact run is described by another tilt than all frames.
+    const State<2> start = read_any_state<2>(scratch::data("cells/tilt_16.json")).state;
+    const Comparison from = PeriodicSeries("tilt_16", loads, {1, 1, 1, 1}).compare(start);
+    for (std::size_t k = 0; k < loads.size(); ++k) {
+        BOOST_TEST(compare::to_string(from.frames[k].status) == compare::to_string(expected.frames[k].status));
+    }
+    BOOST_TEST(from.frames[0].reason.find("box flipped by one period") != std::string::npos);
+}
 
 BOOST_AUTO_TEST_CASE(tables_of_a_periodic_cell_are_the_same_frames_as_dumps) {
     for (const char* name : {"rect_16", "tilt_16"}) {

@@ -103,6 +103,32 @@ BOOST_AUTO_TEST_CASE(an_end_of_the_plateau_is_the_gap_that_closes_it) {
     BOOST_TEST((answer.steps.back().backbone.isostatic == Verdict::refuted));
 }
 
+BOOST_AUTO_TEST_CASE(ranges_lie_between_the_thresholds_and_are_told_beyond_the_rounding) {
+    Packing<2> packing = rounded_example("three_disks.toml");
+    shake(packing, 1e-7, 3);
+    const Plateau whole = plateau(packing, -1e-3, 1e-3, 0);
+    BOOST_REQUIRE_EQUAL(whole.ranges.size(), 1u);
+    const PlateauRange& range = whole.ranges.front();
+    BOOST_REQUIRE(whole.widest.has_value());
+    BOOST_TEST(whole.widest->range.first == range.first);
+    BOOST_TEST((whole.widest->counts.isostatic == Verdict::proved));
+    BOOST_TEST(range.told);
+    // Within it, up to its lower end, and below it.
+    BOOST_TEST(plateau(packing, 1e-5, 1e-4, 0).ranges.at(0).first == 1e-5);
+    BOOST_TEST(plateau(packing, -1e-3, range.first, 0).ranges.size() == 1u);
+    const Plateau below = plateau(packing, -1e-3, std::nextafter(range.first, -1.0), 0);
+    BOOST_TEST(below.ranges.empty());
+    // A rounding of the size of the gaps: known of the thresholds beyond it only.
+    const auto told = [&](double first, double last, double rounding) {
+        const Plateau found = plateau(packing, first, last, 0, isostat::Strain::isotropic, rounding);
+        return !found.ranges.empty() && found.ranges.front().told;
+    };
+    BOOST_TEST(told(-1e-3, 1e-3, 1e-6));
+    BOOST_TEST(told(1e-4, 1e-4, 1e-6)); // one threshold, far from every gap
+    BOOST_TEST(!told(-1e-3, 2e-6, 1e-6));
+    BOOST_TEST(!told(-1e-3, 1e-3, 1e-3));
+}
+
 BOOST_AUTO_TEST_CASE(a_lattice_has_no_plateau) {
     Packing<2> packing = rounded_example("triangular_patch_3x3.toml");
     shake(packing, 1e-8, 5);

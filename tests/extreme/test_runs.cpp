@@ -1,7 +1,7 @@
 // Runs, not only states: what steers them decided at the edge too. And dynamics of any stiffness.
 #include "extreme/catalogue.hpp"
-#include "support/shortcuts/soft_grains.hpp"
 #include "support/crafted.hpp"
+#include "support/shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 

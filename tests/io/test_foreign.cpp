@@ -183,6 +183,32 @@ BOOST_AUTO_TEST_CASE(periodic_boundaries_are_refused_unless_the_user_takes_them_
     expect_bad_input([&] { read(s, with_walls(ForeignWalls::box)); }, {"shrink-wrapped", "--box"});
 }
 
+BOOST_AUTO_TEST_CASE(gaps_are_known_to_the_digits_of_the_file) {
+    const auto rounding = [](const std::string& x, const std::string& r) {
+        return read("x y r\n" + x + " 0.25 " + r + "\n1.5 0.25 " + r + "\n").rounding;
+    };
+    // Places off by half a unit, 2 sqrt 2 of it for a pair; radii twice.
+    const auto near = [](double found, double expected) { return std::abs(found - expected) < 1e-3 * expected; };
+    BOOST_TEST(rounding("0.5", "0.5") < 2e-15); // as they stand, but for doubles
+    BOOST_TEST(rounding("0.5", "0.5") > 0);
+    BOOST_TEST(near(rounding("1.234567", "0.5"), std::sqrt(8.0) * 5e-7));
+    BOOST_TEST(near(rounding("1.23457e1", "0.5"), std::sqrt(8.0) * 5e-5));
+    BOOST_TEST(near(rounding("0.5", "0.123456"), 2 * 5e-7));
+    BOOST_TEST(near(rounding("0.500000", "0.5"), std::sqrt(8.0) * 5e-6)); // digits as written, of the largest
+    BOOST_TEST(rounding("0.12345678901234567890123", "0.5") < 2e-15);
+    // In other formats, of a box, of diameters, and scaled to the box.
+    const std::string digits = replaced(dump, "1 1 0 1.25", "1 1 0 1.234567");
+    BOOST_TEST(near(read(digits).rounding, std::sqrt(8.0) * 5e-7));
+    const std::string scaled = replaced(digits, "id type x y z radius", "id type xs ys zs radius");
+    BOOST_TEST(near(read(scaled).rounding, 4 * std::sqrt(8.0) * 5e-7));
+    const std::string size = replaced(data_file, "1 1 0.5 2.5", "1 1 0.500001 2.5");
+    BOOST_TEST(near(read(size).rounding, 5e-6));
+    const std::string box = replaced(dump, "-1 3\n", "-1 3.000001\n");
+    BOOST_TEST(near(read(box, with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
+    BOOST_TEST(read(box).rounding < 1e-14); // without walls they are not used
+    BOOST_TEST(near(read(replaced(xyz, "4 0 0", "4.000001 0 0"), with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
+}
+
 BOOST_AUTO_TEST_CASE(scaled_and_unwrapped_coordinates) {
     const std::string scaled =
         scratch::replaced(scratch::replaced(scratch::replaced(dump, "id type x y z", "id type xs ys zs"), "2 1 2 1.5 0",

@@ -1,7 +1,7 @@
 // Linear gaps against closed forms and against the exact path.
-#include "support/shortcuts/small_displacements.hpp"
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
+#include "support/shortcuts/small_displacements.hpp"
 
 #include <boost/test/unit_test.hpp>
 

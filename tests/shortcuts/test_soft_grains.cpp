@@ -1,7 +1,7 @@
 // The soft grains against closed forms, against energy, and against the rigid packing that they approximate.
-#include "support/shortcuts/soft_grains.hpp"
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
+#include "support/shortcuts/soft_grains.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>

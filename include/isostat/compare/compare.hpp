@@ -41,6 +41,7 @@ struct Frame {
     std::vector<long> ids;
     Load<2> load;
     std::vector<FileContact> contacts; ///< as they stand in the files, in their order; walls too
+    std::string note;                  ///< empty, or how the cell of the file was described anew
     std::vector<double> velocity;      ///< of the disks, in any unit of time; empty: not in the files
     double rounding = 0;               ///< so far are gaps known by the digits of the files
 };
@@ -64,7 +65,9 @@ struct Series {
 /// with file, line (of rows: and column) and what was expected: unknown keys, missing columns and wall positions (the
 /// bounds of a dump are never taken), numbers that are none, ids that are not there, radii that change, time steps that
 /// a file does not have, sigma2 that is not the force on the wall over the reference length. Contradictions between
-/// forces, overlaps and lists are not looked at: `compare` names them frame by frame.
+/// forces, overlaps and lists are not looked at: `compare` names them frame by frame. A lattice has many tilts, whole
+/// periods apart, and a disk many places: each is taken next to the one of the frame before, so contacts keep their
+/// images (programs flip a sheared box).
 class SeriesReader {
   public:
     explicit SeriesReader(const std::filesystem::path& manifest);
@@ -72,6 +75,8 @@ class SeriesReader {
     SeriesReader(const SeriesReader&) = delete;
     SeriesReader& operator=(const SeriesReader&) = delete;
     [[nodiscard]] const Series& series() const;
+    /// The first frame comes after this one: another description of the same disks. \pre no frame was read
+    void begin_after(const Packing<2>& packing);
     /// Nothing after the last one. Throws when there is none at all.
     std::optional<Frame> next();
 

@@ -25,7 +25,8 @@ struct SoftState {
 
 /// - vertex: the list has a true vertex near the soft place, isostatic, with positive forces under the load and without
 ///   overlap, and every rattler has room beside it: all proved;
-/// - hyperstatic: h > 0, more contacts than rigid grains of generic radii can close; - moving: k > 0, the list holds the grains not;
+/// - hyperstatic: h > 0, more contacts than rigid grains of generic radii can close; - moving: k > 0, the list holds
+/// the grains not;
 /// - refuted: the true vertex of the list has a negative force, an overlap, or a rattler that overlaps a grain of the
 ///   list wherever it is put within a quarter of the smallest radius of its soft place: proved;
 /// - undecided: a sign was not decided, no vertex was found near, or no room was found for a rattler (which is no proof

@@ -37,7 +37,7 @@ template <int Dim> struct State {
     std::vector<Contact> contacts;
     int equilibrium = 0;                            ///< its number in the run that made it
     std::optional<RadiusPerturbation> perturbation; ///< none: the state speaks of its own radii
-    std::string provenance; ///< JSON text: program version, command line, seeds; kept with the state, never interpreted
+    std::string provenance; ///< JSON text: version, command line, seeds, `rounding` of a file; no proof looks at it
 };
 
 } // namespace isostat

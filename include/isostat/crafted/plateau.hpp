@@ -7,6 +7,7 @@
 #include <isostat/packing/packing.hpp>
 #include <isostat/rigidity/counting.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace isostat::crafted {
@@ -47,6 +48,14 @@ struct PlateauRange {
     int contacts = 0;   ///< N of the backbone at `first`
     int rattlers = 0;   ///< at `first`
     int candidates = 0; ///< at `first`
+    bool told = false;  ///< some threshold in it has this list in every packing whose gaps are within the rounding
+};
+
+/// The widest range in which N - N_f does not change, of those with a backbone: gaps of different size stand far apart
+/// there, so it is what the packing says, while the order of gaps that are equal but for their digits is noise.
+struct PlateauHeadline {
+    PlateauRange range;
+    PlateauCounts counts; ///< of the largest list in it
 };
 
 struct Plateau {
@@ -55,6 +64,10 @@ struct Plateau {
     /// `steps`: h only grows with the contacts, so one rank at the largest list with h = 0 proves all smaller ones, and
     /// there k = N_f - N is a count.
     std::vector<PlateauRange> ranges;
+    std::optional<PlateauHeadline> widest; ///< none: no backbone
+    double rounding = 0;                   ///< of gaps, as given, or of the doubles
+    /// A logarithm above the rounding, on both sides of 0.
+    [[nodiscard]] double width(const PlateauRange& range) const;
     /// Where counting would say isostatic (N = N_f without the rigid motions) and the rank does not: a special
     /// position. Not proved (a rank mod p that is too low has a chance of about N / 2^61).
     std::vector<PlateauRange> special;
@@ -83,8 +96,10 @@ Plateau plateau(const Packing<2>& packing, const std::vector<double>& thresholds
 
 /// The same for every gap in [first, last] at which the contact list changes, thinned to about `rows` thresholds (0:
 /// none left out): half of them evenly over the changes at gaps > 0, from the last overlap on, and half evenly over the
-/// decades, and those next to the ends of the ranges. `first` and `last` are always among them.
-Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain = Strain::isotropic);
+/// decades, and those next to the ends of the ranges. `first` and `last` are always among them. Ranges lie in
+/// [first, last]. \p rounding: bound of what is not known of a gap, at least that of the doubles is taken.
+Plateau plateau(const Packing<2>& packing, double first, double last, int rows, Strain strain = Strain::isotropic,
+                double rounding = 0);
 
 /// The contacts that `PlateauStep::backbone` counts at a threshold, sorted.
 std::vector<Contact> backbone_at(const Packing<2>& packing, double threshold);

@@ -1,0 +1,200 @@
+#include "cli/rounding.hpp"
+
+#include "compare/backbone.hpp"
+#include "contact/candidates.hpp"
+#include "linear/factorisation.hpp"
+#include "rigidity/isostatic.hpp"
+
+#include <isostat/compare/snap.hpp>
+#include <isostat/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+
+namespace isostat::cli {
+
+namespace {
+
+/// The disks that carry forces, in their contacts, and their other pairs; copies of them with other gaps.
+class Copies {
+  public:
+    Copies(const State<2>& state, const std::vector<Contact>& carrying)
+        : backbone_(compare::backbone_of(state, carrying)), dofs_(backbone_.packing) {
+        const auto structure = IsostaticStructure<2>::prove(backbone_.packing, backbone_.contacts);
+        if (!structure.ok()) {
+            return;
+        }
+        factors_.emplace(structure.value());
+        forces = solved(backbone_.packing, *factors_);
+        std::vector<Contact> listed = backbone_.contacts;
+        std::sort(listed.begin(), listed.end());
+        pairs = compare::without(find_candidates(backbone_.packing, candidate_fraction).contacts, listed);
+        for (const Contact& pair : pairs) {
+            gaps.push_back(gap<2>(backbone_.packing, pair));
+        }
+        of_gaps.assign(pairs.size(), 0);
+        of_forces.assign(forces.size(), 0);
+    }
+    [[nodiscard]] bool ok() const { return factors_.has_value(); }
+
+    /// Another one: what it changes at most, for gaps that are off by `rounding`.
+    void draw(std::mt19937_64& random, double rounding) {
+        // Far above the rounding of doubles and far below what bends the answer; the change is scaled.
+        const double step = 1e-7 * backbone_.packing.min_radius();
+        std::vector<double> moves(backbone_.contacts.size());
+        for (double& approach : moves) {
+            approach = (random() >> 63U) != 0 ? step : -step;
+        }
+        factors_->solve_velocities(moves);
+        Packing<2> packing = backbone_.packing;
+        for (std::size_t mu = 0; mu < moves.size(); ++mu) {
+            packing.q[static_cast<std::size_t>(dofs_.coordinate_of(static_cast<int>(mu)))] += moves[mu];
+        }
+        const double scale = rounding / step;
+        for (std::size_t l = 0; l < pairs.size(); ++l) {
+            const double change = std::abs(gap<2>(packing, pairs[l]) - gaps[l]);
+            of_gaps[l] = std::max(of_gaps[l], change * scale + rounding);
+        }
+        const auto structure = IsostaticStructure<2>::prove(packing, backbone_.contacts);
+        if (!structure.ok()) {
+            return;
+        }
+        const std::vector<double> now = solved(packing, Factorisation(structure.value()));
+        for (std::size_t l = 0; l < forces.size(); ++l) {
+            of_forces[l] = std::max(of_forces[l], std::abs(now[l] - forces[l]) * scale);
+        }
+    }
+
+    std::vector<Contact> pairs;
+    std::vector<double> gaps, forces, of_gaps, of_forces;
+
+  private:
+    [[nodiscard]] std::vector<double> solved(const Packing<2>& packing, const Factorisation& factors) const {
+        std::vector<double> out = on_dofs(backbone_.load.external_force(packing), dofs_);
+        factors.solve_forces(out);
+        return out;
+    }
+
+    State<2> backbone_;
+    DofMap<2> dofs_;
+    std::optional<Factorisation> factors_;
+};
+
+} // namespace
+
+double imported_rounding(const State<2>& state) {
+    if (state.provenance.empty()) {
+        return 0;
+    }
+    const Json provenance = Json::parse(state.provenance);
+    if (!provenance.is_object() || !provenance.contains("rounding")) {
+        return 0;
+    }
+    const Json& value = provenance["rounding"];
+    const double rounding = value.is_number() ? value.get<double>() : -1;
+    if (!(rounding >= 0 && std::isfinite(rounding))) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("provenance.rounding is {}: expected a length, 0 or more", value.dump()));
+    }
+    return rounding;
+}
+
+Untold untold_by(double rounding, const State<2>& state, const Certification& truth) {
+    Untold out;
+    out.rounding = rounding;
+    if (rounding == 0 || !truth.claims.vertex || truth.finite.empty()) {
+        return out;
+    }
+    const std::vector<Contact> carrying = compare::carrying(state, truth);
+    std::vector<int> disks;
+    for (const Contact& c : carrying) {
+        disks.push_back(c.i);
+        disks.push_back(c.kind == ContactKind::disk_disk ? c.j : c.i);
+    }
+    std::sort(disks.begin(), disks.end());
+    disks.erase(std::unique(disks.begin(), disks.end()), disks.end());
+    Copies copies(state, carrying);
+    std::mt19937_64 random(1);
+    for (int k = 0; copies.ok() && k < 16; ++k) {
+        copies.draw(random, rounding);
+    }
+    out.contacts = static_cast<int>(carrying.size());
+    const auto sort_out = [&out](double value, double change, const Contact& name, std::vector<Contact>& open) {
+        out.refuted = out.refuted || value < -2 * change;
+        if (std::abs(value) <= 2 * change) {
+            open.push_back(name);
+        }
+    };
+    for (std::size_t l = 0; l < copies.pairs.size(); ++l) {
+        Contact name = copies.pairs[l];
+        name.i = disks[static_cast<std::size_t>(name.i)];
+        name.j = name.kind == ContactKind::disk_disk ? disks[static_cast<std::size_t>(name.j)] : name.j;
+        sort_out(copies.gaps[l], copies.of_gaps[l], name, out.gaps);
+    }
+    for (std::size_t l = 0; l < copies.forces.size(); ++l) {
+        sort_out(copies.forces[l], copies.of_forces[l], carrying[l], out.forces);
+    }
+    return out;
+}
+
+std::string Untold::words() const {
+    const auto count = [](std::size_t n, const char* what) {
+        return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+    };
+    std::string text = gaps.empty() ? "" : count(gaps.size(), "gap") + " (" + compare::names_of(gaps).substr(1) + ")";
+    text += forces.empty() ? ""
+                           : fmt::format("{}{} ({})", text.empty() ? "" : " and ", count(forces.size(), "force"),
+                                         compare::names_of(forces).substr(1));
+    text += fmt::format(" cannot be told from 0: gaps of the file are known to {}", rounded_up(rounding, 2));
+    return gaps.empty() ? text
+                        : text + fmt::format("; with these gaps closed N = {} and h = {} (plateau shows that list)",
+                                             contacts + static_cast<int>(gaps.size()), gaps.size());
+}
+
+Verdict withheld(const Untold& untold, Verdict of_the_doubles) {
+    return untold.any() && !(of_the_doubles == Verdict::refuted && untold.refuted) ? Verdict::undecided
+                                                                                   : of_the_doubles;
+}
+
+void withhold(const Untold& untold, Inspection<2>& inspection) {
+    EquilibriumRecord<2>& r = inspection.record;
+    const Verdict verdict = withheld(untold, r.verdict);
+    if (verdict != r.verdict) {
+        inspection.remark = fmt::format("{}{}{}; {} of the stored doubles", untold.words(),
+                                        inspection.remark.empty() ? "" : "; ", inspection.remark, to_string(r.verdict));
+        r.verdict = inspection.stable = verdict;
+    }
+}
+
+void withhold(const Untold& untold, CellInspection& cell) {
+    for (JammingAnswer* answer : {&cell.local, &cell.collective, &cell.strict}) {
+        if (untold.any() && answer->verdict != Verdict::undecided) {
+            answer->reason = fmt::format("gaps or forces cannot be told from 0; {} of the stored doubles: {}",
+                                         to_string(answer->verdict), answer->reason);
+            answer->verdict = Verdict::undecided;
+        }
+    }
+}
+
+void add_untold(Json& object, const Untold& untold, Verdict of_the_doubles) {
+    if (!untold.any()) {
+        return;
+    }
+    const auto names = [](const std::vector<Contact>& contacts) {
+        Json out = Json::array();
+        for (const Contact& c : contacts) {
+            out.push_back(to_string<2>(c));
+        }
+        return out;
+    };
+    object["untold"] = {{"rounding", number(untold.rounding)},
+                        {"gaps", names(untold.gaps)},
+                        {"forces", names(untold.forces)},
+                        {"verdict_of_the_doubles", to_string(of_the_doubles)}};
+}
+
+} // namespace isostat::cli

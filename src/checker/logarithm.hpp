@@ -6,7 +6,7 @@
 
 namespace isostat::checker {
 
-/// Contains ln of all numbers of the range, and hardly more (K26, proofs/checker.md). \pre x.positive()
+/// Contains ln of all numbers of the range, and hardly more (K27, proofs/checker.md). \pre x.positive()
 Range logarithm(const Range& x);
 
 } // namespace isostat::checker

@@ -16,7 +16,10 @@ namespace isostat::checker {
 namespace {
 
 /// Sign of all forces of one stage: those that are no structural zeros, or the infinitesimal ones of those that are.
-Objections negative_ones(const Place& place, bool finite, std::vector<int>& negative) {
+/// An objection where none is known to be negative, and one may be.
+Objections negative_ones(const Place& place, bool finite, Decision& decision) {
+    std::vector<int>& negative = decision.candidates;
+    Objections open;
     const Evidence& e = *place.evidence;
     bool silent = false;
     for (std::size_t l = 0; l < e.forces.size(); ++l) {
@@ -37,14 +40,15 @@ Objections negative_ones(const Place& place, bool finite, std::vector<int>& nega
         if (force.negative() || (force.positive() && place.is_held(l))) {
             negative.push_back(static_cast<int>(l));
         } else if (!force.positive()) {
-            return Objection{false, fmt::format("the sign of the {}force of {} is not known: {}",
+            decision.open.push_back(static_cast<int>(l));
+            open = Objection{false, fmt::format("the sign of the {}force of {} is not known: {}",
                                                 finite ? "" : "infinitesimal ", e.name(l), shown(force))};
         }
     }
     if (silent && negative.empty()) {
         return Objection{false, "no force is negative but perhaps those of contacts that carry nothing at the turn"};
     }
-    return {};
+    return negative.empty() ? open : Objections();
 }
 
 /// First-order terms of forces, of the load and of the gaps that cannot be told from 0.
@@ -125,8 +129,12 @@ Objections make_place(State<2> state, Place& place, const ExactLoad& load, int f
     if (place.state->perturbation) {
         add_first_order(place);
     }
-    if (!vanish_structurally(e.problem, place.zeros, e.finite_load)) {
-        return Objection{false, "some forces cannot be told from 0 and are no structural zeros"};
+    if (!vanish_structurally(e.problem, place.zeros, e.finite_load)) { // the others are 0 only as far as is seen
+        const auto structural = structural_zeros(e.problem, e.finite_load);
+        if (!structural) {
+            return Objection{false, "some forces cannot be told from 0 and are no structural zeros"};
+        }
+        std::erase_if(place.zeros, [&](int l) { return !contains(*structural, static_cast<std::size_t>(l)); });
     }
     return {};
 }
@@ -160,14 +168,14 @@ Objections sharpen(Place& place, int digits) {
 }
 
 Objections decide(const Place& place, Decision& decision) {
-    if (Objections open = negative_ones(place, true, decision.candidates)) {
+    if (Objections open = negative_ones(place, true, decision)) {
         return open;
     }
     if (!decision.candidates.empty()) {
         decision.kind = "tension";
         return {};
     }
-    if (Objections open = negative_ones(place, false, decision.candidates)) {
+    if (Objections open = negative_ones(place, false, decision)) {
         return open;
     }
     decision.kind = decision.candidates.empty() ? "" : "rattler";

@@ -97,6 +97,7 @@ Objections sharpen(Place& place, int digits);
 struct Decision {
     std::string kind;            ///< "tension", "rattler", or empty: an equilibrium
     std::vector<int> candidates; ///< contacts whose (infinitesimal) force is negative
+    std::vector<int> open;       ///< beside them: it may be
 };
 Objections decide(const Place& place, Decision& decision);
 

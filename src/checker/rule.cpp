@@ -158,6 +158,13 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
             return wrong;
         }
     }
+    for (const int l : decision.open) { // what is less negative does not open, whatever its sign
+        const auto other = static_cast<std::size_t>(l);
+        if (rule != "most_negative" || place.is_held(other) || !(forces[opened].upper < forces[other].lower)) {
+            return Objection{false, fmt::format("the sign of the force of {} is not known: {}", e.name(other),
+                                                shown(forces[other]))};
+        }
+    }
     if (Objections wrong = compare_if_bounded("force", {event.force, event.force_bound}, forces[opened],
                                               force_tolerance * largest_force(forces))) {
         return wrong;

@@ -1,6 +1,7 @@
 #include "checker/run_folder.hpp"
 
 #include "io/files.hpp"
+#include "io/folders.hpp"
 #include "io/json.hpp"
 #include "io/record_digests.hpp"
 
@@ -91,9 +92,11 @@ Objections check_checkpoint(const CheckedRecords& checked, const RunRecords& rec
     const EquilibriumLine& row = records.equilibria.back();
     const auto rows = static_cast<long>(records.equilibria.size());
     Repeated here("checkpoint.json");
-    const std::string difference = state_difference(last, parse_any_state<2>(checked.state, "checkpoint.json").state);
-    if (!difference.empty()) {
-        return wrong(fmt::format("states/last.json: {} is not that of checkpoint.json", difference));
+    if (checked.state != read_text(records.directory / "states" / "last.json")) {
+        const std::string difference =
+            state_difference(last, parse_any_state<2>(checked.state, "checkpoint.json").state);
+        return wrong(fmt::format("states/last.json: {} is not that of checkpoint.json",
+                                 difference.empty() ? "a recorded result" : difference));
     }
     here.same("segment", file.at("segment").integer(), long{row.integer("segment")});
     here.same("made", file.at("made").integer(), made_in_segment(records));
@@ -203,6 +206,20 @@ Objections check_folder(const fs::path& directory, const RunRecords& records) {
     }
     Objections other = check_segments(records);
     return other ? other : check_summary(checked, records, last);
+}
+
+std::vector<std::string> files_apart(const RunRecords& records) {
+    const FolderContent content = content_of(records.directory, run_folder);
+    std::vector<std::string> notes = notes_on(content, run_folder);
+    const int rows = static_cast<int>(records.equilibria.size());
+    for (const std::string& name : content.files) {
+        const std::size_t number = name.find("/eq_") + std::string_view("/eq_").size();
+        if (const bool of_equilibrium = name.starts_with("states/eq_") || name.starts_with("certificates/eq_");
+            of_equilibrium && std::stoll(name.substr(number)) >= rows) {
+            notes.push_back(fmt::format("{} is of no equilibrium of this run: it was left alone", name));
+        }
+    }
+    return notes;
 }
 
 Objections check_certificate(const RunRecords& records, const Place& place, const EquilibriumLine& line) {

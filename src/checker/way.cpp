@@ -205,7 +205,10 @@ bool Follower::finish(double s, bool last) {
     const double begin = here_.lower + (pieces_ == 1 && way_.at_limit ? open_share * length : 0);
     const double end = s - (last && closed().kind == ContactKind::held ? open_share * length : 0);
     const bool power_ends = closed().kind == ContactKind::held;
-    if ((power_ends || !way_.end_only) && !power_is_positive(pushing_, moving_, *tube_, begin, end)) {
+    const auto proved = [&](double from) { return power_is_positive(pushing_, moving_, *tube_, from, end); };
+    // Where the force that opens is negative but small the power is proved at the start alone, by that.
+    const bool starts = pieces_ == 1 && !way_.at_limit;
+    if ((power_ends || !way_.end_only) && !proved(begin) && !(starts && proved(begin + open_share * length))) {
         trouble_ = "the power of the load is not proved positive";
         return false;
     }

@@ -4,6 +4,7 @@
 #include "io/digits.hpp"
 #include "io/files.hpp"
 #include "io/frame_file.hpp"
+#include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
 
@@ -108,7 +109,7 @@ class FrameTable {
     }
 
     [[nodiscard]] Sides sides_of(const Line& line) const {
-        Sides sides{std::array<double, 4>{}, 0};
+        Sides sides{std::array<double, 4>{}, 0, {}};
         for (std::size_t w = 0; w < 4; ++w) {
             const std::size_t column = required(wall_names[w]);
             (*sides.at)[w] = line.number(column, wall_names[w]) * manifest_.length_factor;
@@ -234,7 +235,7 @@ class Disks {
                 places.see(row->field(column));
             }
             for (const std::size_t column : speeds) {
-                frame.velocity.push_back(foreign::to_number(row->field(column)).value_or(NAN) * f);
+                frame.velocity.push_back(finite_number(row->field(column)).value_or(NAN) * f);
             }
             add_walls(frame, *row, rows, static_cast<int>(disk));
         }

@@ -1,6 +1,6 @@
 #include "io/digits.hpp"
 
-#include "io/foreign_source.hpp"
+#include "io/numbers.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -9,7 +9,7 @@
 namespace isostat {
 
 void Digits::see(std::string_view number) {
-    const auto value = foreign::to_number(number);
+    const auto value = finite_number(number);
     if (!value || *value == 0) {
         return;
     }

@@ -343,6 +343,19 @@ BOOST_AUTO_TEST_CASE(what_is_no_record_of_a_run_is_bad_input) {
     BOOST_CHECK_THROW((void)verify_run(run), Error);
 }
 
+BOOST_AUTO_TEST_CASE(files_that_no_record_names_are_noted_and_left_alone) {
+    const scratch::Folder folder;
+    play(crafted::mirror_forces(), {one(-1)}, folder / "run", CertifyLevel::decisions, TiePolicy::choose);
+    BOOST_TEST(verify_run(folder / "run").notes.size() == 0U);
+    scratch::write(folder / "run/states/notes.json", "{}");
+    fs::copy(folder / "run/states/eq_000001.json", folder / "run/states/eq_000099.json");
+    const RunVerification run = verify_run(folder / "run");
+    BOOST_TEST((run.verdict == Verdict::proved));
+    BOOST_TEST_REQUIRE(run.notes.size() == 2U);
+    BOOST_TEST(run.notes[0].starts_with("states/notes.json"), run.notes[0]);
+    BOOST_TEST(run.notes[1].starts_with("states/eq_000099.json"), run.notes[1]);
+}
+
 // A bound that is too small is wrong; one so large that nothing follows from it leaves the row undecided.
 BOOST_AUTO_TEST_CASE(what_a_row_says_of_its_own_errors_is_checked) {
     const scratch::Folder folder;

@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(import_keeps_every_number_of_a_vertex_text_and_proves_it) {
     BOOST_TEST((a.contacts == b.contacts));
     BOOST_TEST(json::parse(b.provenance)["command"].get<std::string>().find("import") != std::string::npos);
     for (const char* stated : {"--stress=1,2", "--load=true", "--contacts=nearest", "--threshold=1e-9"}) {
-        expect(run({"import", scratch::data("vertex100.txt"), "-o", target, stated}), 65, {"vertex text", stated[2]});
+        expect(run({"import", scratch::data("vertex100.txt"), "-o", target, stated}), 65, {"vertex text"});
     }
     const std::string rows = scratch::read(scratch::data("vertex100.txt")), pulled = (folder / "pulled.txt").string();
     const std::size_t last = rows.rfind("\n4 ");

@@ -104,9 +104,9 @@ inline CellOptions cell_options(CellKind kind, int disks, Random& random) {
     return options;
 }
 
-/// A packing of one to six disks, some with a rattler, described by whatever pin and representatives.
-inline std::optional<State<2>> in_small_cell(CellKind kind, Random& random) {
-    auto state = make_cell(cell_options(kind, 1 + random.integer(5), random), random);
+/// A packing, perhaps with a rattler, described by whatever pin and representatives.
+inline std::optional<State<2>> in_small_cell(const CellOptions& options, Random& random) {
+    auto state = make_cell(options, random);
     if (!state) {
         return {};
     }
@@ -122,6 +122,20 @@ inline std::optional<State<2>> in_small_cell(CellKind kind, Random& random) {
     }
     draw_infinitesimal(*state, random);
     return state;
+}
+
+/// Of one to six disks.
+inline std::optional<State<2>> in_small_cell(CellKind kind, Random& random) {
+    const CellOptions options = cell_options(kind, 1 + random.integer(5), random);
+    return in_small_cell(options, random);
+}
+
+/// The length along x does not move; as often as not it is such that the images of the largest disk touch.
+inline std::optional<State<2>> in_cell_of_fixed_length(Random& random) {
+    CellOptions options = cell_options(CellKind::tilted, 1 + random.integer(4), random);
+    const double widest = 2 * *std::max_element(options.radii.begin(), options.radii.end());
+    options.fixed_length = random.integer(2) == 0 ? widest : widest * random.real(1, 2);
+    return in_small_cell(options, random);
 }
 
 inline std::optional<State<2>> cell_at_threshold(CellKind kind, Random& random) {
@@ -156,19 +170,23 @@ inline std::optional<State<2>> cell_at_threshold(CellKind kind, Random& random) 
 }
 
 /// Cells whose doubles touch exactly, so that crafted inspection speaks of them: one disk in a rectangle, in a channel,
-/// in a tilted cell; two disks that also touch through their images.
-inline std::optional<State<2>> exact_cell(Random& random) {
+/// in a tilted cell; two disks that also touch through their images. `fixed`: the length along x does not move.
+inline std::optional<State<2>> exact_cell(Random& random, bool fixed = false) {
     State<2> state;
     auto& p = state.packing;
     p.walls = isostat::Walls<2>::none();
     const auto own = [&](int i, int x, int y) { return isostat::pair_of(i, i, {{std::int8_t(x), std::int8_t(y), 0}}); };
     const auto both = [&](int x, int y) { return isostat::pair_of(0, 1, {{std::int8_t(x), std::int8_t(y), 0}}); };
-    switch (random.integer(4)) {
+    switch (fixed ? 2 * random.integer(2) : random.integer(4)) {
     case 0: // one disk, all of its images in a row along x and along y
         p.radius = {2};
         p.q = {0.5, -1, 4, 4, 0};
         p.cell = {{true, true}, {true, true}, {false}, 0};
         state.contacts = {own(0, 0, 1), own(0, 1, 0)};
+        if (fixed) { // they touch, but cannot move apart
+            p.cell.period_moves[0] = false;
+            state.contacts.pop_back();
+        }
         break;
     case 1: // one disk and its images between walls
         p.radius = {2};
@@ -183,6 +201,10 @@ inline std::optional<State<2>> exact_cell(Random& random) {
         p.q = {0, 0, 3, 4, 6, 8, 0};
         p.cell = {{true, true}, {true, true}, {true}, random.integer(2)};
         state.contacts = {both(-1, -1), both(-1, 0), both(0, -1), both(0, 0), own(0, 1, 0)};
+        if (fixed) {
+            p.cell.period_moves[0] = false;
+            state.contacts.pop_back();
+        }
         break;
     default: // A8, state B: the large disk and its images at the bottom, the small one in a gap of them
         p.radius = {3, 2};

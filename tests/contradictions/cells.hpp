@@ -14,6 +14,7 @@ struct CellOptions {
     std::vector<double> radii;
     std::array<double, 2> force{1, 1}; ///< on the periods, or the movable wall
     double shear_force = 0;            ///< on the tilt
+    double fixed_length = 0;           ///< along x; 0: it moves
 };
 
 namespace detail {
@@ -40,6 +41,10 @@ class SoftCell {
             p.cell.periodic[walled] = p.cell.period_moves[walled] = false;
             p.walls.lower[walled] = WallKind::fixed;
             p.walls.upper[walled] = WallKind::movable;
+        }
+        if (options.fixed_length > 0) {
+            p.cell.period_moves[0] = false;
+            p.q[p.length_at(0)] = options.fixed_length;
         }
         velocity_.assign(p.q.size(), 0.0);
     }
@@ -158,6 +163,9 @@ class SoftCell {
         if (!p.cell.tilt_moves[0]) {
             force[cell + 2] = 0;
         }
+        if (options_.fixed_length > 0) {
+            force[cell] = 0;
+        }
         return force;
     }
 
@@ -187,7 +195,7 @@ inline std::optional<State<2>> make_cell(const CellOptions& options, Random& ran
         return {};
     }
     auto state = detail::hard(soft, options);
-    if (!state && options.kind != CellKind::channel && options.shear_force == 0) {
+    if (!state && options.kind != CellKind::channel && options.shear_force == 0 && options.fixed_length == 0) {
         isostat::PreparationOptions preparation;
         preparation.stress = options.force[0];
         preparation.ratio = options.force[1] / options.force[0];

@@ -31,8 +31,10 @@ struct RandomRun {
     [[nodiscard]] std::string text() const {
         return fmt::format("{} disks, rule {}, level {}, ties {}, {} segments, states_every {}, killed at {}",
                            start.packing.disk_count(), opening_rule_words[static_cast<std::size_t>(options.rule)],
-                           to_string(options.certify), options.ties == TiePolicy::stop ? "stop" : "perturb",
-                           segments.size(), states_every, killed_at);
+                           to_string(options.certify), ties(), segments.size(), states_every, killed_at);
+    }
+    [[nodiscard]] const char* ties() const {
+        return options.chooses() ? "choose" : options.at_first_order() ? "first order" : "stop";
     }
 };
 
@@ -113,6 +115,27 @@ inline void add_segment(RandomRun& run, Random& random) {
     run.segments.push_back(segment);
 }
 
+/// A disk that carries nothing as often as not.
+inline void draw_pin(State<2>& state, Random& random) {
+    const Truth truth(state);
+    if (!state.packing.cell.any() || !truth.known) {
+        return;
+    }
+    std::vector<int> rattlers, others;
+    for (int i = 0; i < state.packing.disk_count(); ++i) {
+        bool carries = false;
+        for (std::size_t l = 0; l < state.contacts.size(); ++l) {
+            const Contact& c = state.contacts[l];
+            const bool touches = c.i == i || (c.kind == ContactKind::disk_disk && c.j == i);
+            carries = carries || (touches && sign_of(truth.force[l], truth.force_scale) != 0);
+        }
+        (carries ? others : rattlers).push_back(i);
+    }
+    const bool idle = others.empty() || (!rattlers.empty() && random.integer(2) == 0);
+    const std::vector<int>& among = idle ? rattlers : others;
+    state.packing.cell.pin = among[static_cast<std::size_t>(random.integer(static_cast<int>(among.size())))];
+}
+
 /// Hands the records on, keeps those of equilibria, and stops during an arc.
 class Keeper final : public RunObserver<2> {
   public:
@@ -139,9 +162,10 @@ class Keeper final : public RunObserver<2> {
 inline RunHeader header_of(const RandomRun& run) {
     RunHeader header;
     header.program = "test";
-    header.settings =
-        fmt::format(R"({{"run":{{"rule":"{}","certify":"{}"}}}})",
-                    opening_rule_words[static_cast<std::size_t>(run.options.rule)], to_string(run.options.certify));
+    header.settings = fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"certify":"{}","ties":"{}"}}}})",
+                                  opening_rule_words[static_cast<std::size_t>(run.options.rule)], run.options.rule_seed,
+                                  to_string(run.options.certify), run.ties());
+    header.touching = run.options.ties != TiePolicy::stop;
     header.states_every = run.states_every;
     header.witnesses = run.options.certify == CertifyLevel::arcs;
     header.checkpoint_seconds = 0;
@@ -150,14 +174,25 @@ inline RunHeader header_of(const RandomRun& run) {
 
 } // namespace detail
 
+enum class Draw {
+    all,
+    choosing, ///< with ties = "choose"
+    as_before ///< without the pin and what came with it: runs that cases name by their number
+};
+
 /// Nothing: the draw gave no start that a run takes.
-inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell) {
+inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell, Draw draw) {
     Random random(seed);
+    Random more(seed + 1);
     auto start = in_cell                  ? detail::start_in_cell(random)
                  : random.integer(3) == 0 ? detail::piled_start(random)
                                           : detail::prepared_start(random);
     if (!start) {
         return {};
+    }
+    if (draw != Draw::as_before) {
+        detail::draw_pin(*start, more);
+        snap_to_grid(start->packing);
     }
     try {
         check_start<2>(*start, "start");
@@ -169,13 +204,14 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell) {
     run.start = *start;
     run.options.rule = static_cast<OpeningRule>(
         random.integer(2) == 0 ? 0 : random.integer(static_cast<int>(opening_rule_words.size())));
-    run.options.rule_seed = random.bits();
+    run.options.rule_seed = random.bits() >> 1;
     run.options.certify =
         static_cast<CertifyLevel>(std::max(0, random.integer(in_cell ? 2 : 4) - 1)); // cells: decisions
     run.options.max_strain = 1e3;
     run.options.max_arcs = 400;
     if (!in_cell && random.integer(5) == 0) {
-        run.options.ties = TiePolicy::perturb;
+        run.options.ties = TiePolicy::choose;
+        run.options.max_choices = 0;
         run.options.ties_seed = random.bits();
     }
     for (int k = 1 + random.integer(3); k > 0; --k) {
@@ -183,6 +219,14 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell) {
     }
     run.states_every = 1 + 2 * random.integer(2);
     run.killed_at = random.integer(4) == 0 ? 1 + random.integer(12) : 0;
+    if (draw != Draw::as_before && in_cell) {
+        run.options.certify = static_cast<CertifyLevel>(more.integer(3));
+    }
+    if (draw == Draw::choosing || (draw == Draw::all && in_cell && more.integer(5) == 0)) {
+        run.options.ties = TiePolicy::choose;
+        run.options.max_choices = RunOptions().max_choices;
+        run.options.ties_seed = more.bits();
+    }
     return run;
 }
 
@@ -203,6 +247,7 @@ inline bool play(RandomRun& run, const fs::path& folder, long stop_at, std::vect
         made = point->segment_done ? 0 : point->made;
         records.resize(static_cast<std::size_t>(counters.equilibria) + 1);
     } else {
+        directory.store_start(run.start);
         records.clear();
     }
     std::atomic<bool> stop{false};

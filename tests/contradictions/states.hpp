@@ -365,7 +365,9 @@ inline std::vector<StateClass> state_classes() {
         {"rectangular cells", [](Random& r) { return cell_at_threshold(CellKind::rectangular, r); }},
         {"tilted cells", [](Random& r) { return cell_at_threshold(CellKind::tilted, r); }},
         {"channels", [](Random& r) { return cell_at_threshold(CellKind::channel, r); }},
-        {"exact numbers in cells", exact_cell},
+        {"exact numbers in cells", [](Random& r) { return exact_cell(r); }},
+        {"a length that does not move", in_cell_of_fixed_length},
+        {"exact numbers, a length that does not move", [](Random& r) { return exact_cell(r, true); }},
     };
 }
 

@@ -1,5 +1,6 @@
 // Every pair of answers about one state: inspect, certify, verify, a run, crafted inspection, and the truth to 200
 // digits. ISOSTAT_LONG=1: a million states; ISOSTAT_STATES=N: as many as one likes.
+#include "contradictions/jamming.hpp"
 #include "contradictions/states.hpp"
 #include "support/crafted.hpp"
 
@@ -257,6 +258,9 @@ Objections ask(const State<2>& state, const Truth& truth, bool run, Count& tally
     tally.exact += certified.verdict == Verdict::undecided && equilibrium == 0 ? 1 : 0;
     check_claims(certified.claims, state, truth, wrong);
     check_counts(state, certified.claims, wrong);
+    for (std::string& other : jamming_objections(state, truth, certified)) {
+        wrong.push_back(std::move(other));
+    }
     const Verification verified = verify(certificate);
     answers.verify = verified.verdict;
     for (const ClaimCheck& check : verified.checks) {

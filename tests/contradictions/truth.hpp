@@ -146,6 +146,8 @@ class Truth {
     [[nodiscard]] Real gap(const Contact& c) const;
     /// H, one column per contact.
     [[nodiscard]] Dense contact_matrix() const;
+    /// From disk i to disk j, or to the image of it that the contact names.
+    [[nodiscard]] std::array<Real, 2> between(const Contact& c) const;
 
   private:
     [[nodiscard]] const Real& at(int coordinate) const { return q[static_cast<std::size_t>(coordinate)]; }
@@ -153,8 +155,6 @@ class Truth {
     [[nodiscard]] std::size_t wall(int axis) const {
         return 2 * state_->packing.radius.size() + static_cast<std::size_t>(axis);
     }
-    /// From disk i to disk j, or to the image of it that the contact names.
-    [[nodiscard]] std::array<Real, 2> between(const Contact& c) const;
     [[nodiscard]] bool moves(std::size_t coordinate) const;
     [[nodiscard]] bool can_move(const Contact& pair) const;
     /// Images of all pairs that can be the nearest, those that overlap among them.

@@ -68,12 +68,12 @@ struct RunVerification {
     bool finished = true; ///< false: the run goes on, or was killed; then nothing else is looked at
     std::string wrong;    ///< file, record, what is wrong with it
     std::vector<std::string> undecided;
-    int arcs = 0;              ///< records of arcs
+    std::vector<std::string> notes; ///< files in the folder that belong to no record: they were not looked at
+    int arcs = 0;                   ///< records of arcs
     int arcs_proved = 0;       ///< opening proved by the rule, end proved to be an admissible vertex, W proved to fall
     int ways_proved = 0;       ///< arcs whose witness proves that they lead from end to end, past nothing else
     int ties_checked = 0;      ///< first-order terms of decisions found again, of the arcs that were replayed
     int choices_checked = 0;   ///< of these: choices of the rule, of what is not refuted to be tied
-    int classes_checked = 0;   ///< limits where another opened of forces that are proved to vanish together
     int turns_checked = 0;     ///< power turns whose held coordinate was found to be right
     int equilibria = 0;        ///< rows of equilibria.csv
     int equilibria_proved = 0; ///< all forces, gaps, ends of the load interval and the rank proved to be as recorded
@@ -96,8 +96,8 @@ struct VerificationProgress {
 /// (`states_every = 1` stores all). `progress` is called after each arc and each row, by the calling thread. Uses the
 /// threads of `set_threads`: the next arcs are followed while the ends of others are proved; the result is the same for
 /// any number of them. Throws `Error(bad_input)` when a file is missing, cannot be read, or has unknown or missing
-/// columns. Cost: per arc two sparse factorisations, the exact residual of one of them, and some dozens of back
-/// substitutions; where a vertex is badly conditioned, a certificate check.
+/// columns or words. Cost: per arc two sparse factorisations, the exact residual of one of them, and some dozens of
+/// back substitutions; where a vertex is badly conditioned, a certificate check.
 RunVerification verify_run(const std::filesystem::path& directory,
                            const std::function<void(const VerificationProgress&)>& progress = {});
 

@@ -1,0 +1,194 @@
+// Runs from a start that is no equilibrium to whatever ends them: every recorded arc is replayed, and an altered one
+// found.
+#include "checker/logarithm.hpp"
+#include "checker/replay.hpp"
+#include "support/forger.hpp"
+#include "support/mirror.hpp"
+#include "support/prepared.hpp"
+#include "support/scratch.hpp"
+
+#include <isostat/io/run_directory.hpp>
+#include <isostat/io/state_file.hpp>
+
+#include <boost/multiprecision/mpfr.hpp>
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+
+using namespace isostat;
+using namespace isostat::checker;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Plays one segment up, or down, as the program does; how it ends does not matter.
+void play_whole(State<2> state, int equilibria, const RunOptions& options, const fs::path& folder) {
+    RunHeader header;
+    header.program = "test";
+    header.settings = fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"ties":"{}"}}}})",
+                                  opening_rule_words[static_cast<std::size_t>(options.rule)], options.rule_seed,
+                                  options.ties == TiePolicy::choose ? "choose" : "stop");
+    header.states_every = 1;
+    header.touching = options.ties == TiePolicy::choose;
+    RunCounters counters;
+    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
+    directory.store_start(state);
+    Segment segment;
+    segment.direction = equilibria > 0 ? 1 : -1;
+    segment.equilibria = std::abs(equilibria);
+    directory.begin_segment(0, segment, 0, 0);
+    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
+    directory.finish(outcome.completed ? RunStatus::completed : RunStatus::failed,
+                     outcome.completed ? "" : outcome.failure->message());
+}
+
+RunVerification all_is_proved(const fs::path& folder) {
+    const RunVerification run = verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST((run.verdict == Verdict::proved));
+    BOOST_TEST(run.arcs_proved == run.arcs);
+    return run;
+}
+
+/// The text from `begin` to the next comma, in the last or the first line that has it.
+std::string entry(const std::string& text, const std::string& begin, bool last = false) {
+    const std::size_t at = last ? text.rfind(begin) : text.find(begin);
+    BOOST_REQUIRE(at != std::string::npos);
+    return text.substr(at, text.find(',', at) - at);
+}
+
+/// Its sigma2 is above what the contacts bear.
+State<2> overloaded() {
+    State<2> state = prepared(14, 3);
+    state.load.stress[1] *= 1.5;
+    return state;
+}
+
+} // namespace
+
+BOOST_AUTO_TEST_SUITE(checker)
+
+BOOST_AUTO_TEST_CASE(the_way_from_a_start_that_is_no_equilibrium_is_replayed) {
+    const scratch::Folder folder;
+    play_whole(overloaded(), 1, {}, folder / "run");
+    const RunVerification run = all_is_proved(folder / "run");
+    const std::string events = scratch::read(folder / "run/events.jsonl");
+    BOOST_TEST_REQUIRE(events.find("\"equilibrium\":0") != std::string::npos);
+    BOOST_TEST(run.equilibria_proved == 2);
+    const std::string force = entry(events, "\"force\":");
+    const auto wrong = [&](const std::string& file, const std::string& from, const std::string& to) {
+        return forger::altered(folder / "run", file, from, to).wrong;
+    };
+    BOOST_TEST(wrong("events.jsonl", force, force + "1") != "");
+    BOOST_TEST(wrong("events.jsonl", "\"kind\":\"tension\"", "\"kind\":\"limit\"") != "");
+    // Another contact opens first: then equilibrium 0 would have another list.
+    const std::string start = scratch::read(folder / "run/start.json");
+    const State<2> given = read_state<2>(folder / "run/start.json").state;
+    State<2> other = given;
+    other.contacts.pop_back();
+    write_state<2>(folder / "run/start.json", other);
+    forger::seal(folder / "run");
+    BOOST_TEST(verify_run(folder / "run").wrong.find("start.json has other contacts") != std::string::npos);
+    scratch::write(folder / "run/start.json", start);
+    forger::seal(folder / "run");
+    all_is_proved(folder / "run");
+}
+
+BOOST_AUTO_TEST_CASE(arcs_that_lead_to_no_equilibrium_are_replayed) {
+    const scratch::Folder folder;
+    RunOptions options;
+    options.max_arcs = 3;
+    for (const bool from_start : {false, true}) { // the first rearrangement does not end, or none begins
+        const fs::path run = folder / (from_start ? "none" : "first");
+        play_whole(from_start ? overloaded() : prepared(36, 3), 4, options, run);
+        const std::string events = scratch::read(run / "events.jsonl");
+        BOOST_TEST_REQUIRE(events.find("\"arc\":3") != std::string::npos);
+        const RunVerification answer = verify_run(run);
+        BOOST_TEST(answer.wrong == "");
+        BOOST_TEST(answer.undecided.size() == 0U, (answer.undecided.empty() ? "" : answer.undecided[0]));
+        BOOST_TEST(answer.arcs_proved == answer.arcs);
+        const std::string work = entry(events, "\"work\":", true);
+        BOOST_TEST(forger::altered(run, "events.jsonl", work, work + "1").wrong != "");
+        const std::string step = entry(events, "\"step\":", true);
+        BOOST_TEST(forger::altered(run, "events.jsonl", step, step + "0").wrong != "");
+    }
+}
+
+BOOST_AUTO_TEST_CASE(what_the_rule_random_draws_is_drawn_again) {
+    const scratch::Folder folder;
+    RunOptions options;
+    options.rule = OpeningRule::random;
+    options.rule_seed = 5;
+    play_whole(prepared(36, 3), 2, options, folder / "run");
+    all_is_proved(folder / "run");
+    const RunVerification other = forger::altered(folder / "run", "run.json", "\"rule_seed\":5", "\"rule_seed\":6");
+    BOOST_TEST(other.wrong.find("the rule 'random' draws") != std::string::npos, other.wrong);
+}
+
+// The load at which a force vanishes is not a double: what goes on from there means the exact one.
+BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_load_that_is_meant) {
+    const scratch::Folder folder;
+    RunOptions options;
+    options.ties = TiePolicy::choose;
+    play_whole(crafted::mirror_forces(), -1, options, folder / "first");
+    const State<2> reached = read_state<2>(folder / "first/states/eq_000001.json").state;
+    BOOST_TEST_REQUIRE((reached.perturbation && reached.perturbation->load_zero.i >= 0));
+    play_whole(reached, 1, options, folder / "second");
+    const RunVerification run = verify_run(folder / "second");
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST(run.equilibria_proved == run.equilibria);
+}
+
+// Phi = sum sigma_a ln L_a falls from an equilibrium to the next one, and grows on the way back.
+BOOST_AUTO_TEST_CASE(under_true_stresses_an_arc_on_which_phi_grows_is_refuted) {
+    const scratch::Folder folder;
+    State<2> start = prepared(14, 5);
+    start.load.kind = LoadKind::true_stress;
+    play_whole(start, 1, {}, folder / "run");
+    std::array<Place, 2> place;
+    const State<2> end = read_state<2>(folder / "run/states/eq_000001.json").state;
+    for (std::size_t k = 0; k < 2; ++k) {
+        State<2> state = k == 1 ? end : read_state<2>(folder / "run/states/eq_000000.json").state;
+        state.load = end.load;
+        (void)make_place(std::move(state), place[k]);
+        BOOST_TEST_REQUIRE(place[k].evidence->vertex.found);
+    }
+    const auto phi_falls = [&](const Place& from, const Place& to) {
+        const auto& forces = to.evidence->forces;
+        const auto l = static_cast<std::size_t>(
+            std::max_element(forces.begin(), forces.end(),
+                             [](const Range& a, const Range& b) { return a.lower < b.lower; }) -
+            forces.begin());
+        EventRecord event;
+        event.closed = to_string<2>(to.state->contacts[l]);
+        event.power = forces[l].lower.get_d();
+        event.power_bound = 1e-9 * event.power;
+        const double reference = to.state->load.reference_length[1];
+        event.strain = (reference - to.length(1).lower.get_d()) / reference;
+        event.strain_bound = 1e-9;
+        event.work_bound = 0;
+        return check_end(from, to, event, false);
+    };
+    BOOST_TEST(!phi_falls(place[0], place[1]));
+    const Objections back = phi_falls(place[1], place[0]);
+    BOOST_TEST_REQUIRE(back.has_value());
+    BOOST_TEST(back->wrong);
+    BOOST_TEST(back->text.find("does not decrease") != std::string::npos, back->text);
+}
+
+BOOST_AUTO_TEST_CASE(logarithms_are_enclosed_narrowly) {
+    using Real = boost::multiprecision::mpfr_float_100;
+    for (const double x : {1.0, 1 + 0x1p-52, 1 + 1e-9, 1.1, 2.0, 37.0, 1023.0, 1e-3, 0.5, 1 - 1e-12}) {
+        const Range found = logarithm(Range(Rational(x)));
+        const Real exact = log(Real(x));
+        const auto real = [](const Rational& r) { return Real(r.get_num().get_str()) / Real(r.get_den().get_str()); };
+        BOOST_TEST((real(found.lower) <= exact && exact <= real(found.upper)));
+        BOOST_TEST(Rational(found.upper - found.lower).get_d() < 1e-140);
+    }
+    const Range wide = logarithm({Rational(1, 4096), Rational(4096)});
+    BOOST_TEST((wide.lower <= -8.3 && wide.upper >= 8.3));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -3,7 +3,7 @@
 
     python3 bench/ties.py build/release/isostat OUT --law bidisperse --disks 100 --seeds 20 --policy choose
 
-Policies: stop, perturb, choose, or a jitter such as 1e-9 (with ties = "stop"; "1e-9,class": with that). One process, one line per sample and one of
+Policies: stop, choose, first (choose with max_choices = 0), or a jitter such as 1e-9 (with ties = "stop"). One process, one line per sample and one of
 sums: finished, failed (caps), tied, undecided, other, seconds. Folders of the runs stay in OUT."""
 import argparse
 import collections
@@ -14,16 +14,15 @@ import time
 
 
 def scene(options, policy, seed):
-    radii, _, ties = policy.partition(",")
-    jitter = 0 if radii in ("stop", "perturb", "choose") else float(radii)
-    ties = policy if jitter == 0 else ties or "stop"
+    jitter = "" if policy in ("stop", "first", "choose") else policy
+    ties = {"first": 'choose"\nmax_choices = 0', "choose": 'choose"'}.get(policy, 'stop"')
     return f"""[packing]
 disks = {options.disks}
 law = "{options.law}"
 seed = {seed}
-{f"jitter = {radii}" if jitter else ""}
+{f"jitter = {jitter}" if jitter else ""}
 [run]
-ties = "{ties}"
+ties = "{ties}
 [output]
 pictures = false
 [[programme]]
@@ -76,7 +75,7 @@ def main():
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--equilibria", type=int, default=30)
     parser.add_argument("--limit", type=float, default=600, help="seconds for one sample")
-    parser.add_argument("--policy", nargs="+", default=["stop", "perturb", "choose", "1e-9"])
+    parser.add_argument("--policy", nargs="+", default=["stop", "first", "choose", "1e-9"])
     options = parser.parse_args()
     pathlib.Path(options.out).mkdir(parents=True, exist_ok=True)
     for policy in options.policy:

@@ -5,7 +5,8 @@
   python3 proofs/constants.py --where   prints the lines behind each entry that is missing, stale or counted otherwise
   python3 proofs/constants.py --count   takes over the counts of entries that are there (read what --where shows first)
 
-A row of the table: file, number as written, how often it is written there, and why it is what it is:
+A row of the table: file (its folder does not count: files may move), number as written, how often it is written there, and
+why it is what it is:
   page.md LABEL ...        a statement: the page of proofs/ has the word LABEL (several, separated by "; ", for several uses)
   cost: ...                changes how long it takes, or when something is given up as undecided, and no answer
   choice: ...              a choice that pages call one (a rule, a default, a limit of a record)
@@ -28,7 +29,7 @@ number = re.compile(r"(?<![\w.])(0[xX][0-9a-fA-F.']+(?:[pP][+-]?\d+)?|(?:\d[\d']
 
 
 def numbers():
-    """(file, number) -> lines."""
+    """(name of the file, number) -> file and line, for each time."""
     found = collections.defaultdict(list)
     for room in rooms:
         for folder in (top / "src" / room, top / "include/isostat" / room):
@@ -37,19 +38,23 @@ def numbers():
                 for line, code in enumerate(text.split("\n"), 1):
                     for match in number.finditer(code):
                         if match[1] not in trivial:
-                            found[str(path.relative_to(top)), match[1]].append(line)
+                            found[path.name, match[1]].append((path, line))
     return found
 
 
 def rows():
-    known = {}
+    """(name of the file, number) -> how often, why; of files of one name together."""
+    known, listed = {}, set()
     for line, text in enumerate(table.read_text().splitlines(), 1):
         cells = text.split("\t")
         if not text or text.startswith("#"):
             continue
-        if len(cells) != 4 or not cells[2].isdigit() or (cells[0], cells[1]) in known:
+        if len(cells) != 4 or not cells[2].isdigit() or (cells[0], cells[1]) in listed:
             sys.exit(f"proofs/constants.tsv:{line}: four cells separated by tabs, each file and number once, were expected")
-        known[cells[0], cells[1]] = (int(cells[2]), cells[3])
+        listed.add((cells[0], cells[1]))
+        key = pathlib.PurePath(cells[0]).name, cells[1]
+        count, reason = known.get(key, (0, ""))
+        known[key] = count + int(cells[2]), f"{reason}; {cells[3]}" if reason else cells[3]
     return known
 
 
@@ -91,9 +96,8 @@ def main():
     for key, text in wrong:
         print(text)
         if "--where" in sys.argv:
-            lines = (top / key[0]).read_text().split("\n") if key in found else []
-            for line in dict.fromkeys(found.get(key, [])):
-                print(f"    {line}: {lines[line - 1].strip()}")
+            for path, line in dict.fromkeys(found.get(key, [])):
+                print(f"    {path.relative_to(top)}:{line}: {path.read_text().splitlines()[line - 1].strip()}")
     if wrong:
         print(f"{len(wrong)} of {len(set(found) | set(known))} entries of proofs/constants.tsv are not right (see proofs/constants.py)")
         return 1

@@ -245,47 +245,7 @@ Objections taken_by_loads(const Place& place, std::size_t opened, const std::vec
     return {};
 }
 
-/// Or, by the record, one that falls at least half as fast as any opens in the place of the one that they take (K24).
-Objections taken_by_slope(const Place& place, const TieRecord& tie, std::size_t opened,
-                          const std::vector<std::size_t>& together) {
-    const Evidence& e = *place.evidence;
-    const auto wrong = [&](const std::string& what) {
-        return Objection{true, fmt::format("{} opens by its slope, but {}", e.name(opened), what)};
-    };
-    const auto speed = [&e](std::size_t l) {
-        const Range& slope = e.slopes()[l];
-        return slope.negative() ? Range(Rational(0)) - slope : slope;
-    };
-    const auto against =
-        std::find_if(together.begin(), together.end(), [&](std::size_t l) { return e.name(l) == tie.against; });
-    if (tie.what != "limit" || tie.contact != e.name(opened) || against == together.end()) {
-        return wrong(fmt::format("{} does not vanish with it", tie.against));
-    }
-    const Rational fast = 2 * speed(opened).upper;
-    for (const std::size_t l : together) {
-        if (fast < speed(l).lower) {
-            return wrong(fmt::format("that of {} falls more than twice as fast", e.name(l)));
-        }
-    }
-    std::vector<std::size_t> others = together;
-    std::replace(others.begin(), others.end(), *against, opened);
-    if (Objections late = taken_by_loads(place, *against, others)) {
-        return late;
-    }
-    const auto said = [](double value, double radius, const Range& found) {
-        return found.lower <= Rational(value) + Rational(radius) && found.upper >= Rational(value) - Rational(radius);
-    };
-    return said(tie.first, tie.first_bound, e.slopes()[opened]) &&
-                   said(tie.other, tie.other_bound, e.slopes()[*against])
-               ? Objections()
-               : wrong("the slopes are not as recorded");
-}
-
 } // namespace
-
-bool opens_by_slope(const TieRecord& tie) {
-    return tie.choice == "slope";
-}
 
 Objections check_limit(const Place& place, const EventRecord& event, double bound, std::size_t opened,
                        ExactLoad& at_limit) {
@@ -322,9 +282,7 @@ Objections check_limit(const Place& place, const EventRecord& event, double boun
         }
         together.push_back(l);
     }
-    const auto tie = std::find_if(event.ties.begin(), event.ties.end(), opens_by_slope);
-    return tie == event.ties.end() ? taken_by_loads(place, opened, together)
-                                   : taken_by_slope(place, *tie, opened, together);
+    return taken_by_loads(place, opened, together);
 }
 
 } // namespace isostat::checker

@@ -13,7 +13,4 @@ std::vector<Range> forces_after(const Place& place, const Range& step);
 /// First-order term of the stress at which the force of a contact vanishes, from its first-order term there.
 Range limit_rate(const Range& first, const Range& slope);
 
-/// A record that says why another force opens than the one that the infinitesimal loads take (K24).
-bool opens_by_slope(const TieRecord& tie);
-
 } // namespace isostat::checker

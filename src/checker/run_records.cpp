@@ -87,7 +87,7 @@ TieRecord tie_of(const Field& entry) {
         term(entry.at("against_first_order"), tie.other, tie.other_bound);
     }
     if (entry.has("choice")) {
-        tie.choice = word(entry.at("choice"), {"infinitesimal loads", "names", "zero", "watched", "slope"});
+        tie.choice = word(entry.at("choice"), {"infinitesimal loads", "names", "zero", "watched"});
     }
     return tie;
 }
@@ -231,14 +231,15 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     records.program = run.at("program").string();
     records.segments = static_cast<int>(run.at("programme").size());
     const Field settings = run.at("settings").at("run");
-    records.rule = word(settings.at("rule"), {"most_negative", "steepest", "random", "least_negative", "least_index"});
+    records.rule = word(settings.at("rule"), {"most_negative", "random", "least_negative", "least_index"});
     if (settings.has("rule_seed")) {
         records.rule_seed = static_cast<std::uint64_t>(settings.at("rule_seed").integer());
     }
-    const std::string ties =
-        settings.has("ties") ? word(settings.at("ties"), {"stop", "class", "perturb", "choose"}) : "stop";
-    records.chooses = ties == "choose";
-    records.by_class = ties == "class";
+    if (settings.has("ties") && word(settings.at("ties"), {"stop", "choose"}) == "choose") {
+        records.max_choices =
+            settings.has("max_choices") ? settings.at("max_choices").number() : std::numeric_limits<double>::infinity();
+        records.chooses = records.max_choices > 0;
+    }
     const std::string level =
         settings.has("certify") ? word(settings.at("certify"), {"decisions", "states", "arcs"}) : "decisions";
     records.certified_arcs = level == "arcs";
@@ -250,8 +251,13 @@ RunRecords read_records(const std::filesystem::path& directory, LastLine last) {
     // A run that never left its start has no events: the file is empty then.
     const std::filesystem::path events = directory / "events.jsonl";
     if (!std::filesystem::exists(events) || std::filesystem::file_size(events) > 0) {
+        long choices = 0;
         for_each_line(records_text(events, last), [&](int number, const std::string& line) {
             records.events.push_back(event_of(line, fmt::format("{}:{}", events.string(), number)));
+            EventRecord& event = records.events.back();
+            choices += std::count_if(event.ties.begin(), event.ties.end(),
+                                     [](const TieRecord& tie) { return !tie.choice.empty(); });
+            event.choices = choices;
         });
     }
     const std::filesystem::path equilibria = directory / "equilibria.csv"; // its first row comes with their names

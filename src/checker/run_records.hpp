@@ -34,6 +34,7 @@ struct EventRecord {
     double strain_bound = 0, force_bound = 0, power_bound = 0, work_bound = 0; ///< NaN: none
     std::optional<double> held_at;                                             ///< of power turns
     std::vector<TieRecord> ties;
+    long choices = 0; ///< among the ties, from the first line to this one
 };
 
 /// In both columns of a contact that there is not.
@@ -55,8 +56,8 @@ struct RunRecords {
     std::filesystem::path directory;
     std::string rule;                                      ///< of run.json
     std::optional<std::uint64_t> rule_seed;                ///< of the rule `random`
-    bool chooses = false;                                  ///< ties = "choose"
-    bool by_class = false;                                 ///< ties = "class"
+    bool chooses = false;                                  ///< ties = "choose", and max_choices is not 0
+    double max_choices = 0;                                ///< 0 where nothing is chosen
     std::string status, reason;                            ///< the word, and what follows it
     std::string program;                                   ///< that wrote it
     int segments = 0;                                      ///< of the programme

@@ -325,10 +325,6 @@ Objections check_ties(const Place& base, const Place& from, const Place& to, con
         if (exchanges_list(tie)) {
             continue; // `check_exchange`
         }
-        if (!tie.choice.empty() && !to.chooses) {
-            return Objection{true,
-                             fmt::format("'{}' of {} is chosen, in a run that chooses nothing", tie.what, tie.contact)};
-        }
         if (Objections wrong = tie.what == "rest" ? check_rest(from, tie, opened, direction) : arc.check(tie)) {
             return wrong;
         }

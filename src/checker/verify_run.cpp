@@ -214,6 +214,8 @@ class Replay {
                    fmt::format("the step is {}, expected {}", event.step, event_));
             expect(event.arc == static_cast<int>(events.size()), event.where,
                    fmt::format("the arc is {}, expected {}", event.arc, events.size()));
+            expect(static_cast<double>(event.choices) <= records_.max_choices, event.where,
+                   fmt::format("choice {} of the run, which may choose {} ties", event.choices, records_.max_choices));
         }
         expect(line.integer("arcs") == static_cast<int>(events.size()), line.where,
                fmt::format("arcs is {}, but there are {} events", line.integer("arcs"), events.size()));
@@ -365,12 +367,10 @@ class Replay {
         if (!check_arrival(base.state ? base : here_, next, event, *change, open)) {
             return false;
         }
-        const auto by_slope = std::count_if(event.ties.begin(), event.ties.end(), opens_by_slope);
         const auto chosen =
             std::count_if(event.ties.begin(), event.ties.end(), [](const TieRecord& t) { return !t.choice.empty(); });
-        result_.ties_checked += static_cast<int>(event.ties.size()) - static_cast<int>(by_slope);
-        result_.choices_checked += static_cast<int>(chosen - by_slope);
-        result_.classes_checked += static_cast<int>(by_slope);
+        result_.ties_checked += static_cast<int>(event.ties.size());
+        result_.choices_checked += static_cast<int>(chosen);
         next.said = event.ties;
         result_.turns_checked += event.power_turn ? 1 : 0;
         here_ = std::move(next);
@@ -536,15 +536,12 @@ class Replay {
         if (open && !open->wrong && next.evidence && next.evidence->vertex.found && !next.first) {
             open = sharpen(next, most_digits);
         }
-        const bool by_slope = std::any_of(event.ties.begin(), event.ties.end(), opens_by_slope);
         return judged(open, event.where) &&
                judged(asked([&] { return check_end(here_, next, event, change.rattles); }, &next), event.where) &&
                (!event.power_turn || judged(check_turn(next, event, change.rattles), event.where)) &&
                (!next.first ||
                 judged(check_ties(base, here_, next, event, change.position, change.direction), event.where)) &&
-               expect(!by_slope || (records_.by_class && event.kind == "limit" && event.ties.size() == 1), event.where,
-                      "another of a class opens, in a run that chooses none") &&
-               expect(next.first != nullptr || by_slope || event.ties.empty(), event.where,
+               expect(next.first != nullptr || event.ties.empty(), event.where,
                       "first-order decisions in a run without a direction of the radii");
     }
 

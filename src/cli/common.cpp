@@ -113,7 +113,7 @@ Result<State<2>> prepare_start(const Scene& scene, const std::string& command, b
     Result<State<2>> prepared = isostat::prepare<2>(options, report);
     line.clear();
     std::string tied; // what the run has to settle, as far as doubles know
-    const bool settles = at_first_order(scene.run.ties) && !scene.programme.empty();
+    const bool settles = scene.run.at_first_order() && !scene.programme.empty();
     if (!prepared.ok() && prepared.failure().kind == FailureKind::tie && report.candidate && settles) {
         tied = prepared.failure().message();
         prepared = std::move(*report.candidate);

@@ -148,11 +148,9 @@ struct Program {
             "was not interrupted, times apart.\n"
             "A tie (two forces that vanish at one load, two gaps that close at once) ends the run with exit status 2; "
             "with\n"
-            "ties = \"perturb\" in [run] it is settled for radii R_i + eps rho_i, eps -> 0, and the records say how;\n"
-            "with ties = \"choose\" a rule chooses where these do not tell, and the records say what. With \"class\" a "
-            "tie\n"
-            "ends the run too, but of forces that vanish together another may open where the first one's arc is "
-            "undecided.\n"
+            "ties = \"choose\" in [run] it is settled for radii R_i + eps rho_i, eps -> 0, a rule chooses where these "
+            "do\n"
+            "not tell (at most max_choices times), and the records say how.\n"
             "Examples: isostat run examples/biaxial-400.toml -o out\n"
             "          isostat run examples/biaxial-400.toml -o out --resume");
         command.add_option("scene", a.scene, "scene file (TOML)")->required()->type_name("SCENE.toml");

@@ -68,7 +68,6 @@ void add(RunVerification& total, const MemberVerification& member) {
     total.ways_proved += run.ways_proved;
     total.ties_checked += run.ties_checked;
     total.choices_checked += run.choices_checked;
-    total.classes_checked += run.classes_checked;
     total.turns_checked += run.turns_checked;
     total.equilibria += run.equilibria;
     total.equilibria_proved += run.equilibria_proved;

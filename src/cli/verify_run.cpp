@@ -56,7 +56,6 @@ Json json_of(const RunVerification& run, const std::string& folder) {
     object["power_turns_checked"] = run.turns_checked;
     object["ties_checked"] = run.ties_checked;
     object["choices_checked"] = run.choices_checked;
-    object["classes_checked"] = run.classes_checked;
     object["equilibria"] = run.equilibria;
     object["equilibria_proved"] = run.equilibria_proved;
     object["wrong"] = run.wrong.empty() ? Json(nullptr) : Json(run.wrong);
@@ -77,16 +76,12 @@ void print_totals(const RunVerification& run) {
         say("choices        {} checked: what they are between is not refuted to be tied, which is not \"equal\"\n",
             run.choices_checked);
     }
-    if (run.classes_checked > 0) {
-        say("classes        {} checked: at a limit another opens of forces that are proved to vanish together\n",
-            run.classes_checked);
-    }
     say("equilibria     {} of {} proved\n", run.equilibria_proved, run.equilibria);
     for (const std::string& open : run.undecided) {
         say("undecided      {}\n", open);
     }
     for (const std::string& note : run.notes) {
-        fmt::print("note           {}\n", note);
+        say("note           {}\n", note);
     }
     if (!run.wrong.empty()) {
         say("first wrong    {}\n", run.wrong);

@@ -17,7 +17,7 @@ namespace {
 constexpr long most_arcs = 2000;
 constexpr std::array rests{"down", "up", "left", "right"};
 /// Not `least_negative`: it mostly ends in a tie, after arcs that take thousands of digits.
-constexpr std::array rules{OpeningRule::most_negative, OpeningRule::steepest};
+constexpr std::array rules{OpeningRule::most_negative, OpeningRule::least_index};
 
 /// The loads of `generic_infinitesimal` point down: turned until they point where the rattlers shall rest.
 std::vector<double> infinitesimal_towards(std::size_t rest, const Packing<2>& packing) {

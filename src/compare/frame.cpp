@@ -109,7 +109,7 @@ JudgedFrame judge(const Series& series, const Frame& frame, const Reading& readi
         return out;
     }
     const SoftState soft{frame.packing, reading.contacts, frame.load};
-    if (!reading.other_load.empty() && snap(soft).outcome != SnapOutcome::moving) {
+    if (!reading.other_load.empty() && reading.dashpots.empty() && snap(soft).outcome != SnapOutcome::moving) {
         r.status = FrameStatus::file;
         r.reason = reading.other_load;
         return out;

@@ -109,7 +109,7 @@ class FrameTable {
     }
 
     [[nodiscard]] Sides sides_of(const Line& line) const {
-        Sides sides{std::array<double, 4>{}, 0};
+        Sides sides{std::array<double, 4>{}, 0, {}};
         for (std::size_t w = 0; w < 4; ++w) {
             const std::size_t column = required(wall_names[w]);
             (*sides.at)[w] = line.number(column, wall_names[w]) * manifest_.length_factor;

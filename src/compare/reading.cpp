@@ -135,9 +135,10 @@ class Reader {
             return;
         }
         Contact worst;
-        double largest = 0, rounded = 0;
+        double largest = 0, rounded = 0, blur = 0;
         for (const auto& [c, force] : force_) {
             const double off = std::abs(force - expected(c)), known = off - unknown(c);
+            blur = std::max(blur, unknown(c));
             rounded = std::max(rounded, known <= series_.agreement * out_.mean ? off : 0);
             if (known > largest) {
                 largest = known;
@@ -150,7 +151,7 @@ class Reader {
             note_rounding(rounded);
             return;
         }
-        if (const auto dashpot = find_dashpot(frame_, beyond_, series_.law, series_.agreement * out_.mean)) {
+        if (const auto dashpot = find_dashpot(frame_, beyond_, series_.law, series_.agreement * out_.mean + blur)) {
             out_.dashpots = dashpot->words();
         } else if (may_be_dashpots(largest)) {
             out_.dashpots = "dashpots may be at work";

@@ -90,7 +90,7 @@ template <int Dim> void check_start(const State<Dim>& state, const std::string& 
         const std::string basis = self_stresses(state);
         bad(fmt::format(
             "N_f = {} degrees of freedom, N = {} contacts, rank {}: h = {}, k = 0: a trajectory starts from "
-            "an isostatic structure, N = N_f = rank; ties = \"perturb\" or \"choose\" in [run] keeps the contacts that "
+            "an isostatic structure, N = N_f = rank; ties = \"choose\" in [run] keeps the contacts that "
             "carry the load when the radii change a little{}{}",
             count.dof_count, count.contact_count, count.rank, count.hyperstaticity,
             basis.empty() ? "" : "; a basis of the self-stresses is in the contacts ", basis));

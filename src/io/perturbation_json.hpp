@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The part of a state that a run under `ties = "perturb"` adds.
+/// The part of a state that a run under `ties = "choose"` adds.
 
 #include "io/json.hpp"
 

@@ -224,7 +224,10 @@ struct RetiredWord {
     const char* instead;
 };
 constexpr std::array retired_words{
+    RetiredWord{"rule", "steepest", "\"most_negative\", \"least_negative\" or \"least_index\", which verify confirms"},
     RetiredWord{"certify", "plain", "\"decisions\": every run proves the vertices on its way"},
+    RetiredWord{"ties", "perturb", "\"choose\" with max_choices = 0"},
+    RetiredWord{"ties", "class", "\"stop\", or \"choose\", which settles ties for radii that differ"},
 };
 
 void refuse_retired_words(Section& section) {
@@ -246,13 +249,18 @@ void read_run(Section& section, Scene& scene) {
     run.max_strain = section.number("max_strain", run.max_strain, 1e-12, 1e6, "a positive strain");
     run.certify = static_cast<CertifyLevel>(section.word("certify", 0, {"decisions", "states", "arcs"}));
     run.ties = static_cast<TiePolicy>(section.word("ties", 0, {tie_policy_words.begin(), tie_policy_words.end()}));
-    const auto ties_seed = section.integer("ties_seed");
-    if (at_first_order(run.ties)) {
+    for (const char* key : {"ties_seed", "max_choices"}) {
+        if (section.integer(key) && !run.at_first_order()) {
+            section.refuse(key, fmt::format("'{}' in [run] belongs to ties = \"choose\": with ties = \"stop\" it has "
+                                            "no meaning",
+                                            key));
+        }
+    }
+    if (run.at_first_order()) {
         run.ties_seed = static_cast<std::uint64_t>(section.integer("ties_seed", 1, 0, largest_seed));
-    } else if (ties_seed) {
-        section.refuse("ties_seed",
-                       "'ties_seed' in [run] is the seed of the direction in which ties = \"perturb\" "
-                       "or \"choose\" changes the radii: with ties = \"stop\" or \"class\" it has no meaning");
+    }
+    if (section.integer("max_choices")) {
+        run.max_choices = section.integer("max_choices", 0, 0, 1'000'000'000);
     }
     run.step_fraction = section.number("step_fraction", run.step_fraction, 1e-6, 10, "a number from 1e-6 to 10");
 }

@@ -131,18 +131,16 @@ void add_last_resorts(Plan& plan, const Scene& scene) {
     const bool runs = !scene.programme.empty();
     plan.add("solver", "multiprecision (MPFR), exact numbers", true,
              "only where double-double does not decide a sign or an order");
-    const bool perturbs = runs && at_first_order(scene.run.ties);
-    const bool chooses = runs && scene.run.ties == TiePolicy::choose;
-    plan.add(
-        "solver", "first order in the radii", perturbs,
-        !runs      ? std::string("no trajectory")
-        : perturbs ? fmt::format("ties = \"{}\": ties are settled for radii R_i + eps rho_i, rho from seed {}{}; "
-                                 "hyperstatic starts are followed",
-                                 chooses ? "choose" : "perturb", scene.run.ties_seed,
-                                 chooses ? ", and what they leave tied by the infinitesimal loads and the names" : "")
-        : scene.run.ties == TiePolicy::by_class
-            ? "ties = \"class\": a tie ends the run; of forces that vanish together another may open than the first"
-            : "ties = \"stop\": a tie ends the run");
+    const bool settles = runs && scene.run.at_first_order();
+    plan.add("solver", "first order in the radii", settles,
+             !runs ? std::string("no trajectory")
+             : settles
+                 ? fmt::format(
+                       "ties = \"choose\": ties are settled for radii R_i + eps rho_i, rho from seed {}{}; "
+                       "hyperstatic starts are followed",
+                       scene.run.ties_seed,
+                       scene.run.chooses() ? ", and what they leave tied by the infinitesimal loads and the names" : "")
+                 : "ties = \"stop\": a tie ends the run");
     plan.add("solver", "fixed disks, external forces on disks", false,
              "a scene has none; a start file in the state format may");
 }

@@ -76,7 +76,7 @@ State<2> start_of_scene(State<2> state, const Scene& scene, const std::string& s
         }
     }
     require_followed(state, source);
-    check_start(state, source, at_first_order(scene.run.ties));
+    check_start(state, source, scene.run.at_first_order());
     check_programme(scene, state.load.ratio());
     if (const double moved = snap_to_grid(state.packing); moved > 0) { // after the state of the file was judged
         Json provenance = state.provenance.empty() ? Json::object() : Json::parse(state.provenance);
@@ -116,14 +116,14 @@ RunHeader header_of(const Scene& scene, const std::string& program, const std::s
     header.keep = needed_equilibria(scene);
     header.states_every = scene.states_every;
     header.witnesses = scene.run.certify == CertifyLevel::arcs;
-    header.touching = at_first_order(scene.run.ties);
+    header.touching = scene.run.at_first_order();
     header.checkpoint_seconds = scene.checkpoint_seconds;
     return header;
 }
 
 std::string advice(const Scene& scene, const Failure& failure, const Packing<2>& packing) {
     std::vector<double> radius = packing.radius;
-    const bool can_choose = scene.run.ties != TiePolicy::choose;
+    const bool can_choose = !scene.run.chooses();
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
     const bool open = failure.kind <= FailureKind::undecided || failure.kind == FailureKind::not_converged;

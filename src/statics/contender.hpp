@@ -4,7 +4,7 @@
 #include "contact/words.hpp"
 #include "statics/decisions.hpp"
 #include "statics/proved_minimum.hpp"
-#include "statics/rule_key.hpp"
+#include "statics/quotient.hpp"
 #include "statics/straight_strut.hpp"
 
 #include <functional>

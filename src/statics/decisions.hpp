@@ -58,7 +58,7 @@ struct ZeroHolds {
 /// sign), `tie` (two candidates that cannot be ordered), naming the contacts and the numbers.
 /// With `perturbed` ties of finite forces are settled by their first-order terms, and written to its log: a force that
 /// vanishes in the base has the sign of its first-order term, equal keys have the order of theirs. Failure: `undecided`
-/// when the first-order terms do not tell either, for held coordinates that vanish, for the rule `steepest`. Where ties
+/// when the first-order terms do not tell either, and for held coordinates that vanish. Where ties
 /// are chosen (C1) a force whose first-order term is not told from 0 opens nothing, and equal keys are ordered by the
 /// infinitesimal loads, then by the names of the contacts.
 template <int Dim>
@@ -94,12 +94,6 @@ template <int Dim>
 Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
                              PerturbedStatics<Dim>* perturbed = nullptr);
 
-/// What else may open where the forces of a structural tie class vanish (C1 b): of its members those whose force falls
-/// at least half as fast as that of any, in the order of their names, without `first`, which the infinitesimal loads
-/// take. As decisions between each of them and `first`, with the choice `slope`. \pre slope of `first` proved not zero.
-template <int Dim> std::vector<TieDecision> others_of_class(const Statics<Dim>& statics, ContactId first);
-
-extern template std::vector<TieDecision> others_of_class<2>(const Statics<2>&, ContactId);
 extern template Result<OpeningDecision> decide_opening<2>(Statics<2>&, double, OpeningRule, const ZeroHolds&,
                                                           std::uint64_t, PerturbedStatics<2>*);
 extern template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);

@@ -276,7 +276,6 @@ template <int Dim> Result<Opening> first_of_class(Statics<Dim>& statics, const s
     Choice<Dim> choice;
     choice.quantity = [&statics](ContactId l) {
         ForceExpression e = statics.infinitesimal_expression(l);
-        e.divisor = ForceExpression::Divisor::part;
         e.divisor_part = statics.slope_expression(l).part;
         return e;
     };
@@ -363,29 +362,6 @@ Result<LoadLimit> find_limit(Statics<Dim>& statics, double sigma, int direction,
     return limit;
 }
 
-template <int Dim> std::vector<TieDecision> others_of_class(const Statics<Dim>& statics, ContactId first) {
-    constexpr double fast = 0.5; // of the largest slope: not the very largest, which roundings may decide
-    const auto& contacts = statics.structure().contacts();
-    const auto speed = [&statics](ContactId l) { return std::abs(statics.slope(l).value); };
-    std::vector<ContactId> others = statics.vanish_with(first);
-    std::erase_if(others, [&](ContactId l) { return is_held(statics, l); });
-    double fastest = speed(first);
-    for (const ContactId l : others) {
-        fastest = std::max(fastest, speed(l));
-    }
-    std::vector<TieDecision> decisions;
-    for (const ContactId l : others) {
-        if (speed(l) >= fast * fastest && statics.slope(l).decided()) {
-            decisions.push_back({"limit", contacts[l.index()], statics.slope(l), contacts[first.index()],
-                                 statics.slope(first), -infinity, 0, TieChoice::slope});
-        }
-    }
-    std::sort(decisions.begin(), decisions.end(),
-              [](const TieDecision& a, const TieDecision& b) { return a.chosen < b.chosen; });
-    return decisions;
-}
-
-template std::vector<TieDecision> others_of_class<2>(const Statics<2>&, ContactId);
 template Result<LoadLimit> find_limit<2>(Statics<2>&, double, int, PerturbedStatics<2>*);
 
 } // namespace isostat

@@ -1,6 +1,5 @@
 #include "core/roundoff.hpp"
 #include "statics/contender.hpp"
-#include "statics/steepest.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +18,7 @@ template <int Dim> class OpeningContest final : public Contest {
         : statics_(statics), contenders_(contenders), choice_(choice),
           least_(choice.rule == OpeningRule::least_negative) {
         for (Contender& c : contenders_) {
-            if (choice_.rule != OpeningRule::steepest) { // it has them
-                c.key = least_ ? opposite(c.force) : c.force;
-            }
+            c.key = least_ ? Enclosure{-c.force.value, c.force.radius} : c.force;
         }
     }
     [[nodiscard]] std::size_t size() const override { return contenders_.size(); }
@@ -45,8 +42,7 @@ template <int Dim> class OpeningContest final : public Contest {
             return by_strut(*mate, other);
         }
         const Order order = by_enclosure_or_ladder(other, one);
-        if (choice_.perturbed != nullptr && choice_.rule != OpeningRule::steepest &&
-            needs_first_order(order, choice_.perturbed->size())) {
+        if (choice_.perturbed != nullptr && needs_first_order(order, choice_.perturbed->size())) {
             return at_first_order(order, other, one);
         }
         return by_order(order, [&] {
@@ -74,7 +70,7 @@ template <int Dim> class OpeningContest final : public Contest {
         if (difference.decided()) {
             return {true, difference.positive() ? 1 : -1, difference.margin(), statics_.rung(), statics_.bits()};
         }
-        Order order = statics_.compare(quantity(other), quantity(one));
+        Order order = statics_.compare(choice_.quantity(other.contact), choice_.quantity(one.contact));
         order.sign = least_ ? -order.sign : order.sign; // quantities are forces, keys their opposites
         return order;
     }
@@ -88,14 +84,6 @@ template <int Dim> class OpeningContest final : public Contest {
                               words("the opening rule cannot order {} and {} ({}), and the first-order terms of "
                                     "what it compares",
                                     name(statics_, one.contact), name(statics_, other.contact), reach(order)));
-    }
-
-    ForceExpression quantity(const Contender& c) {
-        ForceExpression e = choice_.quantity(c.contact);
-        if (choice_.rule == OpeningRule::steepest) {
-            e.divisor = ForceExpression::Divisor::mechanism;
-        }
-        return e;
     }
 
     /// First-order term of what the rule compares, for a contender of the finite stage.
@@ -116,6 +104,13 @@ template <int Dim> class OpeningContest final : public Contest {
     bool strut_ = false;
     std::vector<StrutMate> mates_; ///< of the one that stands
 };
+
+/// Of rules that compare no numbers: the place, among `count` contacts sorted by their names, of the one that opens.
+std::optional<std::size_t> rule_place(OpeningRule rule, std::size_t count, std::uint64_t random_bits) {
+    return rule == OpeningRule::random        ? std::optional<std::size_t>(random_bits % count)
+           : rule == OpeningRule::least_index ? std::optional<std::size_t>(0)
+                                              : std::nullopt;
+}
 
 /// Ordered by name, so that the choice does not depend on the order of the contact list.
 template <int Dim>
@@ -165,9 +160,6 @@ template <int Dim>
 Result<Opening> pick(Statics<Dim>& statics, std::vector<Contender> contenders, const Choice<Dim>& choice) {
     if (const auto place = rule_place(choice.rule, contenders.size(), choice.random_bits)) {
         return pick_by_name(statics, contenders, *place);
-    }
-    if (choice.rule == OpeningRule::steepest) {
-        keep_steepest(statics, contenders);
     }
     OpeningContest<Dim> contest(statics, contenders, choice);
     const auto guess =

@@ -173,7 +173,6 @@ template <int Dim> ForceExpression Statics<Dim>::infinitesimal_expression(Contac
 template <int Dim> ForceExpression Statics<Dim>::distance_expression(ContactId contact, double sigma) const {
     ForceExpression e = force_expression(contact, sigma);
     e.shift = nullptr; // the same for all that are compared
-    e.divisor = ForceExpression::Divisor::part;
     e.divisor_part = unit;
     return e;
 }

@@ -4,6 +4,8 @@
 #include "trajectory/prover.hpp"
 #include "trajectory/record.hpp"
 
+#include <algorithm>
+
 namespace isostat {
 
 namespace {
@@ -131,40 +133,66 @@ template <int Dim> ArcProposal<Dim> BoundedSteering<Dim>::proposal(Arc<Dim> path
     return arc;
 }
 
-/// Its power is proved negative at the end: it turned before.
-template <int Dim> bool BoundedSteering<Dim>::went_too_far(const ArcProof<Dim>& refused) const {
-    const ArcRecord<Dim>& record = refused.record;
-    return refused.reached && !refused.next && !record.power_turn && !next_to_ && !arc_options_.sharp_power &&
-           record.power + record.power_bound < 0;
+/// What may be wrong with a proposal that was refused, and what is proposed in its place.
+template <int Dim> struct BoundedSteering<Dim>::Remedy {
+    bool (*applies)(const BoundedSteering&, const ArcProof<Dim>&);
+    void (*propose)(BoundedSteering&, const ArcProof<Dim>&);
+};
+
+/// In the order in which they are tried.
+template <int Dim> auto BoundedSteering<Dim>::remedies() -> const std::vector<Remedy>& {
+    using S = BoundedSteering;
+    using Proof = ArcProof<Dim>;
+    static const std::vector<Remedy> table{
+        // Another contact closed before: that one closes.
+        {[](const S&, const Proof& p) { return p.closed_before.has_value(); },
+         [](S& s, const Proof& p) { (s.next_to_ ? s.next_to_ : s.arc_options_.closes) = p.closed_before; }},
+        // Nothing is proved of an end that old factors found: fresh ones.
+        {[](const S& s, const Proof& p) {
+             return !p.vertex && !s.fresh_ && !s.next_to_ && !s.from_.factorisation.is_fresh();
+         },
+         [](S& s, const Proof&) { s.fresh_.emplace(s.from_.structure); }},
+        // The power is proved negative at the end: it turned before, and is looked at with more care.
+        {[](const S& s, const Proof& p) {
+             return p.reached && !p.next && !p.record.power_turn && !s.next_to_ && !s.arc_options_.sharp_power &&
+                    p.record.power + p.record.power_bound < 0;
+         },
+         [](S& s, const Proof&) { s.arc_options_.sharp_power = true; }},
+        // A nearly singular list is another matrix at the end that double finds: an end with more digits.
+        {[](const S& s, const Proof& p) {
+             return !p.vertex && !s.precisely_ && !s.next_to_ && p.record.closed.kind != ContactKind::held;
+         },
+         [](S& s, const Proof&) { s.precisely_ = true; }},
+        // A nearly singular list has no end in double: the whole arc in double-double.
+        {[](const S& s, const Proof& p) { return !p.vertex && !s.arc_options_.precisely && !s.next_to_; },
+         [](S& s, const Proof& p) {
+             s.arc_options_.precisely = true;
+             s.refused_ = p.failure;
+         }},
+        // Where ties are chosen, and no list is regular at the end: the pair may only graze, and is passed by. The gaps
+        // at the end of the arc tell whether it did.
+        {[](const S& s, const Proof& p) {
+             const Contact& closed = p.record.closed;
+             return !p.vertex && !p.list_for_end && !s.next_to_ && s.from_.perturbed &&
+                    s.from_.perturbed->statics.chooses() && closed.kind != ContactKind::held && closed != s.opened_ &&
+                    !s.arc_options_.closes;
+         },
+         [](S& s, const Proof& p) {
+             s.arc_options_.taken_to_rest.push_back(p.record.closed);
+             s.refused_ = p.failure;
+         }}};
+    return table;
 }
 
-template <int Dim> bool BoundedSteering<Dim>::may_graze(const ArcProof<Dim>& refused) const {
-    const Contact& closed = refused.record.closed;
-    return !refused.vertex && !refused.list_for_end && !next_to_ && from_.perturbed &&
-           from_.perturbed->statics.chooses() && closed.kind != ContactKind::held && closed != opened_ &&
-           !arc_options_.closes;
+template <int Dim> auto BoundedSteering<Dim>::remedy(const ArcProof<Dim>& refused) const -> const Remedy* {
+    const auto& all = remedies();
+    const auto first = std::find_if(all.begin(), all.end(), [&](const Remedy& r) { return r.applies(*this, refused); });
+    return first == all.end() ? nullptr : &*first;
 }
 
-template <int Dim> bool BoundedSteering<Dim>::revise(const ArcProof<Dim>& refused) {
-    if (refused.closed_before) {
-        (next_to_ ? next_to_ : arc_options_.closes) = refused.closed_before;
-    } else if (!refused.vertex && !fresh_ && !next_to_ && !from_.factorisation.is_fresh()) {
-        fresh_.emplace(from_.structure); // old factors may also have ended it badly
-    } else if (went_too_far(refused)) {
-        arc_options_.sharp_power = true;
-    } else if (!refused.vertex && !precisely_ && !next_to_ && refused.record.closed.kind != ContactKind::held) {
-        precisely_ = true; // before what double takes for the end the contacts are another matrix
-    } else if (!refused.vertex && !arc_options_.precisely && !next_to_) {
-        arc_options_.precisely = true; // contacts that are nearly singular leave no end in double
-        refused_ = refused.failure;
-    } else if (may_graze(refused)) {
-        arc_options_.taken_to_rest.push_back(refused.record.closed); // the gaps at the end tell whether it did
-        refused_ = refused.failure;
-    } else {
-        return false;
-    }
+template <int Dim> void BoundedSteering<Dim>::revise(const ArcProof<Dim>& refused) {
+    remedy(refused)->propose(*this, refused);
     proposed_ = false;
-    return true;
 }
 
 template class BoundedSteering<2>;

@@ -4,17 +4,15 @@
 
 #include "motion/arc.hpp"
 #include "trajectory/steering.hpp"
-#include "trajectory/ties.hpp"
+#include "trajectory/ties/ties.hpp"
 
 namespace isostat {
 
 /// The arc from a vertex, with its factors or fresh ones where these serve badly, and with residuals in double-double
-/// where it does not converge otherwise. A proof that finds another contact closed before, a power that is negative at
-/// the end, or nothing at all with old factors, is answered by another proposal; no vertex with fresh factors by an end
-/// in more digits, then by the arc in double-double; where ties are chosen also one that finds no regular vertex, nor a
-/// list that would be regular there: the pair that seemed to close may only graze, and is passed by. Failures besides
-/// those of `follow_arc`: that of `departure`; that of an end for which nothing better was found; `undecided` when the
-/// order of the contacts that close is not settled in a few proposals.
+/// where it does not converge otherwise. A proposal that was refused is followed by another one where a remedy applies
+/// (the table in bounded_steering.cpp). Failures besides those of `follow_arc`: that of `departure`; that of an end for
+/// which nothing better was found; `undecided` when the order of the contacts that close is not settled in a few
+/// proposals.
 template <int Dim> class BoundedSteering final : public Steering<Dim> {
   public:
     /// `departure`: of the pairs that touch; none overlaps at second order. The candidates and the load must outlive
@@ -24,15 +22,18 @@ template <int Dim> class BoundedSteering final : public Steering<Dim> {
 
     [[nodiscard]] bool goes_on() const override { return !proposed_; }
     Result<ArcProposal<Dim>> propose() override;
-    bool revise(const ArcProof<Dim>& refused) override;
+    [[nodiscard]] bool may_revise(const ArcProof<Dim>& refused) const override { return remedy(refused) != nullptr; }
+    void revise(const ArcProof<Dim>& refused) override;
 
   private:
+    struct Remedy;
+    static const std::vector<Remedy>& remedies();
+    /// The first that applies; null: none does.
+    [[nodiscard]] const Remedy* remedy(const ArcProof<Dim>& refused) const;
     void refresh();
     Result<Arc<Dim>> attempt();
     [[nodiscard]] ArcProposal<Dim> proposal(Arc<Dim> path) const;
     void improve_end(Arc<Dim>& path) const;
-    [[nodiscard]] bool went_too_far(const ArcProof<Dim>& refused) const;
-    [[nodiscard]] bool may_graze(const ArcProof<Dim>& refused) const;
 
     std::shared_ptr<const Vertex<Dim>> vertex_;
     const Vertex<Dim>& from_; ///< the same

@@ -37,7 +37,18 @@ FloatingSteering<Dim>::FloatingSteering(const Origin& from, const ArcStart<Dim>&
     arc_options_.extrapolate_tangent = true;
 }
 
+/// How far it goes in vain depends on the threads: its work is counted when the arc is recorded.
 template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::propose() {
+    WorkCounts work{};
+    const CountingIn counting(&work);
+    auto arc = next();
+    if (arc.ok()) {
+        arc.value().work = work;
+    }
+    return arc;
+}
+
+template <int Dim> Result<ArcProposal<Dim>> FloatingSteering<Dim>::next() {
     ArcProposal<Dim> arc;
     ArcRecord<Dim>& record = arc.record;
     record.step = start_.step;

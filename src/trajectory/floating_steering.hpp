@@ -35,7 +35,6 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
 
     [[nodiscard]] bool goes_on() const override { return !ended_; }
     Result<ArcProposal<Dim>> propose() override;
-    bool revise(const ArcProof<Dim>& /*refused*/) override { return false; }
 
   private:
     /// What is known at the start of an arc: what its forces cost, and its end as predicted, with the vertex there.
@@ -44,6 +43,7 @@ template <int Dim> class FloatingSteering final : public Steering<Dim> {
         std::optional<typename ArcDeparture<Dim>::Expected> end;
         Future<PredictedVertex<Dim>> vertex; ///< refers to `end`, and to the vertex at the start
     };
+    Result<ArcProposal<Dim>> next();
     Result<Arc<Dim>> follow(Prediction& prediction);
     [[nodiscard]] std::optional<Failure> check_work(const ArcRecord<Dim>& record, const Arc<Dim>& path) const;
     [[nodiscard]] std::optional<Failure> arrive(ArcProposal<Dim>& arc, Arc<Dim>& path, Prediction& prediction);

@@ -4,10 +4,8 @@
 
 #include "trajectory/rearrangement.hpp"
 
-#include <array>
 #include <functional>
 #include <optional>
-#include <vector>
 
 namespace isostat {
 
@@ -16,8 +14,7 @@ template <int Dim> struct Attempt {
     Opening opening;
     ArcKind kind = ArcKind::limit;
     LimitLoad<Dim> at;
-    std::vector<TieDecision> chosen{}; ///< why this one opens, where the rule takes another first
-    bool begun = false;                ///< an arc was recorded
+    bool begun = false; ///< an arc was recorded
     /// Its first arc is not decided.
     [[nodiscard]] bool in_vain(const Result<Reached<Dim>>& reached) const {
         return !reached.ok() && reached.failure().kind == FailureKind::undecided && !begun;
@@ -25,9 +22,8 @@ template <int Dim> struct Attempt {
 };
 
 /// Follows an attempt at a limit of the statics. In vain, and without first-order terms, it may begin with the load
-/// rounded away from `sigma` in `direction`, or, by `TiePolicy::by_class`, with another force that vanishes at the same
-/// load; `attempt` is then that one. `follow` carries one out and sets its `begun`; counters of `recorder` are those of
-/// the attempt that is returned. Failure: that of the first attempt, or of the last.
+/// rounded away from `sigma` in `direction`; `attempt` is then that one. `follow` carries one out and sets its `begun`;
+/// counters of `recorder` are those of the attempt that is returned. Failure: that of the last attempt.
 template <int Dim> class LimitAttempts {
   public:
     using Follow = std::function<Result<Reached<Dim>>(Attempt<Dim>&)>;
@@ -39,9 +35,6 @@ template <int Dim> class LimitAttempts {
 
   private:
     std::optional<double> beyond();
-    std::optional<Result<Reached<Dim>>> open_another(Attempt<Dim>& attempt, const std::array<LimitLoad<Dim>, 2>& loads,
-                                                     const RunCounters& before);
-    [[nodiscard]] Failure offering_class(const Failure& failure, ContactId first) const;
 
     Statics<Dim>& statics_;
     double sigma_;

@@ -152,15 +152,13 @@ Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::vertex(Packing<Dim> packing, s
     if (!made.ok()) {
         return made.failure();
     }
-    if (first_order_ != nullptr) {
-        first_order_->attach(*made.value(), at);
-    }
+    ties_->attach(*made.value(), at);
     return std::shared_ptr<Vertex<Dim>>(std::move(made.value()));
 }
 
 template <int Dim> LadderOptions Prover<Dim>::ladder() const {
     LadderOptions options;
-    if (options_->ties == TiePolicy::choose) {
+    if (options_->chooses()) {
         options.first_bits = 280;
         options.max_bits = 1120; // tie_bits, and what a bad condition takes
     }
@@ -232,8 +230,7 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
                                                       "are held would change by a rounding"});
     }
     LadderOptions options = ladder();
-    options.first_accuracy =
-        first_order_ != nullptr ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
+    options.first_accuracy = ties_->settles() ? 0 : enough_to_decide; // ties are told from zeros at full accuracy
     auto made = Vertex<Dim>::exchanged(from, arc, at.load, bounds_, options);
     if (!made.ok()) {
         if (from.perturbed && from.perturbed->statics.chooses() && !arc.stays) {
@@ -242,16 +239,13 @@ std::optional<Failure> Prover<Dim>::reach(ArcProof<Dim>& proof, const Vertex<Dim
         return at_end(not_proved(made.failure()));
     }
     proof.vertex = std::move(made.value());
-    if (first_order_ != nullptr) {
-        if (auto end = arc.stays ? std::nullopt : nearer(*proof.vertex)) {
-            auto again =
-                Vertex<Dim>::make(std::move(*end), proof.vertex->structure.contacts(), at.load, bounds_, options);
-            if (again.ok()) {
-                proof.vertex = std::move(again.value());
-            }
+    if (auto end = ties_->settles() && !arc.stays ? nearer(*proof.vertex) : std::nullopt) {
+        auto again = Vertex<Dim>::make(std::move(*end), proof.vertex->structure.contacts(), at.load, bounds_, options);
+        if (again.ok()) {
+            proof.vertex = std::move(again.value());
         }
-        first_order_->attach(*proof.vertex, at);
     }
+    ties_->attach(*proof.vertex, at);
     const auto found = gaps(*proof.vertex, touch_still(from, arc));
     if (!found.ok()) {
         return at_end(found.failure());
@@ -303,7 +297,7 @@ Result<std::shared_ptr<Vertex<Dim>>> Prover<Dim>::exchange(const Vertex<Dim>& fr
 template <int Dim>
 std::optional<Failure> Prover<Dim>::arrive(ArcProof<Dim>& proof, std::vector<TieDecision> settled, const Way& way,
                                            const typename Vertex<Dim>::Gaps& gaps) const {
-    if (first_order_ != nullptr && !gaps.zero.empty()) {
+    if (!gaps.zero.empty()) {
         auto arrival = isostat::arrive(*proof.vertex, gaps.zero, way);
         if (!arrival.ok()) {
             return arrival.failure();
@@ -439,9 +433,7 @@ EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, 
     }
     proof.vertex = std::move(made.value());
     Vertex<Dim>& vertex = *proof.vertex;
-    if (first_order_ != nullptr) { // the load is again the stored one, if the forces allow it
-        first_order_->attach(vertex, {limit.load});
-    }
+    ties_->attach(vertex, {limit.load}); // the load is again the stored one, if the forces allow it
     auto found = gaps(vertex);
     if (!found.ok()) {
         proof.failure = found.failure();
@@ -451,18 +443,15 @@ EndProof<Dim> Prover<Dim>::prove_end(typename Vertex<Dim>::Beginning beginning, 
     if (proof.gaps.negative) {
         return proof;
     }
-    if (first_order_ != nullptr) {
-        proof.failure = first_order_->settle_load(vertex, limit, zeros);
-        proof.failure = proof.failure ? proof.failure : settle_touching(vertex, proof.gaps.zero);
-        if (proof.failure) {
-            return proof;
-        }
-        proof.decision = ask_again(vertex, limit.stress());
-    } else {
-        proof.decision = decide(vertex, limit.stress(), hold.valid() ? ZeroHolds{hold, {}} : ZeroHolds{}, step);
+    proof.failure = ties_->settle_end(vertex, limit, zeros, proof.gaps.zero);
+    if (proof.failure) {
+        return proof;
     }
+    proof.decision = ties_->settles()
+                         ? ask_again(vertex, limit.stress())
+                         : decide(vertex, limit.stress(), hold.valid() ? ZeroHolds{hold, {}} : ZeroHolds{}, step);
     if (proof.decision->ok() && !proof.decision->value().opening) {
-        if (first_order_ == nullptr) {
+        if (!ties_->settles()) {
             (void)ask_again(vertex, limit.stress());
         }
         proof.description = describe(vertex, limit.load);

@@ -3,12 +3,12 @@
 /// Proves what steering proposes, and equilibria from nothing: private to the room.
 
 #include "trajectory/counting.hpp"
-#include "trajectory/first_order_side.hpp"
 #include "trajectory/kept_candidates.hpp"
 #include "trajectory/record.hpp"
-#include "trajectory/second_order.hpp"
 #include "trajectory/steering.hpp"
-#include "trajectory/ties.hpp"
+#include "trajectory/ties/second_order.hpp"
+#include "trajectory/ties/settling.hpp"
+#include "trajectory/ties/ties.hpp"
 #include "trajectory/vertex.hpp"
 
 #include <isostat/trajectory/trajectory.hpp>
@@ -54,6 +54,7 @@ template <int Dim> struct EndProof {
     std::optional<Failure> failure; ///< of the vertex, its gaps or its load: then nothing else is there
     std::optional<Result<OpeningDecision>> decision;     ///< none: a gap is negative
     std::optional<Result<Description<Dim>>> description; ///< of an equilibrium only
+    WorkCounts work{};                                   ///< to be counted when it is taken
 };
 
 /// A failure of an arc or at its end, where N = N_f: a rank that is not proved full is no proof that it is smaller, and
@@ -69,9 +70,10 @@ inline Failure not_proved(Failure failure) {
 /// Nothing else touches these, whatever thread the prover works on; one thread at a time.
 template <int Dim> class Prover {
   public:
-    /// `first_order`: under `ties = "perturb"` or `"choose"`, else null. Both must outlive the prover.
-    Prover(const RunOptions& options, const FirstOrderSide<Dim>* first_order)
-        : options_(&options), first_order_(first_order) {}
+    /// Both must outlive the prover.
+    Prover(const RunOptions& options, const TieSettling<Dim>& ties) : options_(&options), ties_(&ties) {}
+    /// Another one, which keeps nothing of what was before.
+    [[nodiscard]] Prover another() const { return {*options_, *ties_}; }
 
     /// Keeps nothing of what was before but a complete list of candidates at the packing, if it has that: what follows
     /// does not depend on the past, so that a resumed run goes the same way. `near`: see `find_candidates`.
@@ -84,7 +86,7 @@ template <int Dim> class Prover {
                                                 const LimitLoad<Dim>& at);
     /// `known`: pairs that touch, as far as that is known before.
     Result<typename Vertex<Dim>::Gaps> gaps(Vertex<Dim>& vertex, const ZeroGaps& known = {}) {
-        return vertex.check_gaps(candidates_, kept_, first_order_ != nullptr ? &known : nullptr);
+        return vertex.check_gaps(candidates_, kept_, ties_->settles() ? &known : nullptr);
     }
     /// Whether the arc from a vertex, which starts with what was proved to open there, ends where it is proposed to,
     /// and what opens there: regularity, true vertex, order of the gaps, descent, power, next opening.
@@ -118,7 +120,7 @@ template <int Dim> class Prover {
     static std::optional<Failure> power(ArcProof<Dim>& proof, const Opening& opening, double stress);
 
     const RunOptions* options_;
-    const FirstOrderSide<Dim>* first_order_;
+    const TieSettling<Dim>* ties_;
     CandidateList<Dim> candidates_;
     KeptCandidates kept_; ///< of `candidates_`
     InverseBoundCache bounds_;

@@ -25,12 +25,10 @@ template <int Dim> void Standing<Dim>::move_to(std::shared_ptr<Vertex<Dim>> to, 
 template <int Dim>
 Rearrangement<Dim>::Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder)
     : prover_(prover), recorder_(recorder), at_(std::move(start.at)),
-      here_{std::move(start.vertex), start.opening, start.kind, std::move(start.chosen)},
+      here_{std::move(start.vertex), start.opening, start.kind},
       tilts_at_start_(here_.vertex->packing.q.begin() +
                           static_cast<std::ptrdiff_t>(here_.vertex->packing.length_at(Dim)),
-                      here_.vertex->packing.q.end()) {
-    here_.by_steps = !here_.settled.empty();
-}
+                      here_.vertex->packing.q.end()) {}
 
 template <int Dim> std::string Rearrangement<Dim>::where(int arc) const {
     return fmt::format("arc {} of the rearrangement at sigma = {:.17g}", arc, at_.stress());
@@ -47,6 +45,7 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run() {
     if (!end_) {
         end_ = prove_end(prover_, at_here());
     }
+    count_all(end_->work);
     if (auto failure = judge(*end_)) {
         return *failure;
     }
@@ -55,7 +54,7 @@ template <int Dim> Result<Reached<Dim>> Rearrangement<Dim>::run() {
 
 /// The other rules choose by differences that floating steering does not resolve.
 template <int Dim> bool Rearrangement<Dim>::floats() const {
-    return !at_first_order(options().ties) && options().rule == OpeningRule::most_negative && !here_.by_steps &&
+    return !options().at_first_order() && options().rule == OpeningRule::most_negative && !here_.by_steps &&
            here_.resting.empty();
 }
 
@@ -67,7 +66,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
             return failure;
         }
         if (!steering_) {
-            steering_ = make_steering();
+            begin_steering();
         }
         ProofChain<Dim> chain(prover_, here_.vertex, here_.opening, at_);
         Proofs proofs([&](ArcProposal<Dim>& arc) { return chain.prove(arc); }, ahead_ ? window : 0);
@@ -82,23 +81,21 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::follow_arcs() {
                 return failure;
             }
         }
-        WorkCounts beside{};
-        Prover<Dim> other(options(), nullptr);
+        Prover<Dim> other = prover_.another();
         std::optional<EndProof<Dim>> end;
         if (ahead_ && steered_to_ && !steered_to_->fresh_hold.valid() && !proofs.ended()) {
-            const CountingIn counting(&beside); // the last proofs may say that it is none
-            end = prove_end(other, std::move(*steered_to_));
+            end = prove_end(other, std::move(*steered_to_)); // the last proofs may say that it is none
         }
         proofs.finish();
         if (auto failure = record(proofs)) {
             return failure;
         }
         if (ended_ && end && arcs_ == before + proposed_) {
-            count_all(beside);
             prover_ = std::move(other);
             end_ = std::move(end);
         }
-        if (auto failure = answer(chain.refused(), failed, arcs_ > before)) {
+        ArcProof<Dim>* refused = chain.refused() ? &*chain.refused() : nullptr;
+        if (auto failure = act(answer(refused, !failed), refused, failed, arcs_ > before)) {
             return failure;
         }
     }
@@ -121,22 +118,24 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::cap() const {
     return std::nullopt;
 }
 
-template <int Dim> std::unique_ptr<Steering<Dim>> Rearrangement<Dim>::make_steering() {
-    const Vertex<Dim>& vertex = *here_.vertex;
-    ArcStart<Dim> start{here_.opening, here_.kind, recorder_.counters.steps + 1, &at_.load, {}};
+/// From where the rearrangement stands, ahead of the proofs or not; then the list there may become another one.
+template <int Dim> void Rearrangement<Dim>::begin_steering() {
     ahead_ = floats();
-    if (!ahead_) {
-        if (arcs_ == 0) {
-            take_log(*here_.vertex, here_.settled);
-        }
-        auto departure = depart();
-        start.settled = here_.settled;
-        return std::make_unique<BoundedSteering<Dim>>(here_.vertex, std::move(start), std::move(departure),
-                                                      options().step_fraction, prover_.candidates());
+    const long step = recorder_.counters.steps + 1;
+    if (ahead_) {
+        const Vertex<Dim>& from = *here_.vertex;
+        steering_ = std::make_unique<FloatingSteering<Dim>>(
+            typename FloatingSteering<Dim>::Origin{from.packing, from.structure, from.factorisation},
+            ArcStart<Dim>{here_.opening, here_.kind, step, &at_.load, {}}, options(), prover_.candidates());
+        return;
     }
-    return std::make_unique<FloatingSteering<Dim>>(
-        typename FloatingSteering<Dim>::Origin{vertex.packing, vertex.structure, vertex.factorisation}, start,
-        options(), prover_.candidates());
+    if (arcs_ == 0) {
+        take_log(*here_.vertex, here_.settled);
+    }
+    auto departure = depart();
+    steering_ = std::make_unique<BoundedSteering<Dim>>(
+        here_.vertex, ArcStart<Dim>{here_.opening, here_.kind, step, &at_.load, here_.settled}, std::move(departure),
+        options().step_fraction, prover_.candidates());
 }
 
 /// What becomes of pairs that touch, on a list with which the contact can open (C3): `here_` may get another one.
@@ -176,19 +175,11 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::relist(const ListE
 }
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::propose(Proofs& proofs) {
-    WorkCounts work{};
-    auto arc = [&] {
-        if (!ahead_) {
-            return steering_->propose();
-        }
-        const CountingIn counting(&work); // how far it goes in vain depends on the threads
-        return steering_->propose();
-    }();
+    auto arc = steering_->propose();
     if (!arc.ok()) {
         return arc.failure();
     }
     ++proposed_;
-    arc.value().work = work;
     steered_to_ = std::move(arc.value().last);
     proofs.submit(std::move(arc.value()));
     return std::nullopt;
@@ -200,7 +191,10 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::record(Proofs& pro
         if (!proof) {
             break;
         }
-        recorder_.record(*proof, ++arcs_, at_.stress());
+        count_all(proof->work);
+        if (auto failure = recorder_.record(*proof, ++arcs_, at_.stress())) {
+            return located(*failure, where(arcs_));
+        }
         if (auto failure = decide(*proof)) {
             return failure;
         }
@@ -249,45 +243,61 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::flows(const ArcPro
     return std::nullopt;
 }
 
-/// What to do about an arc that could not be proposed, or whose proof did not agree; `any`: others before did.
+template <int Dim> auto Rearrangement<Dim>::answer(const ArcProof<Dim>* refused, bool proposed) const -> Answer {
+    if (ahead_) {
+        return Answer::by_steps;
+    }
+    if (!proposed) {
+        return Answer::not_proposed;
+    }
+    if (refused == nullptr) {
+        return Answer::agreed;
+    }
+    if (steering_->may_revise(*refused)) {
+        return Answer::revised;
+    }
+    if (refused->list_for_end && here_.settled.size() < most_exchanges) {
+        return Answer::relisted;
+    }
+    if (refused->next) {
+        return Answer::next_unknown;
+    }
+    return refused->reached && here_.kind == ArcKind::release && !refused->descends ? Answer::set_aside
+                                                                                    : Answer::refused;
+}
+
+/// `any`: arcs that were proposed before this one agreed.
 template <int Dim>
-std::optional<Failure> Rearrangement<Dim>::answer(std::optional<ArcProof<Dim>>& refused,
-                                                  const std::optional<Failure>& failed, bool any) {
-    if (ahead_) { // proposed in vain: what depends on it is done again
-        count_all(refused ? refused->work : WorkCounts{});
+std::optional<Failure> Rearrangement<Dim>::act(Answer answer, ArcProof<Dim>* refused,
+                                               const std::optional<Failure>& not_proposed, bool any) {
+    if (refused != nullptr) {
+        count_all(refused->work);
+    }
+    switch (answer) {
+    case Answer::agreed: steering_.reset(); return std::nullopt; // it was for one arc
+    case Answer::by_steps:
         here_.by_steps = !any;
         steering_.reset();
         return std::nullopt;
-    }
-    if (failed) {
+    case Answer::not_proposed:
         ++recorder_.counters.steps;
         recorder_.count({DecisionKind::opening, here_.opening.margin, here_.opening.rung, here_.opening.perturbed});
-        return located(not_proved(*failed), where(arcs_ + 1));
-    }
-    if (!refused) {
-        steering_.reset(); // it was for one arc
-        return std::nullopt;
-    }
-    if (steering_->revise(*refused)) {
-        count_all(refused->work);
-        return std::nullopt;
-    }
-    if (refused->list_for_end && here_.settled.size() < most_exchanges) {
-        count_all(refused->work);
+        return located(not_proved(*not_proposed), where(arcs_ + 1));
+    case Answer::revised: steering_->revise(*refused); return std::nullopt;
+    case Answer::relisted:
         steering_.reset();
         if (auto failure = relist(*refused->list_for_end)) {
             return located(*failure, where(arcs_ + 1));
         }
         return std::nullopt;
+    case Answer::next_unknown: {
+        const auto over = recorder_.record(*refused, ++arcs_, at_.stress());
+        return located(over.value_or(refused->next->failure()), where(arcs_));
     }
-    if (refused->next) {
-        recorder_.record(*refused, ++arcs_, at_.stress());
-        return located(refused->next->failure(), where(arcs_));
+    case Answer::set_aside: recorder_.count(*refused); return set_aside(refused->record);
+    case Answer::refused: break;
     }
     recorder_.count(*refused);
-    if (refused->reached && here_.kind == ArcKind::release && !refused->descends) {
-        return set_aside(refused->record);
-    }
     ++recorder_.counters.steps;
     return located(*refused->failure, where(arcs_ + 1));
 }
@@ -324,15 +334,22 @@ template <int Dim> SteeredEnd<Dim> Rearrangement<Dim>::at_here() const {
 /// The end is proved from nothing that the way to it left: full exact elimination, fresh factors and bound. A resumed
 /// run starts from the same bits.
 template <int Dim> EndProof<Dim> Rearrangement<Dim>::prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end) {
-    Task listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
-    auto begun = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
-    listing.finish();
     EndProof<Dim> proof;
-    if (!begun.ok()) {
-        proof.failure = begun.failure();
-        return proof;
+    WorkCounts work{};
+    {
+        const CountingIn counting(&work);
+        Task listing([&prover, packing = end.packing, near = end.triangulation] { prover.start_at(packing, near); });
+        auto begun = Vertex<Dim>::begin(std::move(end.packing), std::move(end.contacts));
+        listing.finish();
+        if (begun.ok()) {
+            proof =
+                prover.prove_end(std::move(begun.value()), at_, end.fresh_hold, here_.zeros, recorder_.counters.steps);
+        } else {
+            proof.failure = begun.failure();
+        }
     }
-    return prover.prove_end(std::move(begun.value()), at_, end.fresh_hold, here_.zeros, recorder_.counters.steps);
+    proof.work = work;
+    return proof;
 }
 
 template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndProof<Dim>& end) const {
@@ -347,7 +364,7 @@ template <int Dim> std::optional<Failure> Rearrangement<Dim>::judge(const EndPro
         return std::nullopt;
     }
     return failed(FailureKind::undecided, "{}: not found again with {}{}", at_equilibrium(),
-                  at_first_order(options().ties) ? "the load as it is stored" : "fresh factors and bounds",
+                  options().at_first_order() ? "the load as it is stored" : "fresh factors and bounds",
                   decision.ok() ? Words() : words(": {}", decision.failure()));
 }
 

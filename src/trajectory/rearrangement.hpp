@@ -24,7 +24,7 @@ template <int Dim> struct Standing {
     std::shared_ptr<Vertex<Dim>> vertex; ///< the last one that was proved
     Opening opening;                     ///< what opens there
     ArcKind kind = ArcKind::limit;       ///< of the arc that it begins
-    /// Why this one opens, where the rule takes another first; lists that were exchanged. Recorded with the arc.
+    /// Why this one opens, and lists that were exchanged. Recorded with the arc.
     std::vector<TieDecision> settled{};
     ContactId fresh_hold{};           ///< of the power turn that ended there
     std::vector<ContactId> resting{}; ///< holds whose multipliers are 0 as far as their turns are located
@@ -47,7 +47,6 @@ template <int Dim> class Rearrangement {
         Opening opening;
         ArcKind kind = ArcKind::limit; ///< of the first arc
         LimitLoad<Dim> at;
-        std::vector<TieDecision> chosen{}; ///< why this one opens, where the rule takes another first
     };
     /// All must outlive the rearrangement.
     Rearrangement(Start start, Prover<Dim>& prover, Recorder<Dim>& recorder);
@@ -62,7 +61,7 @@ template <int Dim> class Rearrangement {
     [[nodiscard]] bool floats() const;
     std::optional<Failure> follow_arcs();
     [[nodiscard]] std::optional<Failure> cap() const;
-    std::unique_ptr<Steering<Dim>> make_steering();
+    void begin_steering();
     Result<Departure<Dim>> depart();
     std::optional<Failure> relist(const ListExchange& exchange);
     using Proofs = Pipeline<ArcProposal<Dim>, ArcProof<Dim>>;
@@ -70,8 +69,20 @@ template <int Dim> class Rearrangement {
     std::optional<Failure> record(Proofs& proofs);
     std::optional<Failure> decide(ArcProof<Dim>& proof);
     [[nodiscard]] std::optional<Failure> flows(const ArcProof<Dim>& proof) const;
-    std::optional<Failure> answer(std::optional<ArcProof<Dim>>& refused, const std::optional<Failure>& failed,
-                                  bool any);
+    /// What becomes of the last arc that was proposed.
+    enum class Answer {
+        agreed,       ///< it is recorded: the next one begins at its end
+        by_steps,     ///< proposed ahead, in vain: it is proposed again, proved before anything follows
+        not_proposed, ///< the rearrangement ends: the arc was not followed to an end
+        revised,      ///< another proposal for the same arc
+        relisted,     ///< another list at its start, with which its end may be regular
+        next_unknown, ///< the rearrangement ends after it: what opens there is not decided
+        set_aside,    ///< a held coordinate that was released stays, and another opens
+        refused       ///< the rearrangement ends: it is not proved
+    };
+    [[nodiscard]] Answer answer(const ArcProof<Dim>* refused, bool proposed) const;
+    std::optional<Failure> act(Answer answer, ArcProof<Dim>* refused, const std::optional<Failure>& not_proposed,
+                               bool any);
     std::optional<Failure> set_aside(const ArcRecord<Dim>& record);
     [[nodiscard]] SteeredEnd<Dim> at_here() const;
     EndProof<Dim> prove_end(Prover<Dim>& prover, SteeredEnd<Dim> end);

@@ -1,5 +1,7 @@
 #include "trajectory/recorder.hpp"
 
+#include "contact/words.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,25 +15,33 @@ template <int Dim> void Recorder<Dim>::count(const Decision& decision) {
 }
 
 template <int Dim> void Recorder<Dim>::count(const ArcProof<Dim>& proof) {
-    count_all(proof.work);
     for (const Decision& decision : proof.decisions) {
         count(decision);
     }
 }
 
-template <int Dim> void Recorder<Dim>::record(ArcProof<Dim>& proof, int arc, double stress) {
+template <int Dim> std::optional<Failure> Recorder<Dim>::record(ArcProof<Dim>& proof, int arc, double stress) {
     ArcRecord<Dim>& record = proof.record;
+    const long choices =
+        counters.tally.choices + std::count_if(record.perturbed.begin(), record.perturbed.end(),
+                                               [](const auto& tie) { return tie.choice != TieChoice::none; });
+    if (choices > options.max_choices) {
+        return failed(FailureKind::undecided,
+                      "the arc that opens {} and closes {} rests on choice {} of the run (cap "
+                      "max_choices = {})",
+                      named<Dim>(record.opened), named<Dim>(record.closed), choices, options.max_choices);
+    }
+    counters.tally.choices = choices;
     record.step = ++counters.steps;
     record.equilibrium = counters.equilibria;
     record.arc = arc;
     record.stress = stress;
     count(proof);
-    counters.tally.choices += std::count_if(record.perturbed.begin(), record.perturbed.end(),
-                                            [](const TieDecision& tie) { return tie.choice != TieChoice::none; });
     if (record.certificate) {
         count(*record.certificate, proof.seconds);
     }
     observer.on_arc(record);
+    return std::nullopt;
 }
 
 template <int Dim> void Recorder<Dim>::take_margin(EquilibriumRecord<Dim>& record) {

@@ -19,10 +19,11 @@ template <int Dim> class Recorder {
 
     [[nodiscard]] bool stopped() const { return options.stop != nullptr && options.stop->load(); }
     void count(const Decision& decision);
-    /// Its work and its decisions.
+    /// Its decisions.
     void count(const ArcProof<Dim>& proof);
-    /// An arc that happened: numbered, counted and shown.
-    void record(ArcProof<Dim>& proof, int arc, double stress);
+    /// An arc that happened: numbered, counted and shown. Failure: it rests on more choices than are left; it is not
+    /// recorded then.
+    std::optional<Failure> record(ArcProof<Dim>& proof, int arc, double stress);
     /// Smallest margin and highest rung of the decisions since the last call, into the record of an equilibrium.
     void take_margin(EquilibriumRecord<Dim>& record);
 

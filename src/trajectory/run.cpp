@@ -31,7 +31,6 @@ template <int Dim> class Run {
     SegmentOutcome run();
 
   private:
-    [[nodiscard]] bool perturbs() const { return first_order_ != nullptr; }
     [[nodiscard]] bool resumed() const { return counters_.equilibria != 0 || counters_.steps != 0; }
     [[nodiscard]] LimitLoad<Dim> load() const { return {state_.load}; }
     [[nodiscard]] double sigma() const { return state_.load.loaded_stress(); }
@@ -59,12 +58,8 @@ template <int Dim> class Run {
     RunCounters& counters_;
     double seconds_before_;
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-    std::unique_ptr<const FirstOrderSide<Dim>> first_order_ = ///< null: ties end the run
-        at_first_order(recorder_.options.ties)
-            ? std::make_unique<const FirstOrderSide<Dim>>(state_, recorder_.options.ties_seed,
-                                                          recorder_.options.ties == TiePolicy::choose)
-            : nullptr;
-    Prover<Dim> prover_{recorder_.options, first_order_.get()};
+    std::unique_ptr<const TieSettling<Dim>> ties_ = tie_settling(state_, recorder_.options);
+    Prover<Dim> prover_{recorder_.options, *ties_};
     std::shared_ptr<Vertex<Dim>> vertex_;
     EquilibriumRecord<Dim> record_;                  ///< of `vertex_`
     std::array<std::optional<LoadLimit>, 2> limits_; ///< of `vertex_`, as `describe` found them
@@ -93,7 +88,7 @@ template <int Dim> SegmentOutcome Run<Dim>::run() {
 }
 
 template <int Dim> std::optional<Failure> Run<Dim>::start() {
-    auto begun = start_segment(state_, prover_, first_order_.get(), resumed());
+    auto begun = start_segment(state_, prover_, *ties_, resumed());
     if (!begun.ok()) {
         return located(begun.failure(), "start");
     }
@@ -139,7 +134,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::first_equilibrium(const Segm
 /// What the state stores says of `vertex_`; with first-order terms it must be an equilibrium again.
 template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
     auto decision = prover_.ask_again(*vertex_, sigma());
-    if (!perturbs() || (decision.ok() && !decision.value().opening)) {
+    if (!ties_->settles() || (decision.ok() && !decision.value().opening)) {
         return std::nullopt;
     }
     return failed(FailureKind::undecided,
@@ -149,7 +144,7 @@ template <int Dim> std::optional<Failure> Run<Dim>::still_equilibrium() {
 
 /// The same vertex under another load, which is meant as it is stored.
 template <int Dim> std::optional<Failure> Run<Dim>::reload() {
-    first_order_->load_is_stored();
+    ties_->load_is_stored();
     const auto touching = vertex_->perturbed->touching;
     const ZeroGaps zero = vertex_->perturbed->zero;
     auto made = prover_.vertex(vertex_->packing, vertex_->structure.contacts(), load());
@@ -194,11 +189,7 @@ template <int Dim> Result<bool> Run<Dim>::next_equilibrium() {
     opening.perturbed = limit.perturbed;
     LimitLoad<Dim> at = load();
     at.set_stress(limit.stress);
-    if (perturbs()) {
-        at.shift = vertex_->statics.zero_of(limit.opens, limit.stress);
-        at.error = limit.stress_error;
-        at.stress_rate = vertex_->perturbed->statics.limit_rate(limit.opens, limit.stress, limit.stress_error);
-    }
+    ties_->set_limit(at, *vertex_, limit.opens, limit.stress_error);
     ++counters_.equilibria;
     if (auto failure = rearrange(opening, ArcKind::limit, std::move(at))) {
         --counters_.equilibria; // the steps stay counted: their records are written
@@ -217,7 +208,7 @@ template <int Dim> Result<LoadLimit> Run<Dim>::find_limit() {
         vertex_->perturbed->statics.log.clear();
     }
     const std::optional<LoadLimit>& known = limits_[segment_.direction > 0 ? 1 : 0];
-    if (known && !perturbs() && vertex_->statics.rung() == Rung::double_bound) {
+    if (known && !ties_->settles() && vertex_->statics.rung() == Rung::double_bound) {
         return *known;
     }
     return isostat::find_limit(vertex_->statics, sigma(), segment_.direction, vertex_->first_order());
@@ -238,7 +229,7 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
         return false;
     }
     state_.load.loaded_stress() = *segment_.to_stress;
-    if (perturbs()) {
+    if (ties_->settles()) {
         if (auto failure = reload()) {
             return *failure;
         }
@@ -252,8 +243,7 @@ template <int Dim> Result<bool> Run<Dim>::reach_stress(const LoadLimit& limit) {
 
 template <int Dim> Result<Reached<Dim>> Run<Dim>::follow(Attempt<Dim>& attempt) {
     prover_.start_at(vertex_->packing);
-    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at, attempt.chosen}, prover_,
-                                     recorder_);
+    Rearrangement<Dim> rearrangement({vertex_, attempt.opening, attempt.kind, attempt.at}, prover_, recorder_);
     auto reached = rearrangement.run();
     attempt.begun = rearrangement.arcs() > 0;
     return reached;
@@ -296,14 +286,9 @@ template <int Dim> std::optional<Failure> Run<Dim>::report(int arcs, std::option
     record.arcs = arcs;
     record.verdict = Verdict::proved;
     record.seconds = elapsed();
-    if (perturbs()) {
-        record.touching = static_cast<int>(vertex_->perturbed->touching.size());
-    }
+    ties_->store(*vertex_, record);
     record_ = record;
     state_.equilibrium = counters_.equilibria;
-    if (perturbs()) {
-        first_order_->store(*vertex_);
-    }
     counters_.seconds = elapsed();
     recorder_.observer.on_equilibrium(record, state_, finite_forces(*vertex_, state_.load));
     return recorder_.observer.objection();

@@ -1,6 +1,7 @@
 #include "trajectory/segment_start.hpp"
 
 #include "contact/words.hpp"
+#include "trajectory/ties/ties.hpp"
 
 namespace isostat {
 
@@ -19,12 +20,11 @@ template <int Dim> Result<SegmentStart<Dim>> prove_start(const State<Dim>& state
 }
 
 /// True: a choice was made.
-template <int Dim>
-Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& prover, const FirstOrderSide<Dim>& first_order) {
+template <int Dim> Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& prover, const TieSettling<Dim>& ties) {
     const auto dofs = static_cast<std::size_t>(DofMap<Dim>(state.packing).dof_count());
     const bool hyperstatic = state.contacts.size() > dofs;
     if (hyperstatic) {
-        if (auto failure = first_order.choose_contacts()) {
+        if (auto failure = ties.choose_contacts()) {
             return *failure;
         }
     }
@@ -40,7 +40,7 @@ Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& prover, const First
     for (const auto& [contact, order] : zero) {
         state.contacts.push_back(contact);
     }
-    if (auto failure = first_order.choose_contacts()) {
+    if (auto failure = ties.choose_contacts()) {
         return *failure;
     }
     return true;
@@ -49,12 +49,12 @@ Result<bool> choose_contacts(State<Dim>& state, Prover<Dim>& prover, const First
 } // namespace
 
 template <int Dim>
-Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, const FirstOrderSide<Dim>* first_order,
+Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, const TieSettling<Dim>& ties,
                                         bool resumed) {
     prover.start_at(state.packing);
     bool chosen = false;
-    if (first_order != nullptr && !resumed) {
-        const auto choice = choose_contacts(state, prover, *first_order);
+    if (ties.settles() && !resumed) {
+        const auto choice = choose_contacts(state, prover, ties);
         if (!choice.ok()) {
             return choice.failure();
         }
@@ -68,15 +68,13 @@ Result<SegmentStart<Dim>> start_segment(State<Dim>& state, Prover<Dim>& prover, 
     if (begun.gaps.negative) {
         return failed(FailureKind::overlap, "{} overlap", named<Dim>(*begun.gaps.negative));
     }
-    if (first_order != nullptr) {
-        if (auto failure = first_order->resume(*begun.vertex, begun.gaps.zero)) {
-            return *failure;
-        }
-        begun.chosen = chosen || !begun.gaps.zero.empty();
+    if (auto failure = ties.resume(*begun.vertex, begun.gaps.zero)) {
+        return *failure;
     }
+    begun.chosen = chosen || !begun.gaps.zero.empty();
     return start;
 }
 
-template Result<SegmentStart<2>> start_segment<2>(State<2>&, Prover<2>&, const FirstOrderSide<2>*, bool);
+template Result<SegmentStart<2>> start_segment<2>(State<2>&, Prover<2>&, const TieSettling<2>&, bool);
 
 } // namespace isostat

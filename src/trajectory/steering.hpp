@@ -77,8 +77,10 @@ template <int Dim> class Steering {
     [[nodiscard]] virtual bool goes_on() const = 0;
     /// The next arc. \pre goes_on(). Failures: those of `follow_arc`, and what each kind adds.
     virtual Result<ArcProposal<Dim>> propose() = 0;
-    /// The last proposal was refused. True: the next one is another for the same arc.
-    virtual bool revise(const ArcProof<Dim>& refused) = 0;
+    /// The last proposal was refused: whether there is another one for the same arc.
+    [[nodiscard]] virtual bool may_revise(const ArcProof<Dim>& /*refused*/) const { return false; }
+    /// It comes next. \pre may_revise
+    virtual void revise(const ArcProof<Dim>& /*refused*/) {}
 };
 
 } // namespace isostat

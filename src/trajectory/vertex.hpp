@@ -93,7 +93,7 @@ template <int Dim> class Vertex {
     /// `kept`: for the next vertices with the same list.
     Result<Gaps> check_gaps(CandidateList<Dim>& candidates, KeptCandidates& kept, const ZeroGaps* known = nullptr);
 
-    /// Under `ties = "perturb"` and `"choose"` only.
+    /// Under `ties = "choose"` only.
     std::unique_ptr<FirstOrderVertex<Dim>> perturbed;
     [[nodiscard]] PerturbedStatics<Dim>* first_order() { return perturbed ? &perturbed->statics : nullptr; }
 

@@ -33,21 +33,6 @@ template <int Dim> class DoubleRung final : public IntervalRung<Dim> {
         this->problem_.inflate(part);
     }
 
-    [[nodiscard]] PreciseInterval norm_of_mechanism(std::size_t l) override {
-        LadderProblem<Dim>& problem = this->problem_;
-        const double sigma = problem.inverse.sigma_min;
-        const double uncertainty = problem.stored_distance().uncertainty;
-        const double left = sigma - uncertainty * (1 + 8 * u);
-        if (problem.inverse.verdict != Verdict::proved || !(left > sigma / 2)) {
-            return unknown_interval(low_bits);
-        }
-        const Arithmetic<Real> arithmetic(low_bits);
-        const ContactSystem<Dim, Real> system(CorrectedConfiguration<Dim, Real>(arithmetic, problem.packing),
-                                              problem.structure, problem.factorisation, left * (1 - 8 * u),
-                                              uncertainty);
-        return norm_of_motion(system, l);
-    }
-
     double accuracy_;
 };
 

@@ -111,20 +111,6 @@ std::vector<mpq_class> ExactForces<Dim>::solve(const std::vector<double>& force,
     return unknown;
 }
 
-template <int Dim> mpq_class ExactForces<Dim>::mechanism_square(ContactId contact) const {
-    std::vector<mpz_class> unit(square_.size(), 0);
-    unit[contact.index()] = 1; // the scaled rows ask for v with A^T v = sqrt(square) e
-    const auto v = solver_.solve(unit, true);
-    assert(v && "asked only when regular");
-    mpz_class sum = 0;
-    for (const mpz_class& c : v->numerator) {
-        sum += c * c;
-    }
-    mpq_class result(sum, v->denominator * v->denominator);
-    result.canonicalize();
-    return result;
-}
-
 template class ExactForces<2>;
 
 } // namespace isostat

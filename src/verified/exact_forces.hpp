@@ -25,8 +25,6 @@ template <int Dim> class ExactForces {
     [[nodiscard]] std::vector<mpq_class> solve(const std::vector<double>& force,
                                                std::span<const ExactProduct> products = {}) const;
     [[nodiscard]] const mpz_class& square(ContactId contact) const { return square_[contact.index()]; }
-    /// |v|^2 / square_l, v the velocity that opens contact l at unit rate, all others kept (G v = e_l).
-    [[nodiscard]] mpq_class mechanism_square(ContactId contact) const;
 
   private:
     static sparse::Matrix<mpz_class> scaled(const Packing<Dim>& packing, const IsostaticStructure<Dim>& structure,

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace isostat {
 
@@ -40,7 +39,7 @@ template <int Dim> class ExactRung final : public ForceRung<Dim> {
 
     Order sign(const ForceExpression& a) override {
         ForceExpression numerator = a; // divisors are positive
-        numerator.divisor = ForceExpression::Divisor::none;
+        numerator.divisor_part = -1;
         return exact_order(sgn(value_of(numerator).factor));
     }
     Order compare(const ForceExpression& a, const ForceExpression& b) override {
@@ -85,11 +84,9 @@ template <int Dim> class ExactRung final : public ForceRung<Dim> {
     ExactForces<Dim> forces_;
     double away_;
     mpq_class nothing_ = 0;
-    std::map<std::size_t, mpq_class> mechanism_square_; ///< by contact
 };
 
 template <int Dim> auto ExactRung<Dim>::value_of(const ForceExpression& e) -> Value {
-    const std::size_t l = e.contact.index();
     mpq_class value = unknown(e.part, e.contact);
     if (e.slope_part >= 0 && e.at != e.from) {
         value += (mpq_class(e.at) - mpq_class(e.from)) * unknown(e.slope_part, e.contact);
@@ -97,17 +94,10 @@ template <int Dim> auto ExactRung<Dim>::value_of(const ForceExpression& e) -> Va
     if (e.minus_magnitude) {
         value = -abs(value);
     }
-    switch (e.divisor) {
-    case ForceExpression::Divisor::none: return {value, value * value * forces_.square(e.contact)};
-    case ForceExpression::Divisor::part: value /= abs(unknown(e.divisor_part, e.contact)); break; // the roots cancel
-    case ForceExpression::Divisor::mechanism: {
-        auto known = mechanism_square_.find(l);
-        if (known == mechanism_square_.end()) {
-            known = mechanism_square_.emplace(l, forces_.mechanism_square(e.contact)).first;
-        }
-        return {value, value * value / known->second}; // the roots cancel
+    if (e.divisor_part < 0) {
+        return {value, value * value * forces_.square(e.contact)};
     }
-    }
+    value /= abs(unknown(e.divisor_part, e.contact)); // the roots cancel
     return {value, value * value};
 }
 

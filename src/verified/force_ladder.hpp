@@ -26,10 +26,8 @@ class LoadShift {
 };
 
 /// A quantity by which contacts are ordered: p_l + (at - from) s_l with p, s the solutions of two right-hand sides,
-/// possibly divided by |d_l| (d a third solution, then proved not zero) or by the 2-norm of the mechanism that opens
-/// contact l at unit rate. All doubles are exact.
+/// possibly divided by |d_l|, d a third solution, then proved not zero. All doubles are exact.
 struct ForceExpression {
-    enum class Divisor : unsigned char { none, part, mechanism };
     ContactId contact;
     int part = 0;
     int slope_part = -1; ///< -1: no second term
@@ -37,8 +35,7 @@ struct ForceExpression {
     double from = 0;
     const LoadShift* shift = nullptr; ///< added to `at`; not on the rung exact
     bool minus_magnitude = false;     ///< -|.| instead of the sum (held coordinates)
-    Divisor divisor = Divisor::none;
-    int divisor_part = -1;
+    int divisor_part = -1;            ///< d; -1: none
 };
 
 /// What a right-hand side is besides its doubles.

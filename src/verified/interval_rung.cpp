@@ -8,31 +8,6 @@ namespace isostat {
 
 namespace {
 
-PreciseInterval point(const Real& x, mpfr_prec_t bits) {
-    PreciseInterval result(bits);
-    mpfr_set(result.low.get(), x.get(), MPFR_RNDD);
-    mpfr_set(result.high.get(), x.get(), MPFR_RNDU);
-    return result;
-}
-
-PreciseInterval point(const dd_real& x, mpfr_prec_t bits) {
-    PreciseInterval result(bits);
-    mpfr_set_d(result.low.get(), x.x[0], MPFR_RNDD);
-    mpfr_add_d(result.low.get(), result.low.get(), x.x[1], MPFR_RNDD);
-    mpfr_set_d(result.high.get(), x.x[0], MPFR_RNDU);
-    mpfr_add_d(result.high.get(), result.high.get(), x.x[1], MPFR_RNDU);
-    return result;
-}
-
-mpfr_prec_t bits_above(const Arithmetic<Real>& arithmetic) {
-    return arithmetic.bits() + 32;
-}
-mpfr_prec_t bits_above(const Arithmetic<dd_real>&) {
-    return low_bits;
-}
-
-} // namespace
-
 PreciseInterval unknown_interval(mpfr_prec_t bits) {
     PreciseInterval interval(bits);
     mpfr_set_nan(interval.low.get());
@@ -40,27 +15,7 @@ PreciseInterval unknown_interval(mpfr_prec_t bits) {
     return interval;
 }
 
-template <int Dim, class T> PreciseInterval norm_of_motion(const ContactSystem<Dim, T>& system, std::size_t l) {
-    const auto& arithmetic = system.arithmetic();
-    std::vector<T> unit(system.size(), arithmetic.number(0));
-    unit[l] = arithmetic.number(1);
-    const BoundedVector<T> v = system.motion(unit);
-    const mpfr_prec_t bits = bits_above(arithmetic);
-    if (v.value.empty()) {
-        return unknown_interval(bits);
-    }
-    PreciseInterval norm(bits);
-    for (const T& c : v.value) {
-        const PreciseInterval here = point(c, bits);
-        norm = norm + here * here;
-    }
-    const UpperBound bound(v.bound);
-    mpfr_sqrt(norm.low.get(), norm.low.get(), MPFR_RNDD);
-    mpfr_sqrt(norm.high.get(), norm.high.get(), MPFR_RNDU);
-    mpfr_sub(norm.low.get(), norm.low.get(), bound.real().get(), MPFR_RNDD);
-    mpfr_add(norm.high.get(), norm.high.get(), bound.real().get(), MPFR_RNDU);
-    return norm;
-}
+} // namespace
 
 template <int Dim> void ForceRung<Dim>::solve_anew(RightHandSide& part) {
     ForceSolution& s = part.solution;
@@ -92,14 +47,6 @@ template <int Dim> PreciseInterval IntervalRung<Dim>::component(int part, std::s
     return p.zero ? PreciseInterval(low_bits) : enclosed(p, l);
 }
 
-template <int Dim> const PreciseInterval& IntervalRung<Dim>::mechanism_norm(std::size_t l) {
-    auto known = mechanism_.find(l);
-    if (known == mechanism_.end()) {
-        known = mechanism_.emplace(l, norm_of_mechanism(l)).first;
-    }
-    return known->second;
-}
-
 template <int Dim> PreciseInterval IntervalRung<Dim>::evaluate(const ForceExpression& e) {
     const std::size_t l = e.contact.index();
     PreciseInterval value = component(e.part, l);
@@ -113,9 +60,8 @@ template <int Dim> PreciseInterval IntervalRung<Dim>::evaluate(const ForceExpres
     if (e.minus_magnitude) {
         value = -magnitude(value);
     }
-    if (e.divisor != ForceExpression::Divisor::none) {
-        const PreciseInterval by =
-            e.divisor == ForceExpression::Divisor::part ? magnitude(component(e.divisor_part, l)) : mechanism_norm(l);
+    if (e.divisor_part >= 0) {
+        const PreciseInterval by = magnitude(component(e.divisor_part, l));
         return by.positive() ? value / by : unknown_interval(value.bits());
     }
     return value;
@@ -168,8 +114,6 @@ template <int Dim> double IntervalRung<Dim>::bound_exponent(const RightHandSide&
     return std::log2(part.solution.bound) + 1e-12;
 }
 
-template PreciseInterval norm_of_motion<2>(const ContactSystem<2, dd_real>&, std::size_t);
-template PreciseInterval norm_of_motion<2>(const ContactSystem<2, Real>&, std::size_t);
 template class ForceRung<2>;
 template class IntervalRung<2>;
 

@@ -70,7 +70,6 @@ template <int Dim, class T> class RefinedRung final : public IntervalRung<Dim> {
         }
         return {part.refined.value[l], part.refined.bound.real(), this->bits() + 32};
     }
-    [[nodiscard]] PreciseInterval norm_of_mechanism(std::size_t l) override { return norm_of_motion(system_, l); }
     /// The bits were used: more of them will tell more.
     [[nodiscard]] bool converged() const;
 

@@ -233,7 +233,16 @@ BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
     BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
     BOOST_TEST(run.choices_checked > 0);
     const std::string header = scratch::read(folder / "run.json");
-    BOOST_TEST((altered(folder, "run.json", "choose", "perturb").verdict != Verdict::proved));
+    const RunVerification stopped = altered(folder, "run.json", "choose", "stop");
+    BOOST_TEST((stopped.verdict == Verdict::refuted));
+    const std::string capped = "choose\",\"max_choices\":";
+    const RunVerification fewer =
+        altered(folder, "run.json", "choose\"", capped + std::to_string(run.choices_checked - 1));
+    BOOST_TEST((fewer.verdict == Verdict::refuted));
+    BOOST_TEST(fewer.wrong.find("which may choose") != std::string::npos, fewer.wrong);
+    const RunVerification as_many =
+        altered(folder, "run.json", "choose\"", capped + std::to_string(run.choices_checked));
+    BOOST_TEST((as_many.verdict == Verdict::proved));
 }
 
 BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {

@@ -1,5 +1,6 @@
 // Runs with power turns, held coordinates and ties settled at first order, re-checked from their records; one number or
 // name changed in each kind of record must be found.
+#include "support/course.hpp"
 #include "support/forger.hpp"
 #include "support/mirror.hpp"
 #include "support/mirror_cells.hpp"
@@ -15,12 +16,13 @@
 #include <set>
 
 using namespace isostat;
+using crafted::Ties;
 namespace fs = std::filesystem;
 
 namespace {
 
 /// Plays one segment into a folder, every state stored; how it ends does not matter.
-void play(State<2> state, const Segment& segment, TiePolicy ties, std::uint64_t seed, const fs::path& folder) {
+void play(State<2> state, const Segment& segment, Ties ties, std::uint64_t seed, const fs::path& folder) {
     RunHeader header;
     header.program = "test";
     header.settings = R"({"run":{"rule":"most_negative"}})";
@@ -28,7 +30,7 @@ void play(State<2> state, const Segment& segment, TiePolicy ties, std::uint64_t 
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     RunOptions options;
-    options.ties = ties;
+    crafted::settle(options, ties);
     options.ties_seed = seed;
     directory.begin_segment(0, segment, 0, 0);
     (void)run_segment<2>(state, segment, 0, options, counters, directory);
@@ -94,7 +96,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1, 1), TiePolicy::stop, 1,
+    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1, 1), Ties::stop, 1,
          folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).turns_checked == 1);
@@ -116,12 +118,12 @@ BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
     // The turning arc closes 3-bottom; said to close another pair, the record is wrong.
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1, 1), TiePolicy::stop, 1,
+    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1, 1), Ties::stop, 1,
          folder);
     if (verify_run(folder).arcs == 0) {
         const fs::path other = scratch_folder / "up";
-        play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(+1, 1), TiePolicy::stop,
-             1, other);
+        play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(+1, 1), Ties::stop, 1,
+             other);
         is_proved(other);
         return;
     }
@@ -131,7 +133,7 @@ BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
 BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_terms_are_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::mirror_forces(), towards(-1, 1), TiePolicy::perturb, 1, folder);
+    play(crafted::mirror_forces(), towards(-1, 1), Ties::first_order, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).ties_checked == 2);
     const std::string events = scratch::read(folder / "events.jsonl");
@@ -157,7 +159,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::mirror_gaps(), towards(+1, 1), TiePolicy::perturb, 1, folder);
+    play(crafted::mirror_gaps(), towards(+1, 1), Ties::first_order, 1, folder);
     is_proved(folder);
     const std::string events = scratch::read(folder / "events.jsonl");
     const bool one = events.find("\"closed\":\"1-bottom\"") != std::string::npos;
@@ -179,7 +181,7 @@ BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_ar
     int ties = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const fs::path folder = scratch_folder / ("mirror" + std::to_string(seed));
-        play(cells::mirror_pairs(), towards(+1, 1), TiePolicy::perturb, seed, folder);
+        play(cells::mirror_pairs(), towards(+1, 1), Ties::first_order, seed, folder);
         is_proved(folder);
         ties += verify_run(folder).ties_checked;
         const std::string events = scratch::read(folder / "events.jsonl");
@@ -197,7 +199,7 @@ BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_ar
     BOOST_TEST(ties > 5);
     // A hyperstatic start.
     const fs::path folder = scratch_folder / "hyperstatic";
-    play(cells::unfolded(crafted::three_disks(1, 1.1, 1.5, 1, 1), 0), towards(+1, 2), TiePolicy::perturb, 1, folder);
+    play(cells::unfolded(crafted::three_disks(1, 1.1, 1.5, 1, 1), 0), towards(+1, 2), Ties::first_order, 1, folder);
     is_proved(folder);
 }
 
@@ -206,7 +208,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     Segment to;
     to.direction = -1;
     to.to_stress = 0.5;
-    play(crafted::equal_pair(), to, TiePolicy::perturb, 1, scratch_folder / "pair");
+    play(crafted::equal_pair(), to, Ties::first_order, 1, scratch_folder / "pair");
     is_proved(scratch_folder / "pair");
     int arcs = 0;
     int ties = 0;
@@ -214,7 +216,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     std::set<std::string> kinds;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const fs::path folder = scratch_folder / ("lattice" + std::to_string(seed));
-        play(crafted::triangular(3, 2), towards(+1, 3), TiePolicy::perturb, seed, folder);
+        play(crafted::triangular(3, 2), towards(+1, 3), Ties::first_order, seed, folder);
         if (fs::file_size(folder / "equilibria.csv") < 600) {
             continue; // not even an equilibrium 0: nothing to check
         }

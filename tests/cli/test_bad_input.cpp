@@ -147,7 +147,7 @@ BOOST_AUTO_TEST_CASE(a_folder_that_holds_a_run) {
            {"holds a run already", "--resume", "--force"});
     expect(run({"run", (folder / "s.toml").string(), "-o", out, "-q", "--force"}), 0);
     scratch::write_scene(folder / "t.toml",
-                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"steepest\"\n"));
+                         scene_from(scratch::data("vertex100.txt"), up_6, "[run]\nrule = \"least_index\"\n"));
     expect(run({"run", (folder / "t.toml").string(), "-o", out, "-q", "--resume"}), 65,
            {"run.json", "another scene", "t.toml"});
 }

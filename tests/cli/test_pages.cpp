@@ -168,14 +168,14 @@ BOOST_AUTO_TEST_SUITE(pages)
 BOOST_AUTO_TEST_CASE(the_page_of_scenes_has_every_key) {
     const std::string page = scratch::read(project / "src/scene/README.md");
     const std::string disks = "[packing]\ndisks = 10\n";
-    const std::string perturb = "[run]\nties = \"perturb\"\nno_such_key = 1\n";
+    const std::string choose = "[run]\nties = \"choose\"\nno_such_key = 1\n";
     const std::vector<std::array<std::string, 3>> sections{
         {"packing", "## `[packing]`", disks + "no_such_key = 1\n"},
         {"preparation", "## `[preparation]`", disks + "[preparation]\nno_such_key = 1\n"},
         {"load", "## `[load]`", disks + "[load]\nno_such_key = 1\n"},
         {"programme", "## `[[programme]]`", disks + "[[programme]]\ndo = \"up\"\nno_such_key = 1\n"},
         {"cell", "## `[cell]`", disks + "[cell]\nno_such_key = 1\n"},
-        {"run", "## `[run]`", disks + perturb},
+        {"run", "## `[run]`", disks + choose},
         {"output", "## `[output]`", disks + "[output]\nno_such_key = 1\n"}};
     for (const auto& [name, heading, scene] : sections) {
         BOOST_TEST_CONTEXT(name) {

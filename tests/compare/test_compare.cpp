@@ -150,12 +150,12 @@ BOOST_AUTO_TEST_CASE(
     exact_runs_with_other_rules_and_resting_places_have_their_first_equilibria_in_common_and_make_a_tree) {
     const Copy copy(9);
     compare::CompareOptions options;
-    options.bundle = 6; // most_negative: start, up, left, right; steepest: down, up
+    options.bundle = 6; // most_negative: start, up, left, right; least_index: down, up
     const Comparison result = copy.compare(options);
     const compare::Bundle& bundle = result.bundle;
     BOOST_TEST_REQUIRE(bundle.members.size() == 6U);
     BOOST_TEST(bundle.members[2].rest == "left");
-    BOOST_TEST((bundle.members[5].rule == OpeningRule::steepest));
+    BOOST_TEST((bundle.members[5].rule == OpeningRule::least_index));
     // Rattlers carry nothing: before the first rearrangement that meets one, where they rest changes no equilibrium.
     BOOST_TEST(bundle.common >= 8);
     for (const compare::BundleMember& member : bundle.members) {

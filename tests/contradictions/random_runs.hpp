@@ -34,7 +34,7 @@ struct RandomRun {
                            to_string(options.certify), ties(), segments.size(), states_every, killed_at);
     }
     [[nodiscard]] const char* ties() const {
-        return options.ties == TiePolicy::choose ? "choose" : options.ties == TiePolicy::stop ? "stop" : "perturb";
+        return options.chooses() ? "choose" : options.at_first_order() ? "first order" : "stop";
     }
 };
 
@@ -210,7 +210,8 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell, Dra
     run.options.max_strain = 1e3;
     run.options.max_arcs = 400;
     if (!in_cell && random.integer(5) == 0) {
-        run.options.ties = TiePolicy::perturb;
+        run.options.ties = TiePolicy::choose;
+        run.options.max_choices = 0;
         run.options.ties_seed = random.bits();
     }
     for (int k = 1 + random.integer(3); k > 0; --k) {
@@ -223,6 +224,7 @@ inline std::optional<RandomRun> random_run(std::uint64_t seed, bool in_cell, Dra
     }
     if (draw == Draw::choosing || (draw == Draw::all && in_cell && more.integer(5) == 0)) {
         run.options.ties = TiePolicy::choose;
+        run.options.max_choices = RunOptions().max_choices;
         run.options.ties_seed = more.bits();
     }
     return run;

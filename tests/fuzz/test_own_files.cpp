@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(mutated_scenes_are_refused_by_name_or_can_be_read) {
     const std::string text = scratch::read(scratch::data("biaxial-100.toml"));
     BOOST_TEST(fuzz::fuzz("scene", text, 3000, read).refused > 200);
     const std::string radii = "[packing]\nradii = [1.0, 1.5, 0x10, 2e-1]\nseed = 3\n[load]\nsigma1 = 2.0\n"
-                              "[[programme]]\ndo = \"up\"\nequilibria = 3\n[run]\nties = \"perturb\"\n";
+                              "[[programme]]\ndo = \"up\"\nequilibria = 3\n[run]\nties = \"choose\"\nmax_choices = 0\n";
     BOOST_TEST(fuzz::fuzz("scene with radii", radii, 3000, read).refused > 200);
     const std::string cell = "[packing]\ndisks = 60\ndiameters = [1.0, 2.0]\n[cell]\nkind = \"tilted\"\n"
                              "[[programme]]\ndo = \"down\"\nequilibria = 2\n";

@@ -158,8 +158,8 @@ def main():
         for name, way in (("cells/tilted-100", "up"), ("turns/three-disks", "down")):
             seen |= check_run(f'[packing]\nfile = "{project}/examples/{name}.json"\n' + programme.replace("up", way), folder, pathlib.Path(name).stem)
         for file in ("equal-pair", "two-forces", "two-gaps"):
-            for policy in ("perturb", "choose"):
-                seen |= check_run(f'[packing]\nfile = "{project}/examples/ties/{file}.json"\n[run]\nties = "{policy}"\n' + programme, folder, file + policy)
+            for name, cap in (("first", "max_choices = 0\n"), ("choose", "")):
+                seen |= check_run(f'[packing]\nfile = "{project}/examples/ties/{file}.json"\n[run]\nties = "choose"\n{cap}' + programme, folder, file + name)
         wanted = {"state", "certificate", "run", "summary", "event", "witness", "perturbed", "certificate", "held_at"}
         check(seen >= wanted, f"no run wrote {wanted - seen}")
         check(set(schemas) == {f"{s}.schema.json" for s in wanted - {"perturbed", "held_at"}}, f"schemas that no run was held to: {set(schemas)}")
@@ -167,7 +167,7 @@ def main():
         tried = 0
         for file in ("examples/cells/tilted-100.json", "tests/data/definition/09-no-dof.json"):
             tried += try_alterations("state", json.loads((project / file).read_text()), folder)
-        perturbed = [json.loads(p.read_text()) for p in folder.glob("*perturb/states/last.json")]
+        perturbed = [json.loads(p.read_text()) for p in folder.glob("*first/states/last.json")]
         perturbed = [state for state in perturbed if "perturbation" in state]
         check(perturbed, "no state with a perturbation")
         tried += sum(try_alterations("state", state, folder) for state in perturbed[:1])

@@ -87,13 +87,14 @@ do = "down"
 from = 3
 equilibria = 2
 [run]
-rule = "steepest"
+rule = "least_index"
 rule_seed = 4
 max_arcs = 11
 max_strain = 0.25
 step_fraction = 0.5
 certify = "arcs"
-ties = "perturb"
+ties = "choose"
+max_choices = 3
 ties_seed = 9
 [output]
 states_every = 10
@@ -126,7 +127,7 @@ vtk = true
     BOOST_TEST(scene.programme[1].name == "to sigma2/sigma1 = 1");
     BOOST_TEST(*scene.programme[2].from == 3);
     BOOST_TEST((needed_equilibria(scene) == std::vector<int>{3}));
-    BOOST_TEST((scene.run.rule == OpeningRule::steepest));
+    BOOST_TEST((scene.run.rule == OpeningRule::least_index));
     BOOST_TEST(scene.run.rule_seed == 4U);
     BOOST_TEST(scene.run.max_arcs == 11);
     BOOST_TEST(scene.run.max_strain == 0.25);
@@ -137,7 +138,8 @@ vtk = true
     BOOST_TEST(!scene.pictures);
     BOOST_TEST(scene.vtk);
     // Nothing of this scene is a default: a key that was read but not recorded would be missing here.
-    BOOST_TEST((scene.run.ties == TiePolicy::perturb));
+    BOOST_TEST((scene.run.ties == TiePolicy::choose));
+    BOOST_TEST(scene.run.max_choices == 3);
     BOOST_TEST(scene.run.ties_seed == 9U);
     BOOST_TEST(scene.settings.size() == 39U);
     for (const Setting& setting : scene.settings) {
@@ -226,7 +228,7 @@ BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
     refuses_scene(head + "[load]\nkind = \"dead\"\n", {"s.toml:4:", "kind", "dead", "nominal"});
     refuses_scene(head + "[load]\nsigma1 = 0\n", {"s.toml:4:", "sigma1", "positive"});
     refuses_scene(head + "[run]\nrule = \"best\"\n", {"s.toml:4:", "rule", "best", "most_negative"});
-    refuses_scene(head + "[run]\nties = \"break\"\n", {"s.toml:4:", "ties", "break", "perturb"});
+    refuses_scene(head + "[run]\nties = \"break\"\n", {"s.toml:4:", "ties", "break", "choose"});
     refuses_scene(head + "[run]\nmax_arcs = 0\n", {"s.toml:4:", "max_arcs", "0"});
     refuses_scene(head + "[run]\nstep_fraction = -0.1\n", {"s.toml:4:", "step_fraction", "-0.1"});
     refuses_scene(head + "[output]\npictures = 1\n", {"s.toml:4:", "pictures", "true or false"});
@@ -238,6 +240,10 @@ BOOST_AUTO_TEST_CASE(bad_values_are_named_with_their_line) {
 
 BOOST_AUTO_TEST_CASE(words_that_scenes_no_longer_have_are_refused_with_what_to_write_instead) {
     refuses_scene(head + "[run]\ncertify = \"plain\"\n", {"s.toml:4:", "certify", "plain", "\"decisions\""});
+    refuses_scene(head + "[run]\nties = \"perturb\"\n",
+                  {"s.toml:4:", "ties", "perturb", "\"choose\"", "max_choices = 0"});
+    refuses_scene(head + "[run]\nrule = \"steepest\"\n", {"s.toml:4:", "rule", "steepest", "\"most_negative\""});
+    refuses_scene(head + "[run]\nties = \"class\"\n", {"s.toml:4:", "ties", "class", "\"choose\""});
 }
 
 BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
@@ -250,7 +256,9 @@ BOOST_AUTO_TEST_CASE(settings_that_exclude_each_other_are_refused) {
     refuses_scene("[packing]\nfile = \"v.txt\"\njitter = 1e-9\n", {"s.toml:3:", "jitter", "file"});
     refuses_scene("[packing]\nfile = \"v.txt\"\n[preparation]\nsoftness = 1e-6\n", {"s.toml:3:", "[preparation]"});
     refuses_scene("[packing]\nfile = \"v.txt\"\n[load]\nsigma1 = 2\n", {"s.toml:4:", "sigma1"});
-    refuses_scene(head + "[run]\nties_seed = 2\n", {"s.toml:4:", "ties_seed", "perturb"});
+    refuses_scene(head + "[run]\nties_seed = 2\n", {"s.toml:4:", "ties_seed", "choose"});
+    refuses_scene(head + "[run]\nmax_choices = 0\n", {"s.toml:4:", "max_choices", "choose"});
+    refuses_scene(head + "[run]\nties = \"choose\"\nmax_choices = -1\n", {"s.toml:5:", "max_choices", "-1"});
     refuses_scene(head + "[load]\ninfinitesimal_seed = 2\n", {"s.toml:4:", "infinitesimal_seed"});
 }
 

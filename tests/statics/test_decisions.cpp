@@ -1,6 +1,5 @@
 // Decisions of the statics: classes, ties, rules, and the ladder of precision.
 #include "statics/decisions.hpp"
-#include "statics/steepest.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/preparation/preparation.hpp>
@@ -189,22 +188,10 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
     const auto value = [&](ContactId l) { return loaded.statics.force(l, 4).value; };
     const ContactId most = choose(OpeningRule::most_negative, 0);
     const ContactId least = choose(OpeningRule::least_negative, 0);
-    const ContactId steepest = choose(OpeningRule::steepest, 0);
-    const auto speed = [&](ContactId l) {
-        std::vector<double> v(state.contacts.size(), 0.0);
-        v[l.index()] = 1;
-        loaded.factorisation.solve_velocities(v);
-        double sum = 0;
-        for (const double c : v) {
-            sum += c * c;
-        }
-        return std::sqrt(sum);
-    };
     std::set<int> drawn;
     for (const ContactId l : negative) {
         BOOST_TEST(value(most) <= value(l));
         BOOST_TEST(value(least) >= value(l));
-        BOOST_TEST(value(steepest) / speed(steepest) <= value(l) / speed(l) * (1 - 1e-9));
     }
     for (std::uint64_t bits = 0; bits < 3 * negative.size(); ++bits) {
         const ContactId l = choose(OpeningRule::random, bits);
@@ -217,39 +204,6 @@ BOOST_AUTO_TEST_CASE(the_rules_choose_what_their_names_say) {
         return contacts[a.index()] < contacts[b.index()];
     });
     BOOST_TEST((choose(OpeningRule::least_index, 7) == first));
-}
-
-BOOST_AUTO_TEST_CASE(the_steepest_is_found_without_every_norm) {
-    std::size_t asked = 0, kept = 0;
-    for (const unsigned seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
-        State<2> state = prepared(60, seed);
-        for (const double stress : {1.5, 3.0, 20.0}) {
-            state.load.stress = {1, stress};
-            Loaded loaded(state);
-            std::vector<Contender> contenders;
-            double smallest = 0;
-            for (std::size_t l = 0; l < state.contacts.size(); ++l) {
-                const Enclosure f = loaded.statics.force(ContactId(l), stress);
-                if (!f.negative()) {
-                    continue;
-                }
-                std::vector<double> v(state.contacts.size(), 0.0);
-                v[l] = 1;
-                loaded.factorisation.solve_velocities(v);
-                const double speed = std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
-                smallest = std::min(smallest, f.value / speed);
-                contenders.push_back({ContactId(l), f, f, f.margin()});
-            }
-            asked += contenders.size();
-            keep_steepest(loaded.statics, contenders);
-            kept += contenders.size();
-            const auto best = std::min_element(contenders.begin(), contenders.end(),
-                                               [](const auto& a, const auto& b) { return a.key.value < b.key.value; });
-            BOOST_TEST_REQUIRE((best != contenders.end()), "seed " << seed << ", stress " << stress);
-            BOOST_TEST(best->key.value == smallest, boost::test_tools::tolerance(1e-9));
-        }
-    }
-    BOOST_TEST(kept < asked / 2, kept << " of " << asked);
 }
 
 BOOST_AUTO_TEST_CASE(without_infinitesimal_loads_a_rattler_leaves_its_sign_undecided) {

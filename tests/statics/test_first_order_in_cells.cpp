@@ -86,10 +86,10 @@ struct Vertex {
 /// Vertices where pairs touch besides the contacts, through images too: the end of a tie of two gaps, with disks stored
 /// a period away, and lattices.
 std::vector<State<2>> vertices_with_touching_pairs() {
-    std::vector<State<2>> vertices{follow_load(cells::mirror_pairs(), +1, 1, TiePolicy::perturb, 1).states.back()};
+    std::vector<State<2>> vertices{follow_load(cells::mirror_pairs(), +1, 1, Ties::first_order, 1).states.back()};
     for (const bool tilts : {false, true}) {
         const State<2> lattice = cells::loaded_lattice(3, 1, tilts);
-        vertices.push_back(follow_load(lattice, +1, 1, TiePolicy::choose, 1).states.front());
+        vertices.push_back(follow_load(lattice, +1, 1, Ties::choose, 1).states.front());
     }
     return vertices;
 }

@@ -22,7 +22,7 @@ inline Agreement agree(const State<2>& state, int direction, int equilibria, int
     Agreement sum;
     for (int seed = 1; seed <= seeds; ++seed) {
         const auto s = static_cast<std::uint64_t>(seed);
-        const Course symbolic = follow_load(state, direction, equilibria, TiePolicy::perturb, s);
+        const Course symbolic = follow_load(state, direction, equilibria, Ties::first_order, s);
         const std::vector<double> rho = tie_direction(state.packing.radius, s);
         for (const long count : symbolic.counters.tally.perturbed) {
             sum.settled += static_cast<int>(count);
@@ -36,7 +36,7 @@ inline Agreement agree(const State<2>& state, int direction, int equilibria, int
         const bool open = symbolic.end() == "undecided";
         sum.undecided += open ? 1 : 0;
         for (const double eps : {1e-6, 1e-8}) {
-            const Course real = follow_load(really_perturbed(state, rho, eps), direction, equilibria, TiePolicy::stop);
+            const Course real = follow_load(really_perturbed(state, rho, eps), direction, equilibria, Ties::stop);
             std::vector<std::string> expected = real.events;
             if (open) {
                 BOOST_TEST_REQUIRE(expected.size() >= symbolic.events.size());

@@ -18,8 +18,16 @@ using isostat::RunOptions;
 using isostat::Segment;
 using isostat::SegmentOutcome;
 using isostat::State;
+using isostat::tie_direction;
 using isostat::TieDecision;
 using isostat::TiePolicy;
+
+/// How a test settles ties: not; by first-order terms alone; or by choices too.
+enum class Ties { stop, first_order, choose };
+inline void settle(RunOptions& options, Ties ties) {
+    options.ties = ties == Ties::stop ? TiePolicy::stop : TiePolicy::choose;
+    options.max_choices = ties == Ties::first_order ? 0 : options.max_choices;
+}
 
 struct Course {
     std::vector<std::string> events;
@@ -51,14 +59,14 @@ class CourseRecorder : public RunObserver<2> {
     Course& course_;
 };
 
-inline Course follow_load(State<2> state, int direction, int equilibria, TiePolicy ties, std::uint64_t seed = 1) {
+inline Course follow_load(State<2> state, int direction, int equilibria, Ties ties, std::uint64_t seed = 1) {
     Course course;
     CourseRecorder recorder(course);
     Segment segment;
     segment.direction = direction;
     segment.equilibria = equilibria;
     RunOptions options;
-    options.ties = ties;
+    settle(options, ties);
     options.ties_seed = seed;
     course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
     return course;

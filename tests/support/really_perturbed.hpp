@@ -11,7 +11,7 @@
 
 namespace crafted {
 
-/// The contacts that a run under `perturb` starts from.
+/// The contacts that a run under `choose` starts from.
 inline std::vector<Contact> starting_contacts(const State<2>& state, const std::vector<double>& rho) {
     if (static_cast<int>(state.contacts.size()) == isostat::DofMap<2>(state.packing).dof_count()) {
         return state.contacts;

@@ -61,7 +61,7 @@ Course equal_disks(int disks, std::uint64_t seed, int equilibria) {
     PreparationReport<2> report;
     const auto result = prepare<2>(options, report);
     BOOST_TEST_REQUIRE((result.ok() || report.candidate));
-    return follow_load(result.ok() ? result.value() : *report.candidate, +1, equilibria, TiePolicy::choose);
+    return follow_load(result.ok() ? result.value() : *report.candidate, +1, equilibria, Ties::choose);
 }
 
 std::string why(const Course& course) {
@@ -74,13 +74,13 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_and_recorded) {
     const State<2> state = alike(mirror_forces());
-    const Course open = follow_load(state, -1, 1, TiePolicy::perturb);
+    const Course open = follow_load(state, -1, 1, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
     BOOST_TEST(mentions(open, "tied at first order too"));
 
     std::vector<Contact> opened;
     for (const State<2>& start : {state, mirror_image(state)}) {
-        const Course course = follow_load(start, -1, 1, TiePolicy::choose);
+        const Course course = follow_load(start, -1, 1, Ties::choose);
         BOOST_TEST(course.end() == "completed", why(course));
         const auto found = choices(course);
         BOOST_TEST_REQUIRE(found.size() >= 1U);
@@ -95,7 +95,7 @@ BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_
     BOOST_TEST((opened[0] == bottom(1)) == (opened[1] == bottom(2)));
     BOOST_TEST((opened[0] == bottom(2)) == (opened[1] == bottom(1)));
 
-    const Course by_name = follow_load(symmetric(state), -1, 1, TiePolicy::choose);
+    const Course by_name = follow_load(symmetric(state), -1, 1, Ties::choose);
     const auto found = choices(by_name);
     BOOST_TEST_REQUIRE(found.size() >= 1U, why(by_name));
     BOOST_TEST((found[0].choice == TieChoice::names));
@@ -105,9 +105,9 @@ BOOST_AUTO_TEST_CASE(what_first_order_leaves_tied_is_chosen_by_loads_then_names_
 
 BOOST_AUTO_TEST_CASE(of_gaps_that_close_together_one_enters_and_the_other_is_watched) {
     const State<2> state = alike(mirror_gaps());
-    const Course open = follow_load(state, +1, 1, TiePolicy::perturb);
+    const Course open = follow_load(state, +1, 1, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
-    const Course course = follow_load(state, +1, 1, TiePolicy::choose);
+    const Course course = follow_load(state, +1, 1, Ties::choose);
     BOOST_TEST(course.end() == "completed", why(course));
     BOOST_TEST_REQUIRE(course.arcs.size() == 1U);
     const bool first = course.arcs[0].closed == bottom(1);
@@ -127,8 +127,8 @@ BOOST_AUTO_TEST_CASE(of_gaps_that_close_together_one_enters_and_the_other_is_wat
 BOOST_AUTO_TEST_CASE(where_first_order_tells_nothing_is_chosen) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         for (const auto& [state, direction] : {std::pair{mirror_forces(), -1}, std::pair{mirror_gaps(), +1}}) {
-            const Course perturb = follow_load(state, direction, 1, TiePolicy::perturb, seed);
-            const Course choose = follow_load(state, direction, 1, TiePolicy::choose, seed);
+            const Course perturb = follow_load(state, direction, 1, Ties::first_order, seed);
+            const Course choose = follow_load(state, direction, 1, Ties::choose, seed);
             BOOST_TEST(choose.end() == "completed");
             BOOST_TEST(choose.events == perturb.events, boost::test_tools::per_element());
             BOOST_TEST(choose.states.back().packing.q == perturb.states.back().packing.q,
@@ -143,7 +143,7 @@ BOOST_AUTO_TEST_CASE(choices_do_not_depend_on_the_threads) {
     std::vector<Course> courses;
     for (const int count : {1, 2, 3}) {
         set_threads(count);
-        courses.push_back(follow_load(alike(mirror_forces()), -1, 2, TiePolicy::choose));
+        courses.push_back(follow_load(alike(mirror_forces()), -1, 2, Ties::choose));
     }
     set_threads(before);
     for (const Course& course : courses) {
@@ -156,13 +156,52 @@ BOOST_AUTO_TEST_CASE(choices_do_not_depend_on_the_threads) {
 /// Four equal disks in the box, in a square: rows and columns carry the load, whatever it is. Pairs that touch besides
 /// the list part by their second derivative, as the motions are at right angles to them.
 BOOST_AUTO_TEST_CASE(a_square_of_disks_supports_every_load_and_pairs_that_only_bend_away_are_followed) {
-    const Course open = follow_load(square(), +1, 3, TiePolicy::perturb);
+    const Course open = follow_load(square(), +1, 3, Ties::first_order);
     BOOST_TEST(open.end() == "undecided");
-    const Course course = follow_load(square(), +1, 3, TiePolicy::choose);
+    const Course course = follow_load(square(), +1, 3, Ties::choose);
     BOOST_TEST(course.end() == "no limit", why(course));
     BOOST_TEST_REQUIRE(!course.equilibria.empty());
     const std::vector<double>& length = course.equilibria.back().length;
     BOOST_TEST(std::abs(length[1] - 4) < 1e-12); // the columns are straight still
+}
+
+BOOST_AUTO_TEST_CASE(a_run_chooses_as_often_as_it_may_and_then_ends_undecided) {
+    const auto at_most = [](long most) {
+        Course course;
+        CourseRecorder recorder(course);
+        State<2> state = square();
+        Segment segment;
+        segment.equilibria = 3;
+        RunOptions options;
+        options.ties = TiePolicy::choose;
+        options.max_choices = most;
+        course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
+        return course;
+    };
+    const auto recorded = [](const Course& course) {
+        long choices = 0;
+        for (const ArcRecord<2>& arc : course.arcs) {
+            for (const TieDecision& tie : arc.perturbed) {
+                choices += tie.choice != TieChoice::none ? 1 : 0;
+            }
+        }
+        return choices;
+    };
+    const Course all = follow_load(square(), +1, 3, Ties::choose);
+    const long choices = all.counters.tally.choices;
+    BOOST_TEST_REQUIRE(choices > 1);
+    const Course as_many = at_most(choices);
+    BOOST_TEST(as_many.end() == all.end());
+    BOOST_TEST(as_many.events == all.events, boost::test_tools::per_element());
+    for (long most = 0; most < choices; ++most) {
+        const Course fewer = at_most(most);
+        BOOST_TEST(fewer.end() == "undecided");
+        BOOST_TEST((most == 0 || mentions(fewer, "max_choices")), why(fewer));
+        BOOST_TEST(recorded(fewer) <= most);
+        BOOST_TEST(fewer.counters.tally.choices == recorded(fewer));
+        BOOST_TEST_REQUIRE(fewer.events.size() < all.events.size());
+        BOOST_TEST((most == 0 || std::equal(fewer.events.begin(), fewer.events.end(), all.events.begin())));
+    }
 }
 
 /// In the first one a gap falls like s^4 to 0 where an arc ends; in the other one its dip is met at the end itself.

@@ -22,7 +22,7 @@ struct Loop {
         return courses[segment].states.back().packing.length(axis);
     }
 };
-Loop follow_loads(State<2> state, const std::vector<double>& loads, TiePolicy ties) {
+Loop follow_loads(State<2> state, const std::vector<double>& loads, Ties ties) {
     Loop loop;
     double stress = state.load.stress[1];
     for (const double load : loads) {
@@ -33,7 +33,7 @@ Loop follow_loads(State<2> state, const std::vector<double>& loads, TiePolicy ti
         segment.to_stress = load;
         stress = load;
         RunOptions options;
-        options.ties = ties;
+        settle(options, ties);
         options.max_strain = 1e9; // reference lengths of 1
         course.outcome = run_segment<2>(state, segment, 0, options, course.counters, recorder);
         BOOST_TEST(course.outcome.completed,
@@ -105,7 +105,7 @@ BOOST_AUTO_TEST_SUITE(trajectory)
 BOOST_AUTO_TEST_CASE(rows_on_a_wall_spread_at_the_known_load_and_come_back) {
     for (const int columns : {8, 9}) {
         const PileLoads loads(columns);
-        const Loop loop = follow_loads(pile(columns, loads.up - 1), loads.programme, TiePolicy::choose);
+        const Loop loop = follow_loads(pile(columns, loads.up - 1), loads.programme, Ties::choose);
         pile_is(loop, columns, 1e-11);
         BOOST_TEST(loads_of_motions(loop.courses[0]).empty());
         for (const auto& [segment, load] : {std::pair{1, loads.up}, std::pair{2, loads.down}}) {
@@ -120,7 +120,7 @@ BOOST_AUTO_TEST_CASE(rows_on_a_wall_spread_at_the_known_load_and_come_back) {
 BOOST_AUTO_TEST_CASE(rows_on_a_wall_change_their_lists_where_they_are_until_the_known_load) {
     for (const int columns : {4, 5, 6, 7}) {
         const PileLoads loads(columns);
-        const Loop loop = follow_loads(pile(columns, 4), {loads.up + 1}, TiePolicy::choose);
+        const Loop loop = follow_loads(pile(columns, 4), {loads.up + 1}, Ties::choose);
         const std::vector<double> found = loads_of_motions(loop.courses[0]);
         BOOST_TEST_REQUIRE(found.size() == 1U);
         BOOST_TEST(std::abs(found[0] - loads.up) < 1e-11 * loads.up);
@@ -141,7 +141,7 @@ BOOST_AUTO_TEST_CASE(many_gaps_that_close_together_are_put_in_order_at_once) {
         for (int i = columns; i < 2 * columns - 1; ++i) {
             state.perturbation->rho[static_cast<std::size_t>(i)] = growth * i;
         }
-        pile_is(follow_loads(state, loads.programme, TiePolicy::choose), columns, 1e-11);
+        pile_is(follow_loads(state, loads.programme, Ties::choose), columns, 1e-11);
     }
 }
 
@@ -152,7 +152,7 @@ BOOST_AUTO_TEST_CASE(rows_with_radii_that_are_really_changed_go_the_same_way) {
             const PileLoads loads(columns);
             const State<2> state = pile(columns, loads.up - 1);
             const State<2> changed = really_perturbed(state, tie_direction(state.packing.radius, seed), eps);
-            pile_is(follow_loads(changed, loads.programme, TiePolicy::stop), columns, 200 * eps);
+            pile_is(follow_loads(changed, loads.programme, Ties::stop), columns, 200 * eps);
         }
     }
 }
@@ -178,7 +178,7 @@ BOOST_AUTO_TEST_CASE(lattices_move_at_the_loads_at_which_their_rows_stretch_and_
           std::pair{3, 4}, std::pair{4, 4}, std::pair{5, 5}, std::pair{3, 6}, std::pair{3, 8}, std::pair{7, 8}}) {
         BOOST_TEST_CONTEXT(columns << " x " << rows) {
             const State<2> patch = triangular(columns, rows);
-            const Course course = follow_load(patch, +1, 200, TiePolicy::choose);
+            const Course course = follow_load(patch, +1, 200, Ties::choose);
             BOOST_TEST(course.end() == "no limit",
                        (course.outcome.failure ? course.outcome.failure->message() : std::string()));
             moves_at_known_loads(loads_of_motions(course), patch, columns, rows, 1e-11);
@@ -201,7 +201,7 @@ BOOST_AUTO_TEST_CASE(lattices_end_where_their_rows_meet_as_with_radii_that_are_r
         for (std::uint64_t seed = 1; seed <= (columns < 7 ? 4U : 2U); ++seed) {
             BOOST_TEST_CONTEXT(columns << " x " << rows << ", direction " << seed) {
                 const State<2> changed = really_perturbed(patch, tie_direction(patch.packing.radius, seed), eps);
-                const Loop real = follow_loads(changed, {above}, TiePolicy::stop);
+                const Loop real = follow_loads(changed, {above}, Ties::stop);
                 moves_at_known_loads(loads_of_motions(real.courses[0]), patch, columns, rows, 100 * eps);
                 // In line, lengths change by the square root of what the heights do.
                 BOOST_TEST(std::abs(real.length(0, 0) - LatticeEnd(columns, rows).length) < 1e-3);
@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_stretch_from_a_ratio_of_3_on_until_the_ro
             BOOST_TEST_CONTEXT(columns << " x " << rows << (tilts ? ", tilts" : "")) {
                 State<2> lattice = cells::loaded_lattice(columns, rows, tilts);
                 lattice.load.reference_length = {lattice.packing.length(0), lattice.packing.length(1)};
-                const Course course = follow_load(lattice, +1, 100, TiePolicy::choose);
+                const Course course = follow_load(lattice, +1, 100, Ties::choose);
                 BOOST_TEST(course.end() == "no limit",
                            (course.outcome.failure ? course.outcome.failure->message() : std::string()));
                 const std::vector<double> loads = loads_of_motions(course);

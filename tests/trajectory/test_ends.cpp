@@ -2,6 +2,7 @@
 #include "support/prepared.hpp"
 #include "trajectory/bounded_steering.hpp"
 #include "trajectory/prover.hpp"
+#include "trajectory/ties/first_order_side.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -26,7 +27,7 @@ BOOST_AUTO_TEST_CASE(an_end_that_was_steered_badly_is_put_at_its_true_vertex_whe
     const FirstOrderSide<2> side(state, 1, true);
     RunOptions options;
     options.ties = TiePolicy::choose;
-    Prover<2> prover(options, &side);
+    Prover<2> prover(options, side);
     prover.start_at(state.packing);
     const LimitLoad<2> at{state.load};
     const auto vertex = prover.vertex(state.packing, state.contacts, at);

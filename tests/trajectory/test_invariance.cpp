@@ -130,8 +130,7 @@ BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_openi
         if (played.records.equilibria[k].arcs != 1) {
             continue;
         }
-        for (const OpeningRule rule :
-             {OpeningRule::steepest, OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
+        for (const OpeningRule rule : {OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
             RunOptions options;
             options.rule = rule;
             const Played other = play(played.records.states[k - 1], +1, 1, {}, options);
@@ -145,8 +144,8 @@ BOOST_FIXTURE_TEST_CASE(rearrangements_of_one_arc_are_the_same_under_every_openi
 
 BOOST_AUTO_TEST_CASE(every_opening_rule_reaches_equilibria_whose_checks_hold) {
     const State<2> start = prepared(40, 2);
-    for (const OpeningRule rule : {OpeningRule::most_negative, OpeningRule::steepest, OpeningRule::random,
-                                   OpeningRule::least_negative, OpeningRule::least_index}) {
+    for (const OpeningRule rule :
+         {OpeningRule::most_negative, OpeningRule::random, OpeningRule::least_negative, OpeningRule::least_index}) {
         RunOptions options;
         options.rule = rule;
         const Played run = play(start, +1, 6, {}, options);

@@ -56,7 +56,7 @@ void ends_at_the_fixed_disk(const Course& course, double accuracy) {
 BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(a_pair_that_would_overlap_at_second_order_enters_the_list) {
-    const Course course = follow_load(two_crests(true), -1, 1, TiePolicy::choose);
+    const Course course = follow_load(two_crests(true), -1, 1, Ties::choose);
     ends_at_the_fixed_disk(course, 1e-12);
     BOOST_TEST_REQUIRE(!course.arcs.empty());
     BOOST_TEST((course.arcs[0].opened == bottom(0)));
@@ -73,13 +73,13 @@ BOOST_AUTO_TEST_CASE(a_pair_that_would_overlap_at_second_order_enters_the_list) 
 }
 
 BOOST_AUTO_TEST_CASE(a_pair_that_parts_at_second_order_stays_out_of_the_list_and_the_path_is_the_same) {
-    const Course course = follow_load(two_crests(false), -1, 1, TiePolicy::choose);
+    const Course course = follow_load(two_crests(false), -1, 1, Ties::choose);
     ends_at_the_fixed_disk(course, 1e-12);
     BOOST_TEST(exchanges(course).empty());
 }
 
 BOOST_AUTO_TEST_CASE(a_pair_that_would_overlap_at_second_order_is_undecided_where_nothing_is_chosen) {
-    const Course course = follow_load(two_crests(true), -1, 1, TiePolicy::perturb);
+    const Course course = follow_load(two_crests(true), -1, 1, Ties::first_order);
     BOOST_TEST(course.end() == "undecided");
     BOOST_TEST(mentions(course, "not told from 0"));
 }
@@ -89,7 +89,7 @@ BOOST_AUTO_TEST_CASE(radii_that_are_really_changed_end_at_the_same_place) {
     for (const bool larger : {true, false}) {
         const State<2> state = two_crests(larger);
         const State<2> changed = really_perturbed(state, state.perturbation->rho, eps);
-        ends_at_the_fixed_disk(follow_load(changed, -1, 1, TiePolicy::stop), 20 * eps);
+        ends_at_the_fixed_disk(follow_load(changed, -1, 1, Ties::stop), 20 * eps);
     }
 }
 

@@ -13,7 +13,7 @@ using namespace ::crafted;
 BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_stops_the_run_and_names_them) {
-    const Course course = follow_load(mirror_forces(), -1, 1, TiePolicy::stop);
+    const Course course = follow_load(mirror_forces(), -1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
     BOOST_TEST(mentions(course, "1-bottom"));
     BOOST_TEST(mentions(course, "2-bottom"));
@@ -23,7 +23,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_stops_the_run_and_names_them) {
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_stops_the_run_and_names_them) {
     State<2> state = mirror_gaps();
     state.load.disk_force[3] = -1.25; // its lower end is no tie then; the motion is the same
-    const Course course = follow_load(state, +1, 1, TiePolicy::stop);
+    const Course course = follow_load(state, +1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
     BOOST_TEST((mentions(course, "1-bottom") || mentions(course, "2-bottom")));
     BOOST_TEST(mentions(course, "bits"));
@@ -32,7 +32,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_stops_the_run_and_names_them) {
 BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_settled_by_the_radii_and_so_is_the_force_that_stays_at_zero) {
     int first_opens = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        const Course course = follow_load(mirror_forces(), -1, 1, TiePolicy::perturb, seed);
+        const Course course = follow_load(mirror_forces(), -1, 1, Ties::first_order, seed);
         BOOST_TEST(course.end() == "completed");
         BOOST_TEST_REQUIRE(course.arcs.size() >= 1U);
         BOOST_TEST(settled_as(course, "limit"));
@@ -54,7 +54,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_settled_by_the_radii_and_so_is_the_f
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_settled_by_the_radii_and_the_other_gap_stays_open_at_first_order) {
     int first_closes = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        const Course course = follow_load(mirror_gaps(), +1, 1, TiePolicy::perturb, seed);
+        const Course course = follow_load(mirror_gaps(), +1, 1, Ties::first_order, seed);
         BOOST_TEST(course.end() == "completed");
         BOOST_TEST_REQUIRE(course.arcs.size() == 1U);
         BOOST_TEST(settled_as(course, "gap"));
@@ -123,7 +123,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_
         segment.direction = -1;
         segment.to_stress = 0.5;
         RunOptions options;
-        options.ties = TiePolicy::perturb;
+        settle(options, Ties::first_order);
         options.ties_seed = seed;
         Course course;
         CourseRecorder recorder(course);
@@ -150,14 +150,14 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_is_followed_with_the_contacts_that_the_
 }
 
 BOOST_AUTO_TEST_CASE(equal_forces_that_stay_equal_at_first_order_are_undecided_not_guessed) {
-    const Course course = follow_load(square(), +1, 2, TiePolicy::perturb, 1);
+    const Course course = follow_load(square(), +1, 2, Ties::first_order, 1);
     BOOST_TEST(course.end() == "undecided");
     BOOST_TEST(mentions(course, "first"));
 }
 
 BOOST_AUTO_TEST_CASE(without_ties_perturb_changes_nothing) {
-    const Course stop = follow_load(three_disks(1, 1.1, 1.5, 1, 1), -1, 2, TiePolicy::stop);
-    const Course perturb = follow_load(three_disks(1, 1.1, 1.5, 1, 1), -1, 2, TiePolicy::perturb);
+    const Course stop = follow_load(three_disks(1, 1.1, 1.5, 1, 1), -1, 2, Ties::stop);
+    const Course perturb = follow_load(three_disks(1, 1.1, 1.5, 1, 1), -1, 2, Ties::first_order);
     BOOST_TEST(stop.events == perturb.events, boost::test_tools::per_element());
     BOOST_TEST(stop.end() == perturb.end());
     for (std::size_t k = 0; k < std::min(stop.states.size(), perturb.states.size()); ++k) {

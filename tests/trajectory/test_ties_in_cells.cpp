@@ -25,7 +25,7 @@ State<2> hyperstatic_three() {
 BOOST_AUTO_TEST_SUITE(trajectory)
 
 BOOST_AUTO_TEST_CASE(a_tie_in_a_cell_stops_the_run_and_names_the_contacts) {
-    const Course course = follow_load(cells::mirror_pairs(), +1, 1, TiePolicy::stop);
+    const Course course = follow_load(cells::mirror_pairs(), +1, 1, Ties::stop);
     BOOST_TEST(course.end() == "tie");
     BOOST_TEST(mentions(course, "0-1(0,1)"), course.outcome.failure->message());
     BOOST_TEST(mentions(course, "3-4"), course.outcome.failure->message());
@@ -55,9 +55,9 @@ BOOST_AUTO_TEST_CASE(lattices_in_cells_are_followed_where_ties_are_chosen) {
     for (const bool tilts : {false, true}) {
         for (const auto& [columns, rows] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{3, 2}, std::pair{4, 2}}) {
             const State<2> start = cells::loaded_lattice(columns, rows, tilts);
-            const Course stop = follow_load(start, +1, 1, TiePolicy::stop);
+            const Course stop = follow_load(start, +1, 1, Ties::stop);
             BOOST_TEST(stop.end() == "not isostatic");
-            const Course course = follow_load(start, +1, 1, TiePolicy::choose);
+            const Course course = follow_load(start, +1, 1, Ties::choose);
             BOOST_TEST_REQUIRE(course.states.size() >= 1U);
             const int freedoms = DofMap<2>(start.packing).dof_count();
             BOOST_TEST(static_cast<int>(course.states[0].contacts.size()) == freedoms);

@@ -74,7 +74,6 @@ struct RunVerification {
     int ways_proved = 0;       ///< arcs whose witness proves that they lead from end to end, past nothing else
     int ties_checked = 0;      ///< first-order terms of decisions found again, of the arcs that were replayed
     int choices_checked = 0;   ///< of these: choices of the rule, of what is not refuted to be tied
-    int classes_checked = 0;   ///< limits where another opened of forces that are proved to vanish together
     int turns_checked = 0;     ///< power turns whose held coordinate was found to be right
     int equilibria = 0;        ///< rows of equilibria.csv
     int equilibria_proved = 0; ///< all forces, gaps, ends of the load interval and the rank proved to be as recorded

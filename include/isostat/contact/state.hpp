@@ -13,7 +13,7 @@
 
 namespace isostat {
 
-/// What a run under `ties = "perturb"` adds to a state: it speaks of the grains with radii R_i + eps rho_i, eps > 0
+/// What a run under `ties = "choose"` adds to a state: it speaks of the grains with radii R_i + eps rho_i, eps > 0
 /// smaller than every positive number (proofs/perturbation.md).
 struct RadiusPerturbation {
     unsigned long long seed = 0;

@@ -53,7 +53,7 @@ template <int Dim> StateFile<Dim> read_any_state(const std::filesystem::path& pa
 /// grains overlap (which, by how much), or when a listed contact is visibly open. The thresholds on lengths (1e-6 of
 /// the smallest radius) only choose between a clear message here and a proof later: `run_segment` decides the signs of
 /// all gaps with bounds. With h > 0 and k = 0 the message names the contacts of a basis of the self-stresses (double
-/// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "perturb").
+/// precision; parts below 1e-9 left out). `hyperstatic_allowed`: then that is no reason to refuse (ties = "choose").
 template <int Dim>
 void check_start(const State<Dim>& state, const std::string& source, bool hyperstatic_allowed = false);
 

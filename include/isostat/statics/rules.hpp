@@ -13,25 +13,22 @@
 namespace isostat {
 
 /// Which contact with a negative force is opened during a rearrangement. The paper's rule is `most_negative`.
-/// - most_negative: smallest f;  - steepest: smallest f / |v|, v the mechanism that opens the contact at unit rate;
-/// - random: uniformly among f < 0;  - least_negative: largest f < 0;  - least_index: the first f < 0 in the order of
-/// contacts (disks by their numbers, then walls, then held coordinates). It compares no forces, so that equal ones are
-/// no tie. With linear programmes it is the rule of Bland (Math. Oper. Res. 2, 103, 1977).
-/// In all of them a held coordinate competes with -|multiplier|, and infinitesimal forces decide only when no finite
-/// force is negative.
-enum class OpeningRule : std::uint8_t { most_negative, steepest, random, least_negative, least_index };
+/// - most_negative: smallest f;  - random: uniformly among f < 0;  - least_negative: largest f < 0;
+/// - least_index: the first f < 0 in the order of contacts (disks by their numbers, then walls, then held coordinates).
+/// It compares no forces, so that equal ones are no tie. With linear programmes it is the rule of Bland (Math. Oper.
+/// Res. 2, 103, 1977). In all of them a held coordinate competes with -|multiplier|, and infinitesimal forces decide
+/// only when no finite force is negative.
+enum class OpeningRule : std::uint8_t { most_negative, random, least_negative, least_index };
 /// The words of scenes, in that order.
-inline constexpr std::array opening_rule_words{"most_negative", "steepest", "random", "least_negative", "least_index"};
+inline constexpr std::array opening_rule_words{"most_negative", "random", "least_negative", "least_index"};
 
-/// What a decision rests on where first-order terms do not tell, under `ties = "choose"`, or under `"class"` where what
-/// the rule takes first cannot be followed (statement C1).
+/// What a decision rests on where first-order terms do not tell, under `ties = "choose"` (statement C1).
 enum class TieChoice : unsigned char {
-    none,    ///< nothing was chosen: first-order terms decided
-    loads,   ///< the infinitesimal loads, by the rule
-    names,   ///< the order of contacts: disks by their numbers, then walls
-    zero,    ///< what vanishes in the base is left at 0: such a force opens nothing, such a gap stays watched
-    watched, ///< a gap of 0 stays watched though radii R + eps rho would have closed it on the way
-    slope    ///< of forces that vanish together, one that falls fastest, or nearly
+    none,   ///< nothing was chosen: first-order terms decided
+    loads,  ///< the infinitesimal loads, by the rule
+    names,  ///< the order of contacts: disks by their numbers, then walls
+    zero,   ///< what vanishes in the base is left at 0: such a force opens nothing, such a gap stays watched
+    watched ///< a gap of 0 stays watched though radii R + eps rho would have closed it on the way
 };
 constexpr const char* to_string(TieChoice choice) {
     switch (choice) {
@@ -39,10 +36,9 @@ constexpr const char* to_string(TieChoice choice) {
     case TieChoice::loads: return "infinitesimal loads";
     case TieChoice::names: return "names";
     case TieChoice::zero: return "zero";
-    case TieChoice::watched: return "watched";
-    case TieChoice::slope: break;
+    case TieChoice::watched: break;
     }
-    return "slope";
+    return "watched";
 }
 
 /// One decision that a first-order comparison settled: in the base, quantities that cannot be told apart; their
@@ -50,8 +46,7 @@ constexpr const char* to_string(TieChoice choice) {
 struct TieDecision {
     /// - "force": the force in `chosen` vanishes; `first` is its first-order term (no `against`);
     /// - "opening": two contacts that the rule orders alike; first-order terms of both keys;
-    /// - "limit": two forces that vanish at one load; first-order terms of the two loads. With the choice `slope` they
-    ///   vanish together for structural reasons, and these are the slopes of the two forces;
+    /// - "limit": two forces that vanish at one load; first-order terms of the two loads;
     /// - "zero all along": a force and its slope vanish; `first`: its first-order term at the limit (no `against`);
     /// - "gap": `against` touches where `chosen` closes (or touches on from before); `other` is its first-order gap;
     /// - "step": both close on the way of length O(eps); first-order lengths of the two ways.

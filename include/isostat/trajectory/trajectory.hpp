@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,20 +30,14 @@ struct Segment {
 
 /// What becomes of a tie: two quantities that are exactly equal, or agree to the cap of the precision ladder.
 /// - stop: the run ends with `tie`, and chooses nothing;
-/// - by_class: the same; but of forces that vanish together for structural reasons another one may open than the one
-///   that the infinitesimal loads take, where the arc of that one is undecided (C1 b). Recorded as a choice;
-/// - perturb: the radii are R_i + eps rho_i, eps > 0 smaller than every positive number, rho from `ties_seed` once for
-///   the whole run: first-order terms decide (proofs/perturbation.md); when they do not, the run ends with `undecided`;
-/// - choose: the same, but where first-order terms do not tell which of several comes first, and any may, the rule goes
-///   on with the infinitesimal loads and the order of contacts (proofs/degenerate.md, C1). What it chose is recorded as
-///   a choice. The path is then one of the packing as it is, eps = 0: one of several.
-enum class TiePolicy : unsigned char { stop, by_class, perturb, choose };
+/// - choose: the radii are R_i + eps rho_i, eps > 0 smaller than every positive number, rho from `ties_seed` once for
+///   the whole run: first-order terms decide (proofs/perturbation.md). Where they do not tell which of several comes
+///   first, and any may, the rule goes on with the infinitesimal loads and the order of contacts (proofs/degenerate.md,
+///   C1), as often as `max_choices` allows; then the run ends with `undecided`. What it chose is recorded as a choice.
+///   The path is then one of the packing as it is, eps = 0: one of several.
+enum class TiePolicy : unsigned char { stop, choose };
 /// The words of scenes, in that order.
-inline constexpr std::array tie_policy_words{"stop", "class", "perturb", "choose"};
-/// Ties are settled for radii R_i + eps rho_i.
-constexpr bool at_first_order(TiePolicy policy) {
-    return policy == TiePolicy::perturb || policy == TiePolicy::choose;
-}
+inline constexpr std::array tie_policy_words{"stop", "choose"};
 
 /// Caps and choices of a run.
 struct RunOptions {
@@ -53,8 +48,14 @@ struct RunOptions {
     double step_fraction = 0.1;                     ///< longest predictor step, in units of the smallest radius
     CertifyLevel certify = CertifyLevel::decisions; ///< `states` is the observer's work: here as `decisions`
     TiePolicy ties = TiePolicy::stop;
-    std::uint64_t ties_seed = 1;             ///< of rho
-    const std::atomic<bool>* stop = nullptr; ///< set by Ctrl-C: the run ends after the current arc
+    std::uint64_t ties_seed = 1;                         ///< of rho
+    long max_choices = std::numeric_limits<long>::max(); ///< 0: only first-order terms settle ties
+    const std::atomic<bool>* stop = nullptr;             ///< set by Ctrl-C: the run ends after the current arc
+
+    /// Ties are settled for radii R_i + eps rho_i.
+    [[nodiscard]] bool at_first_order() const { return ties == TiePolicy::choose; }
+    /// What first-order terms leave tied is chosen.
+    [[nodiscard]] bool chooses() const { return at_first_order() && max_choices > 0; }
 };
 
 /// The direction rho of a run: rho_i = k_i 2^(e-16), k_i an integer in [-2^15, 2^15) from a splitmix64 sequence started

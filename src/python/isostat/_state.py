@@ -58,7 +58,7 @@ def from_arrays(
     stress : (2,) float
         sigma_1 on the right, sigma_2 on the top wall; positive in compression.
     reference_length : (2,) float, optional
-        Lengths at which nominal stress and strain are defined; default: `length`.
+        Lengths at which nominal stress and strain are defined; default: `length`, where no wall is absent.
     load : "nominal" or "true"
     infinitesimal : (n, 2) float, optional
         Infinitesimal loads, on which rattlers rest.
@@ -79,20 +79,17 @@ def from_arrays(
     radii = np.asarray(radii, dtype=float)
     if positions.shape != (len(radii), 2):
         raise ValueError(f"positions has shape {positions.shape}: expected ({len(radii)}, 2)")
-    reference = length if reference_length is None else reference_length
-    content: dict[str, object] = {
+    content: dict[str, Any] = {
         "format": "isostat-state",
         "version": 2,
         "disks": np.column_stack((positions, radii)).tolist(),
         "length": [float(value) for value in length],
         "walls": {"lower": list(lower), "upper": list(upper)},
-        "load": {
-            "kind": load,
-            "stress": [float(value) for value in stress],
-            "reference_length": [float(value) for value in reference],
-        },
+        "load": {"kind": load, "stress": [float(value) for value in stress]},
         "contacts": [_json_contact(contact) for contact in contacts],
     }
+    if reference_length is not None:
+        content["load"]["reference_length"] = [float(value) for value in reference_length]
     for name, value in (("infinitesimal", infinitesimal), ("disk_force", disk_force)):
         if value is not None:
             content[name] = np.asarray(value, dtype=float).tolist()

@@ -1,8 +1,8 @@
-#include "trajectory/second_order.hpp"
+#include "trajectory/ties/second_order.hpp"
 
 #include "contact/separation.hpp"
 #include "contact/words.hpp"
-#include "statics/rule_key.hpp"
+#include "statics/quotient.hpp"
 
 #include <Eigen/LU>
 

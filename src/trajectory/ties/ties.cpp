@@ -1,4 +1,4 @@
-#include "trajectory/ties.hpp"
+#include "trajectory/ties/ties.hpp"
 
 #include "contact/words.hpp"
 #include "core/roundoff.hpp"

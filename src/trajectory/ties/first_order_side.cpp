@@ -1,4 +1,4 @@
-#include "trajectory/first_order_side.hpp"
+#include "trajectory/ties/first_order_side.hpp"
 
 #include "contact/words.hpp"
 #include "statics/first_order_backbone.hpp"
@@ -128,7 +128,23 @@ std::optional<Failure> FirstOrderSide<Dim>::resume(Vertex<Dim>& vertex, const Ze
     return settle_touching(vertex, touching);
 }
 
-template <int Dim> void FirstOrderSide<Dim>::store(const Vertex<Dim>& vertex) const {
+template <int Dim>
+void FirstOrderSide<Dim>::set_limit(LimitLoad<Dim>& at, Vertex<Dim>& vertex, ContactId opens, double error) const {
+    at.shift = vertex.statics.zero_of(opens, at.stress());
+    at.error = error;
+    at.stress_rate = vertex.perturbed->statics.limit_rate(opens, at.stress(), error);
+}
+
+template <int Dim>
+std::optional<Failure> FirstOrderSide<Dim>::settle_end(Vertex<Dim>& vertex, const LimitLoad<Dim>& limit,
+                                                       const std::vector<ContactId>& zeros,
+                                                       const ZeroGaps& touching) const {
+    auto failure = settle_load(vertex, limit, zeros);
+    return failure ? failure : settle_touching(vertex, touching);
+}
+
+template <int Dim> void FirstOrderSide<Dim>::store(const Vertex<Dim>& vertex, EquilibriumRecord<Dim>& record) const {
+    record.touching = static_cast<int>(vertex.perturbed->touching.size());
     RadiusPerturbation& stored = *state_.perturbation;
     stored.open = vertex.perturbed->touching;
     stored.zero.clear();
@@ -137,6 +153,14 @@ template <int Dim> void FirstOrderSide<Dim>::store(const Vertex<Dim>& vertex) co
     }
 }
 
+template <int Dim> std::unique_ptr<const TieSettling<Dim>> tie_settling(State<Dim>& state, const RunOptions& options) {
+    if (options.at_first_order()) {
+        return std::make_unique<const FirstOrderSide<Dim>>(state, options.ties_seed, options.chooses());
+    }
+    return std::make_unique<const TieSettling<Dim>>();
+}
+
 template class FirstOrderSide<2>;
+template std::unique_ptr<const TieSettling<2>> tie_settling<2>(State<2>&, const RunOptions&);
 
 } // namespace isostat

@@ -1,8 +1,8 @@
 #pragma once
 /// \file
-/// Ties under `ties = "perturb"` and `"choose"`: the decisions of a vertex at first order in eps. Private to the room.
+/// Ties under `ties = "choose"`: the decisions of a vertex at first order in eps. Private to the room.
 
-#include "trajectory/second_order.hpp"
+#include "trajectory/ties/second_order.hpp"
 
 namespace isostat {
 

@@ -1,0 +1,24 @@
+#pragma once
+/// \file
+/// Quotients of enclosures: private to the rooms statics and trajectory.
+
+#include "core/roundoff.hpp"
+
+#include <isostat/core/verdict.hpp>
+
+#include <cmath>
+
+namespace isostat {
+
+/// a / b, for b > 0; a radius of infinity when that is not proved.
+inline Enclosure quotient(const Enclosure& a, const Enclosure& b) {
+    using roundoff::u;
+    const double value = a.value / b.value;
+    const double smallest = b.value - b.radius;
+    if (!(smallest > 0)) {
+        return {value, roundoff::infinity};
+    }
+    return {value, (a.radius + std::abs(value) * b.radius) / smallest * (1 + 8 * u) + 2 * u * std::abs(value)};
+}
+
+} // namespace isostat

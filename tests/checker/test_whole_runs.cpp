@@ -12,7 +12,10 @@
 
 #include <boost/multiprecision/mpfr.hpp>
 #include <boost/test/unit_test.hpp>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace isostat;

@@ -131,8 +131,6 @@ int compare_series(const CompareArguments& a) {
     if (!a.output.empty()) {
         check_folder_for(a.output, comparison_folder);
     }
-    compare::SeriesReader reader(a.series);
-    const compare::Series& series = reader.series();
     compare::CompareOptions options;
     options.bundle = a.bundle;
     options.local = a.local;
@@ -148,6 +146,8 @@ int compare_series(const CompareArguments& a) {
         }
         options.frames = {static_cast<int>(frame(ends[0])), static_cast<int>(frame(ends[1]))};
     }
+    compare::SeriesReader reader(a.series);
+    const compare::Series& series = reader.series();
     if (!a.reference.empty()) {
         options.start = start_of(a.reference);
     }

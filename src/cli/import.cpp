@@ -410,7 +410,9 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
 std::string advice(const ImportArguments& a, bool crafted, std::vector<double> radius) {
     std::sort(radius.begin(), radius.end());
     const bool equal = std::adjacent_find(radius.begin(), radius.end()) != radius.end();
-    return equal && !crafted && a.jitter == 0 ? "; equal radii: try --jitter 1e-9 --contacts nearest" : "";
+    return equal && !crafted && a.jitter == 0 ? "; equal radii: try --jitter 1e-9 --contacts nearest (a copy, "
+                                                "whose h and strict verdict may be others)"
+                                              : "";
 }
 
 } // namespace
@@ -479,6 +481,7 @@ int import(const ImportArguments& arguments) {
                           {"by_default",
                            {{"stress", a.stress.empty() && !imported.load_of_file},
                             {"kind", a.load.empty() && !imported.load_of_file}}}};
+        object["jitter_matters"] = imported.copy;
         object["verdict"] = to_string(imported.verdict());
         add_untold(object, imported.untold, imported.truth.verdict);
         print_json(object);

@@ -84,19 +84,6 @@ ForeignOptions options_of(const ForeignArguments& a) {
     return out;
 }
 
-/// What the digits of --box, --radius and --diameter leave open of a gap.
-double rounding_of(const ForeignArguments& a) {
-    Digits sides, sizes;
-    for (const std::string& axis : parse_list(a.box)) {
-        for (const std::string& side : parse_list(axis, ':')) {
-            sides.see(side);
-        }
-    }
-    sizes.see(a.radius);
-    sizes.see(a.diameter);
-    return rounding_of_gaps(0, sides.rounding(), a.radius.empty() ? sizes.rounding() / 2 : sizes.rounding());
-}
-
 /// What the doubles of a file of this program leave open of a gap.
 double rounding_of(const Packing<2>& packing) {
     double largest = packing.max_radius();
@@ -138,7 +125,7 @@ ReadPacking read_any_packing(const std::string& file, const ForeignArguments& ar
     if (!own) {
         ForeignPacking foreign = parse_foreign(text, file, options);
         return {std::move(foreign.packing), std::move(foreign.format), std::move(foreign.notes), std::move(foreign.ids),
-                foreign.rounding + rounding_of(arguments)};
+                foreign.rounding};
     }
     if (options.size || options.box || options.select || !arguments.walls.empty() || !options.columns.empty() ||
         options.frame || options.not_periodic || options.periodic) {

@@ -86,7 +86,15 @@ bool is_plain_line(std::string_view text) {
 }
 
 std::string gnuplot(std::string_view text) {
-    return fmt::format("'{}'", replaced(shown(text), [](char c) { return c == '\'' ? "''" : ""; }));
+    return fmt::format("\"{}\"", replaced(shown(text), [](char c) {
+                           return c == '"'    ? "\\042"
+                                  : c == '$'  ? "\\044"
+                                  : c == '\'' ? "\\047"
+                                  : c == '@'  ? "\\100"
+                                  : c == '\\' ? "\\134"
+                                  : c == '`'  ? "\\140"
+                                              : "";
+                       }));
 }
 
 std::string csv(std::string_view text) {
@@ -110,8 +118,8 @@ std::string json(std::string_view document) {
     return harmless(document, "\\u{:04x}", '\n');
 }
 
-std::string in_script(std::string_view json) {
-    return replaced(json, [](char c) {
+std::string in_script(std::string_view document) {
+    return replaced(json(document), [](char c) {
         return c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : c == '&' ? "\\u0026" : "";
     });
 }

@@ -18,7 +18,8 @@ std::string shown_lines(std::string_view text);
 /// Whether the text is one line that is shown as it is.
 bool is_plain_line(std::string_view text);
 
-/// A string of gnuplot: in single quotes nothing is a command, not even a backquote.
+/// A string of gnuplot. Quotes, backquotes and what else may mean something are octal numbers: a quote in quotes is not
+/// always one character to gnuplot.
 std::string gnuplot(std::string_view text);
 
 /// A field of a CSV table, quoted where it must be. A spreadsheet takes none for a formula.
@@ -31,7 +32,7 @@ std::string markup(std::string_view text);
 std::string json(std::string_view document);
 
 /// JSON that may stand in a script element of HTML: no "<", ">" or "&", which only its strings can hold.
-std::string in_script(std::string_view json);
+std::string in_script(std::string_view document);
 
 /// Lines of a manual page.
 std::string man(std::string_view text);

@@ -316,10 +316,11 @@ class Sequence {
         double widest = -1;
         for (std::size_t e = start_; e < ends_.size(); ++e) {
             const std::size_t begin = e;
-            const auto same = [&](std::size_t k) {
-                return excess(backbone_counts(ends_[k])) == excess(backbone_counts(ends_[begin]));
+            const auto kind = [&](std::size_t k) {
+                const PlateauCounts counts = backbone_counts(ends_[k]);
+                return std::pair(counts.contact_count > 0, excess(counts));
             };
-            while (e + 1 < ends_.size() && same(e + 1)) {
+            while (e + 1 < ends_.size() && kind(e + 1) == kind(begin)) {
                 ++e;
             }
             const PlateauRange range = range_of(begin, e);

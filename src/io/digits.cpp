@@ -21,12 +21,13 @@ void Digits::see(std::string_view number) {
     largest_ = std::max(largest_, std::abs(*value));
 }
 
-double Digits::rounding() const {
+double Digits::rounding(int others) const {
     constexpr int few = 4;
     if (largest_ == 0) {
         return 0;
     }
-    const double last = most_ <= few ? 0 : 0.5 * std::pow(10.0, std::floor(std::log10(largest_)) - most_ + 1);
+    const double last =
+        most_ <= few ? 0 : 0.5 * std::pow(10.0, std::floor(std::log10(largest_)) - std::max(most_, others) + 1);
     return std::max(last, 0x1p-53 * largest_);
 }
 

@@ -11,8 +11,10 @@ class Digits {
   public:
     void see(std::string_view number);
     /// So far may the numbers be from what was meant: half a unit of the last digit of the largest one, and what
-    /// doubles round.
-    [[nodiscard]] double rounding() const;
+    /// doubles round. \p others: digits of other numbers of the file; where these have more, the zeros after the last
+    /// digit were left out, not the digits.
+    [[nodiscard]] double rounding(int others = 0) const;
+    [[nodiscard]] int most() const { return most_; }
     /// Largest size.
     [[nodiscard]] double largest() const { return largest_; }
 

@@ -133,14 +133,16 @@ bool is_marked(const std::filesystem::path& path, const std::string& text) {
 void check_output(const std::filesystem::path& path, const std::string& mark,
                   std::initializer_list<std::filesystem::path> inputs) {
     std::error_code absent;
+    if (!std::filesystem::is_regular_file(path, absent)) { // a pipe or a terminal is not replaced
+        return;
+    }
     for (const std::filesystem::path& input : inputs) {
-        if (std::filesystem::equivalent(path, input, absent) && !absent) {
+        if (std::filesystem::equivalent(path, input, absent)) {
             throw Error(ErrorKind::usage, fmt::format("{}: is the input {}: expected another name to write to",
                                                       path.string(), input.string()));
         }
     }
-    if (std::filesystem::is_regular_file(path, absent) && std::filesystem::file_size(path) > 0 &&
-        !is_marked(path, mark)) {
+    if (std::filesystem::file_size(path) > 0 && !is_marked(path, mark)) {
         throw Error(ErrorKind::usage, fmt::format("{}: exists and holds something else than what would be written: "
                                                   "expected a new name",
                                                   path.string()));

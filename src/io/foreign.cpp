@@ -188,13 +188,18 @@ double add_walls(ForeignPacking& out, const Raw& raw, const std::string& source,
 }
 
 /// \p moved: the rounding of a coordinate that came with the walls or the cell.
-double rounding_of(const Raw& raw, const ForeignPacking& found, bool stated_box, double moved) {
+double rounding_of(const Raw& raw, const ForeignPacking& found, const ForeignOptions& options, double moved) {
+    const bool walls = !(found.packing.walls == Walls<2>::none());
+    const bool sides = found.packing.cell.any() || (walls && !options.box);
+    const int digits = std::max({raw.places.most(), raw.sizes.most(), sides ? raw.sides.most() : 0});
     const double scaled = raw.scale == 1 ? 0 : 0x1p-51 * raw.scale; // three operations
-    const double size = raw.sizes.largest() == 0 ? 0x1p-53 * found.packing.max_radius() : raw.sizes.rounding();
-    const bool sides = found.packing.cell.any() || (!(found.packing.walls == Walls<2>::none()) && !stated_box);
-    return rounding_of_gaps(raw.places.rounding() * raw.scale + scaled + moved,
-                            sides ? raw.sides.rounding() + moved : 0,
-                            raw.meaning == SizeMeaning::radius ? size : size / 2);
+    double size = raw.sizes.rounding(digits);
+    size = std::max(raw.meaning == SizeMeaning::radius ? size : size / 2, 0x1p-53 * found.packing.max_radius());
+    double side = sides ? raw.sides.rounding(digits) + moved : 0;
+    for (std::size_t k = 0; options.box && k < 4; ++k) {
+        side = std::max(side, 0x1p-53 * std::abs((*options.box)[k]) + moved);
+    }
+    return rounding_of_gaps(raw.places.rounding(digits) * raw.scale + scaled + moved, side, size);
 }
 
 } // namespace
@@ -294,7 +299,7 @@ ForeignPacking parse_foreign(const std::string& text, const std::string& source,
     const bool periodic = raw.boundary[0] == Boundary::periodic || raw.boundary[1] == Boundary::periodic;
     const double moved = (periodic ? add_cell : add_walls)(out, raw, source, options);
     check_range(out.packing, source);
-    out.rounding = rounding_of(raw, out, options.box.has_value(), moved);
+    out.rounding = rounding_of(raw, out, options, moved);
     return out;
 }
 

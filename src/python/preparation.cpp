@@ -95,10 +95,17 @@ void bind_plateau(py::module_& module) {
         .def_readonly("last", &PlateauRange::last, "Length.")
         .def_readonly("open", &PlateauRange::open, "It goes on beyond the largest threshold.")
         .def_readonly("contacts", &PlateauRange::contacts, "N of the backbone at `first`.")
-        .def_readonly("rattlers", &PlateauRange::rattlers, "At `first`.");
+        .def_readonly("rattlers", &PlateauRange::rattlers, "At `first`.")
+        .def_readonly("told", &PlateauRange::told, "It is wider than the rounding of gaps tells.");
     py::class_<Plateau>(module, "Plateau", "Counts against the gap threshold.")
         .def_readonly("steps", &Plateau::steps, "PlateauStep of each row asked for.")
-        .def_readonly("ranges", &Plateau::ranges, "Where the backbone is proved isostatic, at every threshold inside.")
+        .def_readonly("ranges", &Plateau::ranges,
+                      "Where the backbone of the stored doubles is proved isostatic, at every threshold inside.")
+        .def_readonly("rounding", &Plateau::rounding, "Gaps that differ by less than twice that are noise; length.")
+        .def_property_readonly(
+            "widest",
+            [](const Plateau& self) { return self.widest ? std::optional(self.widest->range) : std::nullopt; },
+            "PlateauRange, the widest on a logarithmic scale with one N - N_f: what the packing says; or None.")
         .def_readonly("special", &Plateau::special, "Where counting says isostatic and the rank does not.")
         .def_readonly("no_self_stress_below", &Plateau::no_self_stress_below,
                       "h = 0 in the backbone at every smaller threshold.")

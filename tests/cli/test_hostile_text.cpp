@@ -54,10 +54,12 @@ std::string in_toml(const std::string& name) {
     return json(name).dump(); // its escapes are those of TOML, too
 }
 
+/// Up and down by turns: no sample of 10 disks goes far one way.
 std::string scene_of_names(const std::vector<std::string>& names) {
     std::string text = "[packing]\ndisks = 10\nseed = 2\n";
-    for (const std::string& name : names) {
-        text += "[[programme]]\nname = " + in_toml(name) + "\ndo = \"up\"\nequilibria = 1\n";
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        text += "[[programme]]\nname = " + in_toml(names[k]) + "\ndo = \"" + (k % 2 == 0 ? "up" : "down") +
+                "\"\nequilibria = 1\n";
     }
     return text;
 }

@@ -94,7 +94,7 @@ BOOST_FIXTURE_TEST_CASE(no_command_writes_over_its_input_or_a_file_of_the_user, 
 
 BOOST_FIXTURE_TEST_CASE(a_program_without_descriptors_keeps_its_files_clean, Desk) {
     scratch::write(scene, small_run + "[run]\ncertify = \"arcs\"\n[output]\nstates_every = 1\n");
-    const std::string command = quoted(ISOSTAT_PROGRAM) + " run " + quoted(scene) + " -o ";
+    const std::string command = quoted(ISOSTAT_PROGRAM) + " run " + program::quoted(scene) + " -o ";
     BOOST_TEST(std::system((command + quoted(at("a")) + " <&- >&- 2>&-").c_str()) == 0);
     BOOST_TEST(std::system((command + quoted(at("b")) + " >&-").c_str()) == 0);
     for (const char* name : {"a", "b"}) {

@@ -163,7 +163,7 @@ BOOST_FIXTURE_TEST_CASE(a_checkpoint_names_no_file_but_those_of_its_run, Killed)
         forge_checkpoint(run, "\"digests\":{", "\"digests\":{\"" + name + "\":\"\",");
         refused("checkpoint.json: bytes." + name);
     }
-    for (const std::string& name : {"../thesis.txt", "states/last.json", "events.jsonl", "states/eq_1.json"}) {
+    for (const std::string name : {"../thesis.txt", "states/last.json", "events.jsonl", "states/eq_1.json"}) {
         forge_checkpoint(run, "\"files\":{", "\"files\":{\"" + name + "\":\"\",");
         refused("checkpoint.json: files." + name);
     }
@@ -223,7 +223,7 @@ BOOST_FIXTURE_TEST_CASE(what_a_kill_left_is_removed_by_a_resume_and_what_others_
     for (const std::string& name : of_others) {
         BOOST_TEST(scratch::read(run / name) == "mine", name);
     }
-    for (const std::string& name : {"states/eq_000000.json", "checkpoint.json", "start.json"}) {
+    for (const std::string name : {"states/eq_000000.json", "checkpoint.json", "start.json"}) {
         BOOST_TEST(!fs::exists(run / name), name);
     }
 }

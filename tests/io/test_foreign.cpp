@@ -206,6 +206,8 @@ BOOST_AUTO_TEST_CASE(gaps_are_known_to_the_digits_of_the_file) {
     const std::string box = replaced(dump, "-1 3\n", "-1 3.000001\n");
     BOOST_TEST(near(read(box, with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
     BOOST_TEST(read(box).rounding < 1e-14); // without walls they are not used
+    const std::string longer = replaced(box, "1 1 0 1.25", "1 1 0 1.2345678901234567");
+    BOOST_TEST(read(longer, with_walls(ForeignWalls::box)).rounding < 1e-14); // fewer digits than others: as it stands
     BOOST_TEST(near(read(replaced(xyz, "4 0 0", "4.000001 0 0"), with_walls(ForeignWalls::box)).rounding, 4 * 5e-7));
 }
 

@@ -49,8 +49,8 @@ struct ForeignPacking {
     std::string format;    ///< a name of `foreign_formats()`
     std::vector<long> ids; ///< those of the file, one per disk; none: it has no column of them
     /// So far may the gap of a pair be from that of the packing that was written: by the last digits of the file (half
-    /// a unit; numbers of at most four digits are taken as they stand), by doubles, by scaling and shifting. Stated
-    /// sizes and walls are taken to the doubles.
+    /// a unit; numbers of at most four digits, or fewer than others have, are taken as they stand), by doubles, by
+    /// scaling and shifting. Stated sizes and walls are taken to the doubles.
     double rounding = 0;
     /// What was done to the numbers and what the file left open, one sentence each: which column gave the size, whether
     /// scaled or shifted coordinates were rounded and by how much, boundaries that are not known, several types of

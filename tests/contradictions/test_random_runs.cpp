@@ -126,7 +126,7 @@ void compare(const RandomRun& run, const std::vector<Recorded>& records, Results
         const Truth truth(recorded.state);
         BOOST_TEST_REQUIRE(truth.known, truth.why);
         Comparison comparison(recorded, truth, results);
-        run.options.ties == TiePolicy::stop ? comparison.all() : comparison.geometry();
+        run.options.at_first_order() ? comparison.geometry() : comparison.all();
         ++results.equilibria;
         if (&recorded == &records.front()) {
             const auto wrong = jamming_objections(recorded.state, truth, certify(recorded.state));

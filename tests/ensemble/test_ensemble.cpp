@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
                 }
             }
             // The samples of a killed parent get SIGTERM: they may still be ending.
-            for (int k = 0; k < 60000; ++k) {
+            for (int k = 0; signal == SIGKILL && k < 60000; ++k) {
                 if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
                     break;
                 }

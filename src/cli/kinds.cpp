@@ -35,8 +35,8 @@ const Kind xyz{"extended XYZ", {"plateau", "import", "snap"}};
 const Kind table{"a table of disks", {"plateau", "import", "snap"}};
 const Kind certificate{"a certificate", {"verify"}};
 const Kind record{"a file of a run; its folder is meant", {"report", "verify", "export"}};
-const Kind run_folder{"the folder of a run", {"report", "verify", "export"}};
-const Kind ensemble_folder{"the folder of an ensemble", {"report", "verify"}};
+const Kind folder_of_run{"the folder of a run", {"report", "verify", "export"}};
+const Kind folder_of_ensemble{"the folder of an ensemble", {"report", "verify"}};
 
 /// Rows x, y, r: the first row that is no comment names x and y, or holds numbers alone, two at least.
 bool is_table(const std::string& begin) {
@@ -79,8 +79,8 @@ const Kind* kind_of_text(const std::string& text) {
 const Kind* kind_of(const fs::path& file) {
     std::error_code ignored;
     if (fs::is_directory(file, ignored)) {
-        return fs::exists(file / "run.json", ignored)        ? &run_folder
-               : fs::exists(file / "ensemble.json", ignored) ? &ensemble_folder
+        return fs::exists(file / "run.json", ignored)        ? &folder_of_run
+               : fs::exists(file / "ensemble.json", ignored) ? &folder_of_ensemble
                                                              : nullptr;
     }
     if (!fs::is_regular_file(file, ignored)) {

@@ -230,7 +230,7 @@ void try_runs(long otherwise, In where, Draw draw = Draw::all) {
     for (const auto& [reason, count] : results.open) {
         std::cout << "| " << reason << " | " << count << " |\n";
     }
-    BOOST_TEST((only >= 0 || 20 * results.answers["undecided"] <= results.runs));
+    BOOST_TEST((results.runs < 200 || 20 * results.answers["undecided"] <= results.runs)); // a few may be more
     BOOST_TEST(results.wrong == 0);
     BOOST_TEST((only >= 0 || results.numbers > 10 * results.runs));
 }

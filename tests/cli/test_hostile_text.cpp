@@ -83,7 +83,8 @@ BOOST_AUTO_TEST_CASE(names_of_segments_are_text_for_gnuplot_and_in_every_figure)
     }
     const std::string drawn = scratch::read(folder / "run/figures/staircase.svg");
     BOOST_TEST(contains(drawn, "`touch TRACE`"));
-    BOOST_TEST(contains(drawn, "&lt;script&gt;"));
+    BOOST_TEST(contains(drawn, "&lt;script"));
+    BOOST_TEST(!contains(drawn, "<script"));
     BOOST_TEST(contains(drawn, "^_{TRACE}"));
 }
 

@@ -165,8 +165,8 @@ BOOST_AUTO_TEST_CASE(the_replay_of_mutated_records_ends_with_an_answer) {
         (void)verify_run(run.run);
         return std::string();
     };
-    for (const char* name : {"events.jsonl", "equilibria.csv", "run.json", "start.json", "states/eq_000000.json",
-                             "states/eq_000001.json"}) {
+    for (const char* name :
+         {"events.jsonl", "equilibria.csv", "run.json", "states/eq_000000.json", "states/eq_000001.json"}) {
         run.fuzz(name, 300, replay);
     }
 }

@@ -9,9 +9,7 @@ fresh() {
   rm -rf "$copy"
   mkdir "$copy"
   cp -r --parents proofs/*.md proofs/*.bib proofs/coq/*.v proofs/coq/_CoqProject proofs/*.sh proofs/coq/*.sh "$copy"
-  ln -s "$top/src" "$top/include" "$top/examples" "$copy"
-  mkdir "$copy/tests"
-  ln -s "$top"/tests/* "$copy/tests"
+  ln -s "$top/src" "$top/include" "$top/examples" "$top/tests" "$top/bench" "$copy"
 }
 rot() { # what, expected message, sed script, file
   fresh
@@ -33,7 +31,7 @@ rot() { # what, expected message, sed script, file
 fresh
 python3 proofs/check_links.py "$copy" >"$copy/said" || { cat "$copy/said"; exit 1; }
 rot "a function is renamed" "has no find_limit_" 's/`find_limit`/`find_limit_`/' proofs/map.md
-rot "a file is moved" "no file src/statics/moved.cpp" 's,src/statics/limit.cpp,src/statics/moved.cpp,' proofs/map.md
+rot "a file is moved" "no file proofs/coq/moved.v" 's,proofs/coq/counting.v,proofs/coq/moved.v,' proofs/map.md
 rot "a test is renamed" "has no test case the_rules" 's/`the_rules_choose_what_their_names_say`/`the_rules`/' proofs/map.md
 rot "a theorem is renamed" "states no counting" 's/^Theorem counting/Theorem count/' proofs/coq/counting.v
 rot "a theorem is not asked for its assumptions" "the assumptions of counting" 's/^Print Assumptions counting\.//' proofs/coq/counting.v

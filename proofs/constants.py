@@ -6,7 +6,7 @@
   python3 proofs/constants.py --count   takes over the counts of entries that are there (read what --where shows first)
 
 A row of the table: file (its folder does not count: files may move), number as written, how often it is written there, and
-why it is what it is:
+why it is what it is; number * and 0 times: every number of a file that writes one format, say:
   page.md LABEL ...        a statement: the page of proofs/ has the word LABEL (several, separated by "; ", for several uses)
   cost: ...                changes how long it takes, or when something is given up as undecided, and no answer
   choice: ...              a choice that pages call one (a rule, a default, a limit of a record)
@@ -82,14 +82,17 @@ def main():
         text += ["\t".join((*key, str(len(found[key])), known[key][1])) for key in sorted(known) if key in found]
         table.write_text("\n".join(text) + "\n")
         known = rows()
+    whole = {name for name, number in known if number == "*"}
     wrong = []
     for key in sorted(set(found) | set(known)):
         where = f"{key[0]}: {key[1]}"
+        if key not in known and key[0] in whole:
+            continue
         if key not in known:
             wrong.append((key, f"{where} has no entry"))
-        elif key not in found:
+        elif key not in found and not (key[1] == "*" and any(name == key[0] for name, _ in found)):
             wrong.append((key, f"{where} is in the table, but no longer in the code"))
-        elif known[key][0] != len(found[key]):
+        elif known[key][0] != len(found.get(key, [])):
             wrong.append((key, f"{where} is written {len(found[key])} times, {known[key][0]} in the table"))
         elif problem := problem_of(known[key][1]):
             wrong.append((key, f"{where}: {problem}"))

@@ -36,5 +36,8 @@ sed -i 's/page.md V9/page.md/' "$table"; finds "proofs/page.md has no '(entries)
 sed -i 's/exact: u/exact: /' "$table"; finds "'exact' without a word"
 sed -i 's/exact: u/u/' "$table"; finds "'u' names no page"
 sed -i '1p' "$table"; finds 'each file and number once'
+printf 'src/verified/a.cpp\t*\t0\texact: one format\n' >"$table"
+check >/dev/null || { echo "a file of one format was refused"; exit 1; }
+sed -i 's/a.cpp/gone.cpp/' "$table"; finds 'gone.cpp: * is in the table, but no longer in the code'
 mkdir "$top/src/core"; mv "$code" "$top/src/core"; check >/dev/null || { echo "a file that moved to another room was refused"; exit 1; }
 echo "the check of constants finds each of $number kinds of rot"

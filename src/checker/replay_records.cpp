@@ -513,9 +513,15 @@ Objections check_direction(const Place& place, const RadiusPerturbation& said) {
                                            said.load_zero.i < 0 ? "missing" : to_string<2>(said.load_zero),
                                            at_limit ? "another force" : "no force")};
     }
-    return at_limit ? check_said("stress_rate", {said.stress_rate.value, said.stress_rate.radius}, place.load.rate,
-                                 largest_force({place.load.rate}))
-                    : Objections();
+    if (!at_limit) {
+        return {};
+    }
+    const auto& contacts = place.state->contacts;
+    const auto l =
+        static_cast<std::size_t>(std::find(contacts.begin(), contacts.end(), named->pair) - contacts.begin());
+    const Range& slope = place.evidence->slopes()[l];
+    return check_said("stress_rate", {said.stress_rate.value, said.stress_rate.radius}, place.load.rate,
+                      size / std::max(std::abs(slope.lower.get_d()), std::abs(slope.upper.get_d())));
 }
 
 /// The doubles of a stored state against the vertex that was reached. Where they are farther from it than doubles of a

@@ -146,6 +146,13 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
     if (Objections wrong = check_choice(place, place.said, opened, opening_choice(place, opened, rule))) {
         return wrong;
     }
+    for (const int l : decision.open) { // what is less negative does not open, whatever its sign
+        const auto other = static_cast<std::size_t>(l);
+        if (rule != "most_negative" || place.is_held(other) || !(forces[opened].upper < forces[other].lower)) {
+            return Objection{false, fmt::format("the sign of the force of {} is not known: {}", e.name(other),
+                                                shown(forces[other]))};
+        }
+    }
     if (!contains(decision.candidates, opened)) {
         return Objection{true, fmt::format("{} opens, but its force is in {}", e.name(opened), shown(forces[opened]))};
     }
@@ -156,13 +163,6 @@ Objections check_rule(const Place& place, const EventRecord& event, std::size_t 
         }
         if (Objections wrong = check_order(place, decision.kind, opened, other, rule)) {
             return wrong;
-        }
-    }
-    for (const int l : decision.open) { // what is less negative does not open, whatever its sign
-        const auto other = static_cast<std::size_t>(l);
-        if (rule != "most_negative" || place.is_held(other) || !(forces[opened].upper < forces[other].lower)) {
-            return Objection{false, fmt::format("the sign of the force of {} is not known: {}", e.name(other),
-                                                shown(forces[other]))};
         }
     }
     if (Objections wrong = compare_if_bounded("force", {event.force, event.force_bound}, forces[opened],

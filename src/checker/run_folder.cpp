@@ -214,8 +214,10 @@ std::vector<std::string> files_apart(const RunRecords& records) {
     const int rows = static_cast<int>(records.equilibria.size());
     for (const std::string& name : content.files) {
         const std::size_t number = name.find("/eq_") + std::string_view("/eq_").size();
-        if (const bool of_equilibrium = name.starts_with("states/eq_") || name.starts_with("certificates/eq_");
-            of_equilibrium && std::stoll(name.substr(number)) >= rows) {
+        const std::string digits = name.substr(std::min(number, name.size()), name.rfind('.') - number);
+        constexpr std::size_t most_digits_of_int = 9;
+        if ((name.starts_with("states/eq_") || name.starts_with("certificates/eq_")) &&
+            (digits.size() > most_digits_of_int || std::stoi(digits) >= rows)) {
             notes.push_back(fmt::format("{} is of no equilibrium of this run: it was left alone", name));
         }
     }

@@ -187,10 +187,10 @@ struct Arc {
     }
 
     /// Going back, a pair that touches at the end does not overlap; one that overlaps at first order touched all along,
-    /// or only grazes here (C1 g): else it closed before.
-    [[nodiscard]] Objections check_back(const Gap& pair, bool stays) const {
+    /// or only grazes here (C1 g): else it closed before. `back`: the motion back; null: the arc has no length.
+    [[nodiscard]] Objections check_back(const Gap& pair, const Velocities::Solution* back) const {
         const std::string name = to_string<2>(pair.pair);
-        if (stays) {
+        if (back == nullptr) {
             const bool overlapped = std::any_of(from.touching.begin(), from.touching.end(),
                                                 [](const Gap& gap) { return !gap.value.positive(); });
             return !pair.value.negative() || overlapped
@@ -199,8 +199,7 @@ struct Arc {
                                    fmt::format("{} overlap at first order, after a step before which none did", name)};
         }
         const Velocities& velocities = to.first->velocities();
-        const Velocities::Solution motion = velocities.opening(opened, +1);
-        const Range rate = velocities.gap_rate(pair.pair, motion);
+        const Range rate = velocities.gap_rate(pair.pair, *back);
         const bool watched = pair.value.negative();
         if (!rate.has_zero()) {
             return rate.negative() || watched
@@ -211,7 +210,7 @@ struct Arc {
                                                shown(pair.value))}
                        : Objections();
         }
-        const Range bend = velocities.bend(pair.pair, opened, motion);
+        const Range bend = velocities.bend(pair.pair, opened, *back);
         return bend.negative() ? Objections(Objection{true, fmt::format("{} overlap before the end of the arc: the "
                                                                         "second derivative of their gap is in {}",
                                                                         name, shown(bend))})
@@ -331,8 +330,12 @@ Objections check_ties(const Place& base, const Place& from, const Place& to, con
     }
     const bool stays =
         std::any_of(event.ties.begin(), event.ties.end(), [](const TieRecord& tie) { return tie.what == "step"; });
+    std::optional<Velocities::Solution> back;
+    if (!stays && !to.touching.empty()) {
+        back = to.first->velocities().opening(opened, +1);
+    }
     for (const Gap& pair : to.touching) {
-        if (Objections wrong = arc.check_back(pair, stays)) {
+        if (Objections wrong = arc.check_back(pair, back ? &*back : nullptr)) {
             return wrong;
         }
     }

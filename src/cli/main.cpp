@@ -6,7 +6,7 @@
 #include "cli/ranges.hpp"
 #include "cli/terminal.hpp"
 #include "core/memory.hpp"
-#include "core/text.hpp"
+#include "io/text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>

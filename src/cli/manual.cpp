@@ -1,6 +1,6 @@
 #include "cli/manual.hpp"
 
-#include "core/text.hpp"
+#include "io/text.hpp"
 
 #include <fmt/format.h>
 

@@ -375,7 +375,8 @@ int plateau(const PlateauArguments& a) {
         return done;
     }
     // Nothing is known of the list where no range is wider than the rounding.
-    return told.special || (result.widest && !result.widest->range.told) ? undecided : failed;
+    const bool known = result.widest ? result.widest->range.told : thresholds[1] - thresholds[0] > 2 * result.rounding;
+    return told.special || !known ? undecided : failed;
 }
 
 } // namespace isostat::cli

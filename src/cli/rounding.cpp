@@ -84,6 +84,29 @@ class Copies {
     std::optional<Factorisation> factors_;
 };
 
+/// Rattlers that would be held if the pairs that are as near as what may change were contacts.
+void add_rattlers(const State<2>& state, const std::vector<int>& disks, double change, Untold& out) {
+    std::vector<Contact> listed = state.contacts;
+    std::sort(listed.begin(), listed.end());
+    const auto carries = [&](int i) { return std::binary_search(disks.begin(), disks.end(), i); };
+    std::vector<Contact> near;
+    for (const Contact& c : compare::without(find_candidates(state.packing, candidate_fraction).contacts, listed)) {
+        const bool rattler = !carries(c.i) || (c.kind == ContactKind::disk_disk && !carries(c.j));
+        if (rattler && std::abs(gap<2>(state.packing, c)) <= 2 * change) {
+            near.push_back(c);
+        }
+    }
+    listed.insert(listed.end(), near.begin(), near.end());
+    std::sort(listed.begin(), listed.end());
+    const std::vector<Contact> held = compare::able_to_carry(state.packing, listed);
+    for (const Contact& c : near) {
+        if (std::binary_search(held.begin(), held.end(), c)) {
+            out.gaps.push_back(c);
+            out.rattlers = true;
+        }
+    }
+}
+
 } // namespace
 
 double imported_rounding(const State<2>& state) {
@@ -135,6 +158,11 @@ Untold untold_by(double rounding, const State<2>& state, const Certification& tr
         name.j = name.kind == ContactKind::disk_disk ? disks[static_cast<std::size_t>(name.j)] : name.j;
         sort_out(copies.gaps[l], copies.of_gaps[l], name, out.gaps);
     }
+    double change = rounding;
+    for (const double of_gap : copies.of_gaps) {
+        change = std::max(change, of_gap);
+    }
+    add_rattlers(state, disks, change, out);
     for (std::size_t l = 0; l < copies.forces.size(); ++l) {
         sort_out(copies.forces[l], copies.of_forces[l], carrying[l], out.forces);
     }
@@ -151,6 +179,7 @@ std::string Untold::words() const {
                                          compare::names_of(forces).substr(1));
     text += fmt::format(" cannot be told from 0: gaps of the file are known to {}", rounded_up(rounding, 2));
     return gaps.empty() ? text
+           : rattlers   ? text + "; some are of rattlers, which may be held"
                         : text + fmt::format("; with these gaps closed N = {} and h = {} (plateau shows that list)",
                                              contacts + static_cast<int>(gaps.size()), gaps.size());
 }

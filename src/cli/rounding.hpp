@@ -18,7 +18,8 @@ double imported_rounding(const State<2>& state);
 /// What cannot be told apart from 0 when every gap of a contact is off by the rounding.
 struct Untold {
     double rounding = 0;
-    std::vector<Contact> gaps;   ///< of other pairs, between disks that carry forces: there may be a contact
+    std::vector<Contact> gaps;   ///< of other pairs: there may be a contact
+    bool rattlers = false;       ///< some of them are of rattlers, which may then carry a force
     std::vector<Contact> forces; ///< of contacts: there may be none
     int contacts = 0;            ///< that carry a force
     bool refuted = false;        ///< an overlap or a negative force is larger than that

@@ -2,7 +2,7 @@
 /// \file
 /// The only way to the terminal: what files, names and options say passes `text::shown`.
 
-#include "core/text.hpp"
+#include "io/text.hpp"
 
 #include <fmt/format.h>
 

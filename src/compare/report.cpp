@@ -1,9 +1,9 @@
 #include "compare/report.hpp"
 
-#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"
+#include "io/text.hpp"
 #include "report/charts.hpp"
 #include "report/gnuplot.hpp"
 

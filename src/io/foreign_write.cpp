@@ -1,5 +1,5 @@
-#include "core/text.hpp"
 #include "io/cell_wrap.hpp"
+#include "io/text.hpp"
 
 #include <isostat/io/foreign.hpp>
 

@@ -1,5 +1,5 @@
 #include "convert.hpp"
-#include "core/text.hpp"
+#include "io/text.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>

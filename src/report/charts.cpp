@@ -1,6 +1,6 @@
 #include "report/charts.hpp"
 
-#include "core/text.hpp"
+#include "io/text.hpp"
 #include "report/statistics.hpp"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 #include "report/page.hpp"
 
-#include "core/text.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "io/text.hpp"
 #include "linear/factorisation.hpp"
 #include "report/page_bytes.hpp"
 #include "report/run_walk.hpp"

@@ -1,5 +1,5 @@
-#include "core/text.hpp"
 #include "io/files.hpp"
+#include "io/text.hpp"
 #include "io/toml.hpp"
 #include "scene/radii_file.hpp"
 #include "scene/radii_law.hpp"

@@ -30,9 +30,9 @@ void play_whole(State<2> state, int equilibria, const RunOptions& options, const
     header.program = "test";
     header.settings = fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"ties":"{}"}}}})",
                                   opening_rule_words[static_cast<std::size_t>(options.rule)], options.rule_seed,
-                                  options.ties == TiePolicy::choose ? "choose" : "stop");
+                                  tie_policy_words[static_cast<std::size_t>(options.ties)]);
     header.states_every = 1;
-    header.touching = options.ties == TiePolicy::choose;
+    header.touching = options.at_first_order();
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     directory.store_start(state);

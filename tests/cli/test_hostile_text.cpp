@@ -1,6 +1,6 @@
 // Names and words that other people wrote are text: no shell, no terminal and no reader takes them for more.
 #include "cli/program.hpp"
-#include "core/text.hpp"
+#include "io/text.hpp"
 #include "support/crafted.hpp"
 
 #include <isostat/io/state_file.hpp>

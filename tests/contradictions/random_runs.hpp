@@ -29,12 +29,11 @@ struct RandomRun {
     long killed_at = 0; ///< during this arc, and resumed; 0: never
 
     [[nodiscard]] std::string text() const {
-        return fmt::format("{} disks, rule {}, level {}, ties {}, {} segments, states_every {}, killed at {}",
+        return fmt::format("{} disks, rule {}, level {}, ties {}{}, {} segments, states_every {}, killed at {}",
                            start.packing.disk_count(), opening_rule_words[static_cast<std::size_t>(options.rule)],
-                           to_string(options.certify), ties(), segments.size(), states_every, killed_at);
-    }
-    [[nodiscard]] const char* ties() const {
-        return options.chooses() ? "choose" : options.at_first_order() ? "first order" : "stop";
+                           to_string(options.certify), tie_policy_words[static_cast<std::size_t>(options.ties)],
+                           options.chooses() || !options.at_first_order() ? "" : " nothing", segments.size(),
+                           states_every, killed_at);
     }
 };
 
@@ -162,10 +161,12 @@ class Keeper final : public RunObserver<2> {
 inline RunHeader header_of(const RandomRun& run) {
     RunHeader header;
     header.program = "test";
-    header.settings = fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"certify":"{}","ties":"{}"}}}})",
-                                  opening_rule_words[static_cast<std::size_t>(run.options.rule)], run.options.rule_seed,
-                                  to_string(run.options.certify), run.ties());
-    header.touching = run.options.ties != TiePolicy::stop;
+    header.settings =
+        fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"certify":"{}","ties":"{}","max_choices":{}}}}})",
+                    opening_rule_words[static_cast<std::size_t>(run.options.rule)], run.options.rule_seed,
+                    to_string(run.options.certify), tie_policy_words[static_cast<std::size_t>(run.options.ties)],
+                    run.options.max_choices);
+    header.touching = run.options.at_first_order();
     header.states_every = run.states_every;
     header.witnesses = run.options.certify == CertifyLevel::arcs;
     header.checkpoint_seconds = 0;

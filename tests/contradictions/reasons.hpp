@@ -14,11 +14,20 @@ struct Reason {
 };
 
 inline constexpr std::array reasons{
-    Reason{"the way is not proved", "level arcs: the way is not proved"},
-    Reason{"as far as steps in double tell", "steps in double meet another pair first"},
-    Reason{"was not found to", "steps in double do not find the end"},
-    Reason{"no true vertex is proved", "a vertex is nearly singular"},
+    Reason{"there is no witness", "level arcs: the run itself left the way open"},
+    Reason{"the way is not proved", "level arcs: the way is not proved from its witness"},
+    Reason{"as far as steps in double tell", "steps in double lose the curve: they meet another pair first"},
+    Reason{"was not found to", "steps in double lose the curve: they do not find the end"},
+    Reason{"steps in double ended where", "what steps in double contradict is not proved to be the end"},
+    Reason{"no true vertex is proved", "the contacts are nearly singular"},
     Reason{"unless a coordinate held earlier was released", "a hold may have been released and turned back"},
+    Reason{"which a coarser grid may have moved", "a hold is counted from a pinned disk that the grid moved"},
+    Reason{"the sign of the", "a force is 0 as far as is seen, and may open"},
+    Reason{"cannot be told from 0", "a force is 0 as far as is seen, and may open"},
+    Reason{"cannot order", "two forces are not ordered"},
+    Reason{"vanish together", "two forces are not ordered"},
+    Reason{"certificates/", "a claim of a certificate is narrower than what the checker encloses"},
+    Reason{"says too little", "a bound says nothing, and the number beside it is off"},
 };
 
 /// Of a run by its first message, what others follow from. Empty: the table names none.

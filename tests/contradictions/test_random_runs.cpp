@@ -126,7 +126,7 @@ void compare(const RandomRun& run, const std::vector<Recorded>& records, Results
         const Truth truth(recorded.state);
         BOOST_TEST_REQUIRE(truth.known, truth.why);
         Comparison comparison(recorded, truth, results);
-        run.options.ties == TiePolicy::stop ? comparison.all() : comparison.geometry();
+        run.options.at_first_order() ? comparison.geometry() : comparison.all();
         ++results.equilibria;
         if (&recorded == &records.front()) {
             const auto wrong = jamming_objections(recorded.state, truth, certify(recorded.state));
@@ -230,7 +230,7 @@ void try_runs(long otherwise, In where, Draw draw = Draw::all) {
     for (const auto& [reason, count] : results.open) {
         std::cout << "| " << reason << " | " << count << " |\n";
     }
-    BOOST_TEST((only >= 0 || 20 * results.answers["undecided"] <= results.runs));
+    BOOST_TEST((results.runs < 200 || 20 * results.answers["undecided"] <= results.runs)); // a few may be more
     BOOST_TEST(results.wrong == 0);
     BOOST_TEST((only >= 0 || results.numbers > 10 * results.runs));
 }

@@ -93,13 +93,16 @@ BOOST_AUTO_TEST_CASE(one_sample_that_cannot_be_written_loses_no_other_and_is_mad
     scratch::write(folder / "s.toml", small);
     const std::string scene = (folder / "s.toml").string();
     expect(run({"ensemble", scene, "-S", "4", "-o", (folder / "whole").string(), "-q"}), 0);
-    fs::create_directories(folder / "e/samples/seed_000002/equilibria.csv"); // a folder where a file must go
-    const Outcome broken = run({"ensemble", scene, "-S", "4", "-o", (folder / "e").string(), "-q", "-j", "1"});
-    expect(broken, 1, {"seed 2: refused", "equilibria.csv"});
+    expect(run({"ensemble", scene, "-S", "1", "-o", (folder / "e").string(), "-q"}), 0);
+    fs::create_directories(folder / "e/samples/seed_000002");
+    scratch::write(folder / "e/samples/seed_000002/mine.txt", "precious"); // a run goes where nothing else is
+    const Outcome broken =
+        run({"ensemble", scene, "-S", "4", "-o", (folder / "e").string(), "-q", "-j", "1", "--resume"});
+    expect(broken, 1, {"seed 2: refused", "mine.txt"});
     const auto counts = nlohmann::json::parse(scratch::read(folder / "e/ensemble.json"))["counts"];
     BOOST_TEST(counts["completed"] == 3);
     BOOST_TEST(counts["refused"] == 1);
-    fs::remove(folder / "e/samples/seed_000002/equilibria.csv");
+    fs::remove(folder / "e/samples/seed_000002/mine.txt");
     expect(run({"ensemble", scene, "-S", "4", "-o", (folder / "e").string(), "-q", "--resume"}), 0);
     same_tables(folder / "e", folder / "whole");
 }
@@ -148,7 +151,7 @@ BOOST_AUTO_TEST_CASE(killed_ensembles_and_killed_samples_resume_to_the_same_tabl
                 }
             }
             // The samples of a killed parent get SIGTERM: they may still be ending.
-            for (int k = 0; k < 60000; ++k) {
+            for (int k = 0; signal == SIGKILL && k < 60000; ++k) {
                 if (!contains(scratch::read(out / "samples/seed_000002/run.json"), "\"running\"")) {
                     break;
                 }

@@ -1,10 +1,10 @@
 // Records of a run: run.json, events.jsonl, equilibria.csv, checkpoint.json, stored states.
 
 #include "checker/run_records.hpp"
-#include "core/text.hpp"
 #include "fuzz/harness.hpp"
 #include "io/certificate_json.hpp"
 #include "io/files.hpp"
+#include "io/text.hpp"
 #include "report/run_report.hpp"
 #include "report/tables.hpp"
 #include "support/crafted.hpp"

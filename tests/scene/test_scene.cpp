@@ -141,7 +141,7 @@ vtk = true
     BOOST_TEST((scene.run.ties == TiePolicy::choose));
     BOOST_TEST(scene.run.max_choices == 3);
     BOOST_TEST(scene.run.ties_seed == 9U);
-    BOOST_TEST(scene.settings.size() == 39U);
+    BOOST_TEST(scene.settings.size() == 40U);
     for (const Setting& setting : scene.settings) {
         BOOST_TEST((setting.line > 0 || setting.key == "name"), setting.section << "." << setting.key);
     }

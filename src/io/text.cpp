@@ -1,4 +1,4 @@
-#include "core/text.hpp"
+#include "io/text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Text of files and names, made harmless for whoever reads it.
-#include "core/text.hpp"
+#include "io/text.hpp"
 
 #include <boost/test/unit_test.hpp>
 
@@ -7,7 +7,7 @@
 
 using namespace isostat;
 
-BOOST_AUTO_TEST_SUITE(core)
+BOOST_AUTO_TEST_SUITE(io)
 
 BOOST_AUTO_TEST_CASE(control_characters_and_bytes_that_are_not_utf8_are_shown) {
     BOOST_TEST(text::shown("a\x1b[2J\a\n\r\t\x7f"

@@ -78,7 +78,7 @@ BOOST_AUTO_TEST_CASE(a_step_that_is_no_number_is_none_and_its_message_has_a_reas
                    "[packing]\nfile = \"" + scratch::data("cells/rows_unloaded.json") +
                        "\"\n[run]\nties = \"choose\"\nmax_choices = 0\nties_seed = 1\n[[programme]]\ndo = \"down\"\n"
                        "equilibria = 6\n");
-    const Outcome run_down = run({"run", scene, "-o", (folder / "out").string()});
+    const auto run_down = run({"run", scene, "-o", (folder / "out").string()});
     expect(run_down, 2);
     BOOST_TEST(!contains(run_down.out + run_down.err, "nan"), run_down.err);
     BOOST_TEST(contains(run_down.err, "at sigma = 0"), run_down.err);

@@ -11,7 +11,7 @@
 
 using namespace program;
 using namespace isostat;
-using nlohmann::json;
+using Answer = nlohmann::json;
 
 namespace {
 
@@ -34,7 +34,7 @@ BOOST_AUTO_TEST_SUITE(cli_rounding)
 BOOST_AUTO_TEST_CASE(a_hyperstatic_packing_is_not_isostatic_by_rounding) {
     const Outcome square = run(square_13(file_of("square13.txt")));
     expect(square, 1);
-    const json answer = json::parse(square.out);
+    const Answer answer = Answer::parse(square.out);
     BOOST_TEST(answer.at("isostatic").empty());
     BOOST_TEST(answer.at("widest").at("N") == 25);
     BOOST_TEST(answer.at("widest").at("rattlers") == 1);
@@ -73,7 +73,8 @@ BOOST_AUTO_TEST_CASE(nor_is_it_in_a_mirror_elsewhere_or_of_another_size) {
         const Outcome outcome = run({"plateau", file, "--walls", "fixed", box, "--json"});
         BOOST_TEST_CONTEXT("placement " << k << ", " << digits << " digits") {
             expect(outcome, 1);
-            BOOST_TEST((digits == 8 || json::parse(outcome.out).at("widest").at("N") == 25)); // the next gap is 4.9e-5
+            BOOST_TEST(
+                (digits == 8 || Answer::parse(outcome.out).at("widest").at("N") == 25)); // the next gap is 4.9e-5
         }
     }
 }
@@ -96,7 +97,7 @@ BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
         BOOST_TEST_CONTEXT(name) {
             const Outcome imported = run({"import", file_of(name), "--cell", "isotropic", "-o", state, "--json"});
             expect(imported, 2);
-            const json answer = json::parse(imported.out);
+            const Answer answer = Answer::parse(imported.out);
             BOOST_TEST(answer.at("verdict") == "undecided");
             BOOST_TEST(static_cast<int>(answer.at("untold").at("gaps").size()) == gaps);
             BOOST_TEST(answer.at("untold").at("verdict_of_the_doubles") == "proved");
@@ -122,7 +123,7 @@ BOOST_AUTO_TEST_CASE(where_every_gap_is_told_the_answer_is_that_of_the_doubles) 
     const Outcome imported = run({"import", scratch::data("yade20.txt"), "--box",
                                   "0:6.797743980394215,0:6.804741233269178", "-o", state, "--stress", "1,1", "--json"});
     expect(imported, 0);
-    const json answer = json::parse(imported.out);
+    const Answer answer = Answer::parse(imported.out);
     BOOST_TEST(answer.at("rounding").get<double>() > 1e-6); // six digits
     BOOST_TEST(answer.at("rounding").get<double>() < 1e-4);
     BOOST_TEST(answer.at("load").at("by_default").at("stress") == false);

@@ -17,9 +17,9 @@ using series::Copy;
 
 namespace {
 
-constexpr double stiffness = 1e5;
+constexpr double law_stiffness = 1e5;
 
-bool contains(const std::string& text, const std::string& what) {
+bool says(const std::string& text, const std::string& what) {
     return text.find(what) != std::string::npos;
 }
 
@@ -94,7 +94,7 @@ BOOST_AUTO_TEST_CASE(dashpots_of_a_slow_frame_are_told_from_wrong_forces_by_the_
         const Slow slow(0.1, power);
         const compare::FrameResult frame = slow.result();
         BOOST_TEST((frame.status == FrameStatus::moving), frame.reason);
-        BOOST_TEST(contains(frame.reason, "dashpot, 1 times the speed"), frame.reason);
+        BOOST_TEST(says(frame.reason, "dashpot, 1 times the speed"), frame.reason);
         BOOST_TEST(frame.law > 1e-3);
     }
     Slow wrong(0.1, 3); // and one force is wrong
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(dashpots_without_velocities_are_told_by_what_the_law_leaves
     slow.disk(2) = Copy::field(slow.disk(2), 3, fmt::format("{}", x + 1.5e-8));
     const compare::FrameResult frame = slow.result();
     BOOST_TEST((frame.status == FrameStatus::moving), frame.reason);
-    BOOST_TEST(contains(frame.reason, "dashpots may be at work"), frame.reason);
+    BOOST_TEST(says(frame.reason, "dashpots may be at work"), frame.reason);
 }
 
 BOOST_AUTO_TEST_CASE(the_digits_of_the_files_are_no_contradiction) {
@@ -138,7 +138,7 @@ BOOST_AUTO_TEST_CASE(the_digits_of_the_files_are_no_contradiction) {
     for (const int digits : {6, 8, 10}) {
         const compare::FrameResult frame = rounded(digits, 1);
         BOOST_TEST((frame.status == FrameStatus::same), digits << " digits: " << frame.reason);
-        BOOST_TEST(contains(frame.reason, "digits of the files") == (digits < 10), frame.reason);
+        BOOST_TEST(says(frame.reason, "digits of the files") == (digits < 10), frame.reason);
     }
     BOOST_TEST((rounded(8, 1000).status == FrameStatus::file)); // other units are beyond them
 }
@@ -158,7 +158,7 @@ BOOST_AUTO_TEST_CASE(overlaps_that_digits_hide_leave_a_frame_without_forces_unde
     }
     const compare::FrameResult frame = copy.compare().frames.at(0);
     BOOST_TEST((frame.status == FrameStatus::undecided), frame.reason);
-    BOOST_TEST(contains(frame.reason, "within the digits of the files"), frame.reason);
+    BOOST_TEST(says(frame.reason, "within the digits of the files"), frame.reason);
 }
 
 BOOST_AUTO_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run) {
@@ -172,10 +172,10 @@ BOOST_AUTO_TEST_CASE(the_figure_is_drawn_where_there_is_no_exact_run) {
     const std::string failure = compare::write_comparison(folder / "out", reader.series(), result);
     const std::string data = scratch::read(folder / "out" / "comparison.dat");
     const std::string script = scratch::read(folder / "out" / "comparison.gp");
-    BOOST_TEST(!contains(script, "exact run"));
-    BOOST_TEST(contains(script, "\"comparison.dat\" index 0 with points"));
+    BOOST_TEST(!says(script, "exact run"));
+    BOOST_TEST(says(script, "\"comparison.dat\" index 0 with points"));
     BOOST_TEST(data.find("# frames") == 0U);
-    if (!contains(failure, "cannot be started")) { // gnuplot is there
+    if (!says(failure, "cannot be started")) { // gnuplot is there
         BOOST_TEST(failure.empty(), failure);
         BOOST_TEST(std::filesystem::file_size(folder / "out" / "comparison.svg") > 1000U);
     }

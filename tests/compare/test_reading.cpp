@@ -17,8 +17,6 @@ using series::Copy;
 
 namespace {
 
-constexpr double law_stiffness = 1e5;
-
 bool says(const std::string& text, const std::string& what) {
     return text.find(what) != std::string::npos;
 }

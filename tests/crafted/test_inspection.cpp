@@ -33,7 +33,7 @@ std::string contents(const std::string& name) {
     return out.str();
 }
 
-Inspection inspected_alone(const ExactPacking& packing) {
+crafted::Inspection inspected_alone(const ExactPacking& packing) {
     auto result = inspect(packing);
     BOOST_REQUIRE(result.ok());
     return result.value();
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(mutated_files_are_refused_or_inspected_and_never_crash) {
 BOOST_AUTO_TEST_CASE(each_wrong_expectation_is_reported) {
     for (const char* name : {"three_disks_and_a_rattler.toml", "cell_two_disks_tilted.toml"}) {
         PackingFile file = parse_packing(contents(name), "three");
-        const Inspection inspection = inspected_alone(file.packing);
+        const crafted::Inspection inspection = inspected_alone(file.packing);
         BOOST_REQUIRE(check_expected(inspection, file, "three").empty());
         for (std::size_t e = 0; e < file.expected.size(); ++e) {
             PackingFile wrong = file;
@@ -264,7 +264,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
     int cases = 0;
     for (const std::string& path : packing_files()) {
         const ExactPacking packing = read_packing(path).packing;
-        const Inspection before = inspected_alone(packing);
+        const crafted::Inspection before = inspected_alone(packing);
         ExactPacking other = packing;
         std::vector<std::size_t> label(packing.radius.size());
         for (std::size_t i = 0; i < label.size(); ++i) {
@@ -292,7 +292,7 @@ BOOST_AUTO_TEST_CASE(relabelling_scaling_and_turning_leave_the_counts_alone) {
         }
         other.length = {scale * packing.length[0], scale * packing.length[1]};
         other.tilt = scale * packing.tilt;
-        const Inspection after = inspected_alone(other);
+        const crafted::Inspection after = inspected_alone(other);
         BOOST_TEST_CONTEXT(path) {
             BOOST_TEST(after.dof_count == before.dof_count);
             BOOST_TEST(after.contacts.size() == before.contacts.size());
@@ -316,7 +316,7 @@ BOOST_AUTO_TEST_CASE(bases_are_in_the_kernel_and_count_as_they_should) {
     for (const auto& [rows, columns] : {std::pair{2, 3}, std::pair{3, 3}, std::pair{4, 5}, std::pair{1, 4}}) {
         for (const bool box : {false, true}) {
             const ExactPacking packing = triangular(rows, columns, box);
-            const Inspection inspection = inspected_alone(packing);
+            const crafted::Inspection inspection = inspected_alone(packing);
             BOOST_REQUIRE((inspection.bases_exact == Verdict::proved));
             const auto h = static_cast<std::size_t>(inspection.hyperstaticity),
                        k = static_cast<std::size_t>(inspection.mechanisms);
@@ -347,7 +347,7 @@ BOOST_AUTO_TEST_CASE(rational_packings_count_as_in_double_with_the_same_contacts
         const ExactPacking packing =
             read_packing(fmt::format("{}/packings/square_lattice_{}.toml", ISOSTAT_EXAMPLES, m)).packing;
         const auto stored = approximate(packing);
-        const Inspection a = inspected_alone(exact_copy(stored));
+        const crafted::Inspection a = inspected_alone(exact_copy(stored));
         const isostat::Counting b = isostat::count_contacts<2>(stored, a.contacts);
         BOOST_TEST(a.rank == b.rank);
         BOOST_TEST(a.hyperstaticity == b.hyperstaticity);
@@ -375,7 +375,7 @@ BOOST_AUTO_TEST_CASE(beyond_the_limits_the_answers_are_bounds_and_say_so) {
 BOOST_AUTO_TEST_CASE(a_lattice_of_900_disks_is_counted_exactly) {
     const ExactPacking packing = triangular(30, 30, true);
     const auto start = std::chrono::steady_clock::now();
-    const Inspection inspection = inspected_alone(packing);
+    const crafted::Inspection inspection = inspected_alone(packing);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     BOOST_TEST_MESSAGE("30 x 30: " << elapsed.count() << " s, N = " << inspection.contacts.size()
                                    << ", h = " << inspection.hyperstaticity);
@@ -388,7 +388,7 @@ BOOST_AUTO_TEST_CASE(a_lattice_of_900_disks_is_counted_exactly) {
 BOOST_AUTO_TEST_CASE(a_lattice_of_70_x_70_is_counted_within_seconds) {
     const ExactPacking packing = triangular(70, 70, true);
     const auto start = std::chrono::steady_clock::now();
-    const Inspection inspection = inspected_alone(packing);
+    const crafted::Inspection inspection = inspected_alone(packing);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     BOOST_TEST_MESSAGE("70 x 70: " << elapsed.count() << " s, N = " << inspection.contacts.size()
                                    << ", h = " << inspection.hyperstaticity);

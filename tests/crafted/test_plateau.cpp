@@ -219,7 +219,7 @@ BOOST_AUTO_TEST_CASE(what_follows_from_monotony_is_what_an_elimination_says) {
             BOOST_REQUIRE_EQUAL(step.candidate_count, static_cast<int>(contacts.size()));
             BOOST_REQUIRE_EQUAL(step.all.rank, all.rank);
             BOOST_REQUIRE_EQUAL(step.all.dof_count, all.dof_count);
-            Inspection backbone;
+            crafted::Inspection backbone;
             backbone.contacts = contacts;
             judge_holds(backbone, exact_copy(packing));
             int left = 0;

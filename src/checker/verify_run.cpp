@@ -181,6 +181,8 @@ class Replay {
 
     /// Equilibrium 0 is taken as it is stored; how it was reached is not replayed.
     void start(const EquilibriumLine& line) {
+        expect(line.integer("previous") == -1, line.where,
+               fmt::format("previous is {}, expected -1: there is none before", line.integer("previous")));
         if (!events_of(line).empty()) {
             leave(line.where, "the arcs from the start to equilibrium 0 are not checked");
         }

@@ -252,13 +252,17 @@ class Replay {
     /// Equilibrium 0 is the start as it is stored, or arcs lead to it from start.json. Of pairs that touch there the
     /// list holds those with which these arcs end at that of the equilibrium.
     void begin(const EquilibriumLine& line, const std::vector<const EventRecord*>& arcs) {
+        expect(line.integer("previous") == -1, line.where,
+               fmt::format("previous is {}, expected -1: there is none before", line.integer("previous")));
         std::optional<StateFile<2>> file = records_.stored(0);
         if (!expect(file.has_value() || !is_row(0), line.where,
                     "states/eq_000000.json, the start of the replay, is missing")) {
             return;
         }
         if (arcs.empty()) {
-            go_to_stored(std::move(file->state), line.where);
+            if (file) {
+                go_to_stored(std::move(file->state), line.where);
+            }
             return;
         }
         if (!records_.start) {

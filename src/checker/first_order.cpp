@@ -177,14 +177,6 @@ FirstOrder::FirstOrder(const Evidence& evidence, const std::vector<double>& rho)
     change_ = velocities_.solve(b);
 }
 
-double FirstOrder::speed() const {
-    double most = change_.fastest();
-    for (const double growth : rho_) {
-        most = std::max(most, std::abs(growth));
-    }
-    return most;
-}
-
 Rational FirstOrder::grown(const Contact& pair) const {
     Rational sum(rho_[static_cast<std::size_t>(pair.i)]);
     if (pair.kind == ContactKind::disk_disk) {

@@ -41,8 +41,6 @@ class FirstOrder {
     /// First-order forces at a fixed stress, from the forces there.
     [[nodiscard]] std::vector<Range> forces(const std::vector<Range>& f0) const;
     [[nodiscard]] const Velocities& velocities() const { return velocities_; }
-    /// What first-order gaps are made of: the fastest coordinate, and the growth of the radii.
-    [[nodiscard]] double speed() const;
 
   private:
     [[nodiscard]] Rational grown(const Contact& pair) const;

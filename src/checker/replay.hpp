@@ -46,9 +46,9 @@ struct Bounded {
 /// The number found lies within the bound; undecided when the bound is above `loosest`.
 Objections compare(const char* name, const Bounded& said, const Range& found, double loosest);
 
-/// A first-order term with its bound against what was found: the two have a number in common, and the bound is no
-/// larger than `force_tolerance` of `size`, which it is a sum of terms of: a wider one says nothing.
-Objections check_said(const std::string& what, const Bounded& said, const Range& found, double size);
+/// A first-order term with its bound against what was found: the two have a number in common. A wide bound contradicts
+/// nothing and is evidence of nothing: what hangs on the term is decided by the range that was found.
+Objections check_said(const std::string& what, const Bounded& said, const Range& found);
 
 /// The largest magnitude.
 double largest_force(const std::vector<Range>& forces);

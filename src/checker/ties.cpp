@@ -8,17 +8,13 @@
 
 namespace isostat::checker {
 
-Objections check_said(const std::string& what, const Bounded& said, const Range& found, double size) {
+Objections check_said(const std::string& what, const Bounded& said, const Range& found) {
     const auto [value, bound] = said;
-    if (found.lower > Rational(value) + Rational(bound) || found.upper < Rational(value) - Rational(bound)) {
-        return Objection{true, fmt::format("{} is {} +- {}, found in {}", what, value, bound, shown(found))};
-    }
-    const double loosest = force_tolerance * std::max(size, largest_force({found}));
-    if (bound > loosest) {
-        return Objection{false, fmt::format("{} is {} +- {}: a bound that says too little (at most {:.3g} is accepted)",
-                                            what, value, bound, loosest)};
-    }
-    return {};
+    const bool apart =
+        found.lower > Rational(value) + Rational(bound) || found.upper < Rational(value) - Rational(bound);
+    return apart ? Objections(
+                       Objection{true, fmt::format("{} is {} +- {}, found in {}", what, value, bound, shown(found))})
+                 : Objections();
 }
 
 namespace {
@@ -43,33 +39,26 @@ std::vector<Gap>::const_iterator touching_pair(const Place& place, const std::st
                         [&name](const Gap& gap) { return to_string<2>(gap.pair) == name; });
 }
 
-/// A first-order term, and the size of what it is a sum of.
-struct Term {
-    Range value;
-    double size;
-};
-
 /// First-order gap of a pair that touches.
-std::optional<Term> first_gap(const Place& place, const std::string& name) {
+std::optional<Range> first_gap(const Place& place, const std::string& name) {
     const auto gap = touching_pair(place, name);
-    return gap == place.touching.end() ? std::nullopt : std::optional(Term{gap->value, place.first->speed()});
+    return gap == place.touching.end() ? std::nullopt : std::optional(gap->value);
 }
 
 /// First-order length of the way on which a pair that touches closes; nothing when it does not close.
-std::optional<Term> first_way(const Place& from, const std::string& name, std::size_t opened, int direction) {
+std::optional<Range> first_way(const Place& from, const std::string& name, std::size_t opened, int direction) {
     const auto gap = touching_pair(from, name);
     if (gap == from.touching.end()) {
         return {};
     }
     const Velocities& velocities = from.first->velocities();
     const Range rate = Range(Rational(0)) - velocities.gap_rate(gap->pair, velocities.opening(opened, direction));
-    return rate.positive() ? std::optional(Term{gap->value / rate, from.first->speed() / rate.lower.get_d()})
-                           : std::nullopt;
+    return rate.positive() ? std::optional(gap->value / rate) : std::nullopt;
 }
 
 /// At the limit where `opened` opens: first-order term of a force that is 0 all along, or of the stress at which it is
 /// 0.
-std::optional<Term> first_limit(const Place& from, const std::string& name, std::size_t opened, bool all_along) {
+std::optional<Range> first_limit(const Place& from, const std::string& name, std::size_t opened, bool all_along) {
     const auto l = position(from, name);
     const auto& slopes = from.evidence->slopes();
     if (!l || !from.first || slopes[opened].has_zero() || slopes[*l].has_zero() != all_along) {
@@ -77,11 +66,10 @@ std::optional<Term> first_limit(const Place& from, const std::string& name, std:
     }
     const std::vector<Range> there = forces_after(from, step_to_limit(from, opened));
     const std::vector<Range> first = from.first->forces(there);
-    const double size = largest_force(first);
     if (all_along) {
-        return there[*l].has_zero() ? std::optional(Term{first[*l], size}) : std::nullopt;
+        return there[*l].has_zero() ? std::optional(first[*l]) : std::nullopt;
     }
-    return Term{limit_rate(first[*l], slopes[*l]), size / std::abs(slopes[*l].lower.get_d())};
+    return limit_rate(first[*l], slopes[*l]);
 }
 
 /// What becomes of a force or a gap that vanishes in the base, by the sign of its first-order term (C1).
@@ -99,7 +87,7 @@ struct Arc {
     int direction;
 
     /// The first-order term of one name in one kind of decision; nothing: there is no such term.
-    [[nodiscard]] std::optional<Term> term(const std::string& what, const std::string& name) const {
+    [[nodiscard]] std::optional<Range> term(const std::string& what, const std::string& name) const {
         if (what == "gap") {
             return first_gap(to, name);
         }
@@ -111,19 +99,19 @@ struct Arc {
         }
         const auto l = position(to, name);
         const bool tied = l && to.first && (what != "force" || contains(to.ties, *l));
-        return tied ? std::optional(Term{to.first_force[*l], largest_force(to.first_force)}) : std::nullopt;
+        return tied ? std::optional(to.first_force[*l]) : std::nullopt;
     }
 
     [[nodiscard]] Objections check_term(const TieRecord& tie, const std::string& name, const Bounded& said) const {
-        const std::optional<Term> found = term(tie.what, name);
+        const std::optional<Range> found = term(tie.what, name);
         if (!found) {
             return Objection{
                 true, fmt::format("a first-order decision '{}' about {}, of which there is none", tie.what, name)};
         }
         const std::string what = fmt::format("the first-order term of {} ('{}')", name, tie.what);
-        Objections wrong = check_said(what, said, found->value, found->size);
+        Objections wrong = check_said(what, said, *found);
         if (wrong && tie.what == "opening") { // keys of the rule least_negative are kept with the other sign
-            wrong = check_said(what, {-said.value, said.bound}, found->value, found->size);
+            wrong = check_said(what, {-said.value, said.bound}, *found);
         }
         return wrong;
     }
@@ -135,7 +123,7 @@ struct Arc {
         const std::string& name = gap ? tie.against : tie.contact;
         const std::string recorded =
             left_as(tie.what, Range::around(value, Rational(gap ? tie.other_bound : tie.first_bound)));
-        const std::string found = left_as(tie.what, term(tie.what, name)->value);
+        const std::string found = left_as(tie.what, *term(tie.what, name));
         if (tie.choice == found && tie.choice == recorded) {
             return {};
         }
@@ -149,7 +137,7 @@ struct Arc {
         const Rational room = (Rational(tie.first_bound) + Rational(tie.other_bound)) * (1 + Rational(0x1p-50)) +
                               Rational(0x1p-50) * (abs(Rational(tie.first)) + abs(Rational(tie.other)));
         const bool recorded = abs(Rational(tie.first) - Rational(tie.other)) <= room;
-        const bool found = (term(tie.what, tie.contact)->value - term(tie.what, tie.against)->value).has_zero();
+        const bool found = (*term(tie.what, tie.contact) - *term(tie.what, tie.against)).has_zero();
         return recorded && found
                    ? Objections()
                    : Objection{!recorded, fmt::format("a choice '{}' between {} and {}, which their first-order terms "
@@ -218,12 +206,6 @@ struct Arc {
     }
 };
 
-/// What second derivatives of gaps are sums of.
-double bend_size(const Place& place, const Velocities::Solution& motion) {
-    const auto& radius = place.state->packing.radius;
-    return motion.fastest() * motion.fastest() / *std::min_element(radius.begin(), radius.end());
-}
-
 } // namespace
 
 Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t opened) {
@@ -255,9 +237,8 @@ Objections check_exchange(const Place& place, const TieRecord& tie, std::size_t 
                                             "told from 0",
                                             tie.contact, tie.what, shown(bend), shown(share))};
     }
-    const double size = overlaps ? bend_size(place, motion) : motion.fastest();
-    Objections late = check_said(overlaps ? "second derivative" : "rate", {tie.first, tie.first_bound}, first, size);
-    return late ? late : check_said("share", {tie.other, tie.other_bound}, share, other.fastest());
+    Objections late = check_said(overlaps ? "second derivative" : "rate", {tie.first, tie.first_bound}, first);
+    return late ? late : check_said("share", {tie.other, tie.other_bound}, share);
 }
 
 Objections check_rest(const Place& place, const TieRecord& tie, std::size_t opened, int direction) {
@@ -275,8 +256,8 @@ Objections check_rest(const Place& place, const TieRecord& tie, std::size_t open
                                            "derivative in {}",
                                            tie.contact, shown(rate), shown(bend))};
     }
-    Objections late = check_said("second derivative", {tie.first, tie.first_bound}, bend, bend_size(place, motion));
-    return late ? late : check_said("rate", {tie.other, tie.other_bound}, rate, motion.fastest());
+    Objections late = check_said("second derivative", {tie.first, tie.first_bound}, bend);
+    return late ? late : check_said("rate", {tie.other, tie.other_bound}, rate);
 }
 
 Objections check_step(const Place& place, const EventRecord& event, std::size_t opened, int direction) {

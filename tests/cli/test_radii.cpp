@@ -115,7 +115,7 @@ void forge_rest(const fs::path& folder) {
             BOOST_TEST(contains(forged.wrong, said), forged.wrong);
         }
     };
-    refuted(field("contact"), "\"contact\":\"0-0\"", "does not touch");
+    refuted(field("contact"), "\"contact\":\"0-top\"", "does not touch");
     refuted(field("against"), "\"against\":\"0-top\"", "does not touch where 0-top opens");
     refuted(field("choice"), "\"choice\":\"names\"", "does not touch");
 }

@@ -296,8 +296,8 @@ BOOST_AUTO_TEST_CASE(names_with_too_many_parts_are_refused) {
     }
     std::string points(200, '.');
     const std::string text = "[packing] # " + points + "\n" + numbers +
-                             "]\n[[programme]]\ndo = \"up\"\nequilibria = 1\nname = \"\"\"" + points + "\\\"\n" +
-                             points + "\"\"\"\"\n";
+                             "]\n[[programme]]\ndo = \"up\"\nequilibria = 1\nname = \"\"\"" + points + "\\\"" + points +
+                             "\"\"\"\"\n";
     BOOST_TEST(parse_scene(text, "FILE", "").preparation.radii.size() == 100U);
 }
 

@@ -8,6 +8,7 @@ import io
 import json
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,9 @@ def _integer(word: str) -> int:
     if str(int(word)) != word:
         raise ValueError(f"{word!r}: expected an integer")
     return int(word)
+
+
+_casts: dict[str, Callable[[str], float]] = {"i": _integer, "f": float}
 
 
 def _once(pairs: list[tuple[str, object]]) -> dict:
@@ -162,7 +166,7 @@ class Records:
         rows = csv.reader(io.StringIO("\n".join(lines[1:])))
         try:
             kinds = np.dtype([_column(name) for name in names])  # refuses a name that comes twice
-            casts = [_integer if kinds[name].kind == "i" else float for name in names]
+            casts = [_casts[kinds[name].kind] for name in names]
             return np.array(
                 [tuple(cast(x) for cast, x in zip(casts, row, strict=True)) for row in rows],
                 dtype=kinds,

@@ -406,6 +406,21 @@ void print_import(const ImportArguments& a, const ReadPacking& file, const Impor
             : "");
 }
 
+void print_import_json(const ImportArguments& a, const ReadPacking& file, const Imported& imported, Json object) {
+    object["state"] = a.output;
+    object["notes"] = file.notes;
+    object["disks"] = imported.state.packing.disk_count();
+    object["load"] = {
+        {"stress", {imported.state.load.stress[0], imported.state.load.stress[1]}},
+        {"kind", imported.state.load.kind == LoadKind::nominal ? "nominal" : "true"},
+        {"by_default",
+         {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
+    object["jitter_matters"] = imported.copy;
+    object["verdict"] = to_string(imported.verdict());
+    add_untold(object, imported.untold, imported.truth.verdict);
+    print_json(object);
+}
+
 /// What may help where no vertex is proved. Empty: nothing.
 std::string advice(const ImportArguments& a, bool crafted, std::vector<double> radius) {
     std::sort(radius.begin(), radius.end());
@@ -472,19 +487,7 @@ int import(const ImportArguments& arguments) {
         write_output(a.moved, moves_csv(imported, moves), moves_head);
     }
     if (a.common.json) {
-        Json object = provenance;
-        object["state"] = a.output;
-        object["notes"] = file.notes;
-        object["disks"] = imported.state.packing.disk_count();
-        object["load"] = {{"stress", {imported.state.load.stress[0], imported.state.load.stress[1]}},
-                          {"kind", imported.state.load.kind == LoadKind::nominal ? "nominal" : "true"},
-                          {"by_default",
-                           {{"stress", a.stress.empty() && !imported.load_of_file},
-                            {"kind", a.load.empty() && !imported.load_of_file}}}};
-        object["jitter_matters"] = imported.copy;
-        object["verdict"] = to_string(imported.verdict());
-        add_untold(object, imported.untold, imported.truth.verdict);
-        print_json(object);
+        print_import_json(a, file, imported, provenance);
     } else {
         print_import(a, file, imported, moves);
     }

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -44,9 +45,10 @@ Read from_state(const SnapArguments& a) {
 }
 
 Read from_foreign(const SnapArguments& a) {
-    const auto reference = a.reference_length.empty()
-                               ? std::nullopt
-                               : std::optional(parse_pair(a.reference_length, "--reference-length", "L1,L2"));
+    std::array<double, 2> reference{};
+    if (!a.reference_length.empty()) {
+        reference = parse_pair(a.reference_length, "--reference-length", "L1,L2");
+    }
     ForeignArguments foreign = a.foreign;
     foreign.walls_unless_periodic = foreign.walls.empty();
     foreign.cells = true;
@@ -70,7 +72,9 @@ Read from_foreign(const SnapArguments& a) {
     out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
     out.soft.load.stress = parse_stress(a.stress);
     out.soft.load.refer_to(file.packing);
-    out.soft.load.reference_length = reference.value_or(out.soft.load.reference_length);
+    if (!a.reference_length.empty()) {
+        out.soft.load.reference_length = reference;
+    }
     return out;
 }
 

@@ -189,19 +189,7 @@ class Disks {
         check_boundaries(rows, sides);
         const std::size_t id = dump_.column(rows, "id"), size = dump_.column(rows, manifest_.size);
         const std::size_t x = dump_.column(rows, "x"), y = dump_.column(rows, "y");
-        std::map<long, const Line*> by_id;
-        for (const Line& row : rows.rows) {
-            if (manifest_.select_column.empty() ||
-                row.field(dump_.column(rows, manifest_.select_column)) == manifest_.select_value) {
-                if (!by_id.emplace(row.integer(id, "id", 0, 1L << 62), &row).second) {
-                    row.fail(row.field(id), "id", "every disk once");
-                }
-            }
-        }
-        if (by_id.empty()) {
-            throw Error(ErrorKind::bad_input,
-                        fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.header.line)));
-        }
+        const std::map<long, const Line*> by_id = selected(rows, id);
         const double f = manifest_.length_factor;
         if (manifest_.periodic) {
             make_periodic(frame.packing);
@@ -253,6 +241,35 @@ class Disks {
         validate(frame.packing, dump_.where(rows.header.line));
         frame.rounding = f * rounding_of_gaps(places.rounding(), sides.digits.rounding(),
                                               sizes.rounding() * (manifest_.diameters ? 0.5 : 1));
+        keep(frame);
+    }
+
+    void begin_after(const Packing<2>& packing) {
+        if (packing.cell.all()) {
+            last_ = packing;
+        }
+    }
+
+  private:
+    /// The rows of the disks, by the number in column `id`.
+    [[nodiscard]] std::map<long, const Line*> selected(const FileFrame& rows, std::size_t id) const {
+        std::map<long, const Line*> by_id;
+        for (const Line& row : rows.rows) {
+            if (manifest_.select_column.empty() ||
+                row.field(dump_.column(rows, manifest_.select_column)) == manifest_.select_value) {
+                if (!by_id.emplace(row.integer(id, "id", 0, 1L << 62), &row).second) {
+                    row.fail(row.field(id), "id", "every disk once");
+                }
+            }
+        }
+        if (by_id.empty()) {
+            throw Error(ErrorKind::bad_input,
+                        fmt::format("{}: no disks are selected: expected at least one", dump_.where(rows.header.line)));
+        }
+        return by_id;
+    }
+    /// The frame, for what the next one is compared with.
+    void keep(Frame& frame) {
         if (frame.number == 0) {
             ids_ = frame.ids;
             first_ = frame.packing;
@@ -262,13 +279,6 @@ class Disks {
         }
         last_ = frame.packing;
     }
-    void begin_after(const Packing<2>& packing) {
-        if (packing.cell.all()) {
-            last_ = packing;
-        }
-    }
-
-  private:
     /// The columns vx and vy, or none.
     [[nodiscard]] static std::vector<std::size_t> speeds_of(const FileFrame& rows) {
         std::vector<std::size_t> out;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 
 namespace isostat {
 
@@ -290,9 +291,9 @@ void remove_files(const fs::path& folder, const std::vector<std::string>& files,
     for (const std::string& name : files) {
         fs::remove(folder / name);
     }
-    for (auto name = folders.rbegin(); name != folders.rend(); ++name) {
+    for (const std::string& name : std::ranges::reverse_view(folders)) {
         std::error_code holds_others;
-        fs::remove(folder / *name, holds_others);
+        fs::remove(folder / name, holds_others);
     }
 }
 

@@ -183,6 +183,7 @@ Comparison compare(SeriesReader& reader, const CompareOptions& options) {
     run.stop = options.stop;
     std::optional<State<2>> start = options.start;
     if (start) {
+        (void)snap_to_grid(start->packing); // bounds of a cell hold there
         reader.begin_after(start->packing);
     }
     std::vector<JudgedFrame> judged = judge_all(reader, options, run, start);

@@ -20,7 +20,7 @@ fs::path named_input(const fs::path& folder, const std::string& name, const std:
     if (named.is_absolute() || std::find(named.begin(), named.end(), "..") != named.end()) {
         refuse("which leads elsewhere");
     }
-    const fs::path path = folder / named;
+    fs::path path = folder / named;
     std::error_code absent;
     const fs::path real = fs::canonical(path, absent);
     if (absent) {

@@ -61,10 +61,17 @@ std::string entry(const std::string& text, const std::string& begin, bool last =
     return text.substr(at, text.find(',', at) - at);
 }
 
+/// The same entry with another first digit.
+std::string scaled(std::string text) {
+    const std::size_t digit = text.find_first_of("123456789", text.find(':'));
+    text[digit] = text[digit] == '9' ? '1' : static_cast<char>(text[digit] + 1);
+    return text;
+}
+
 /// Its sigma2 is above what the contacts bear.
 State<2> overloaded() {
     State<2> state = prepared(14, 3);
-    state.load.stress[1] *= 1.5;
+    state.load.stress[1] *= 4;
     return state;
 }
 
@@ -78,12 +85,12 @@ BOOST_AUTO_TEST_CASE(the_way_from_a_start_that_is_no_equilibrium_is_replayed) {
     const RunVerification run = all_is_proved(folder / "run");
     const std::string events = scratch::read(folder / "run/events.jsonl");
     BOOST_TEST_REQUIRE(events.find("\"equilibrium\":0") != std::string::npos);
-    BOOST_TEST(run.equilibria_proved == 2);
+    BOOST_TEST(run.equilibria_proved == run.equilibria);
     const std::string force = entry(events, "\"force\":");
     const auto wrong = [&](const std::string& file, const std::string& from, const std::string& to) {
         return forger::altered(folder / "run", file, from, to).wrong;
     };
-    BOOST_TEST(wrong("events.jsonl", force, force + "1") != "");
+    BOOST_TEST(wrong("events.jsonl", force, scaled(force)) != "");
     BOOST_TEST(wrong("events.jsonl", "\"kind\":\"tension\"", "\"kind\":\"limit\"") != "");
     // Another contact opens first: then equilibrium 0 would have another list.
     const std::string start = scratch::read(folder / "run/start.json");
@@ -112,7 +119,7 @@ BOOST_AUTO_TEST_CASE(arcs_that_lead_to_no_equilibrium_are_replayed) {
         BOOST_TEST(answer.undecided.size() == 0U, (answer.undecided.empty() ? "" : answer.undecided[0]));
         BOOST_TEST(answer.arcs_proved == answer.arcs);
         const std::string work = entry(events, "\"work\":", true);
-        BOOST_TEST(forger::altered(run, "events.jsonl", work, work + "1").wrong != "");
+        BOOST_TEST(forger::altered(run, "events.jsonl", work, scaled(work)).wrong != "");
         const std::string step = entry(events, "\"step\":", true);
         BOOST_TEST(forger::altered(run, "events.jsonl", step, step + "0").wrong != "");
     }
@@ -125,7 +132,7 @@ BOOST_AUTO_TEST_CASE(what_the_rule_random_draws_is_drawn_again) {
     options.rule_seed = 5;
     play_whole(prepared(36, 3), 2, options, folder / "run");
     all_is_proved(folder / "run");
-    const RunVerification other = forger::altered(folder / "run", "run.json", "\"rule_seed\":5", "\"rule_seed\":6");
+    const RunVerification other = forger::altered(folder / "run", "run.json", "\"rule_seed\": 5", "\"rule_seed\": 6");
     BOOST_TEST(other.wrong.find("the rule 'random' draws") != std::string::npos, other.wrong);
 }
 

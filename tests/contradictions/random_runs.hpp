@@ -167,6 +167,7 @@ inline RunHeader header_of(const RandomRun& run) {
                     to_string(run.options.certify), tie_policy_words[static_cast<std::size_t>(run.options.ties)],
                     run.options.max_choices);
     header.touching = run.options.at_first_order();
+    header.programme.assign(run.segments.size(), "a segment");
     header.states_every = run.states_every;
     header.witnesses = run.options.certify == CertifyLevel::arcs;
     header.checkpoint_seconds = 0;

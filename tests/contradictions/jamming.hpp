@@ -10,6 +10,7 @@
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -61,13 +62,15 @@ class Motions {
         if (rows.cols() == 0) {
             return Verdict::proved;
         }
-        const double most = largest_sum(rows);
-        if (most > 1e-6) {
+        const auto [most, error] = largest_sum(rows);
+        if (most - 2 * error > 1e-6) {
             return Verdict::refuted;
         }
         const Eigen::VectorXd sizes = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
         const double least = rows.rows() < rows.cols() ? 0 : sizes.minCoeff() / sizes.maxCoeff();
-        return least < 1e-12 ? Verdict::refuted : least > 1e-8 && most < 1e-8 ? Verdict::proved : Verdict::undecided;
+        return least < 1e-12                         ? Verdict::refuted
+               : least > 1e-8 && most + error < 1e-8 ? Verdict::proved
+                                                     : Verdict::undecided;
     }
 
   private:
@@ -95,8 +98,13 @@ class Motions {
         return rows;
     }
 
-    /// The largest sum of all rates when none is negative and no coordinate is faster than 1.
-    static double largest_sum(const Eigen::MatrixXd& rows) {
+    struct Sum {
+        double value, error;
+    };
+    /// The largest sum of all rates when none is negative and no coordinate is faster than 1. Rates may be below 0 by
+    /// the tolerance of the programme, which its prices make into an error of the sum.
+    static Sum largest_sum(const Eigen::MatrixXd& rows) {
+        constexpr double tolerance = 1e-10;
         const auto m = static_cast<int>(rows.rows());
         const auto n = static_cast<int>(rows.cols());
         CoinPackedMatrix matrix(false, 0.0, 0.0);
@@ -117,11 +125,16 @@ class Motions {
         const std::vector<double> none(static_cast<std::size_t>(m), 0.0);
         ClpSimplex programme;
         programme.setLogLevel(0);
-        programme.setPrimalTolerance(1e-10);
+        programme.setPrimalTolerance(tolerance);
         programme.loadProblem(matrix, slow.data(), fast.data(), sum.data(), none.data(), nullptr);
         programme.setOptimizationDirection(-1);
         programme.primal();
-        return programme.isProvenOptimal() ? programme.objectiveValue() : -1;
+        double prices = 0;
+        for (int l = 0; l < m; ++l) {
+            prices += std::abs(programme.dualRowSolution()[l]);
+        }
+        const double infinite = std::numeric_limits<double>::infinity();
+        return programme.isProvenOptimal() ? Sum{programme.objectiveValue(), tolerance * prices} : Sum{0, infinite};
     }
 
     const Truth& truth_;

@@ -26,7 +26,7 @@ namespace {
 RunHeader header() {
     RunHeader header;
     header.program = "test";
-    header.settings = R"({"run":{"rule":"most_negative"}})";
+    header.settings = R"({"run":{"rule":"most_negative","ties":"stop","certify":"decisions"}})";
     header.programme = {"up"};
     header.states_every = 1;
     return header;

@@ -15,7 +15,7 @@ CLI::Validator validator(const char* kind, T low, T high, std::optional<T> (*val
     const std::string range = fmt::format("{} from {} to {}", kind, low, high);
     return {[=](std::string& word) {
                 const std::optional<T> value = value_in(word, low, high);
-                const std::string wrong = value ? "" : "is " + word + ": expected " + range;
+                std::string wrong = value ? "" : "is " + word + ": expected " + range;
                 word = value ? fmt::format("{}", *value) : word;
                 return wrong;
             },

@@ -159,7 +159,8 @@ BOOST_AUTO_TEST_CASE(a_box_that_is_flipped_by_whole_periods_is_the_same_lattice)
     const State<2> start = read_any_state<2>(scratch::data("cells/tilt_16.json")).state;
     const Comparison from = PeriodicSeries("tilt_16", loads, {1, 1, 1, 1}).compare(start);
     for (std::size_t k = 0; k < loads.size(); ++k) {
-        BOOST_TEST(compare::to_string(from.frames[k].status) == compare::to_string(expected.frames[k].status), from.frames[k].reason);
+        BOOST_TEST(compare::to_string(from.frames[k].status) == compare::to_string(expected.frames[k].status),
+                   from.frames[k].reason);
     }
     BOOST_TEST(from.frames[0].reason.find("box flipped by one period") != std::string::npos);
 }

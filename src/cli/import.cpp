@@ -441,6 +441,7 @@ int import(const ImportArguments& arguments) {
     const bool listed = format == "vertex" && a.jitter == 0;
     const bool own = !listed && (format == "state" || format == "vertex");
     if (own && a.jitter == 0) {
+        (void)read_any_state<2>(a.file); // says what is wrong where it is none
         refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
     }
     if (own) {

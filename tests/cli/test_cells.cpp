@@ -74,10 +74,10 @@ BOOST_AUTO_TEST_CASE(a_step_that_is_no_number_is_none_and_its_message_has_a_reas
     // origin".
     const scratch::Folder folder;
     const std::string scene = (folder / "rows.toml").string();
-    scratch::write(scene,
-                   "[packing]\nfile = \"" + scratch::data("cells/rows_unloaded.json") +
-                       "\"\n[run]\nties = \"choose\"\nmax_choices = 0\nties_seed = 1\n[[programme]]\ndo = \"down\"\n"
-                       "equilibria = 6\n");
+    scratch::write_scene(
+        scene, "[packing]\nfile = \"" + scratch::data("cells/rows_unloaded.json") +
+                   "\"\n[run]\nties = \"choose\"\nmax_choices = 0\nties_seed = 1\n[[programme]]\ndo = \"down\"\n"
+                   "equilibria = 6\n");
     const auto run_down = run({"run", scene, "-o", (folder / "out").string()});
     expect(run_down, 2);
     BOOST_TEST(!contains(run_down.out + run_down.err, "nan"), run_down.err);
@@ -295,8 +295,9 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
     }
     expect(run({"import", file, "-o", made, "--cell", "rectangular"}), 0); // its tilt stays
     BOOST_TEST(isostat::read_any_state<2>(made).state.contacts.size() == 32);
-    expect(run({"import", made, "-o", made, "--jitter", "1e-6"}), 0); // a state has its own cell
-    BOOST_TEST(!isostat::read_any_state<2>(made).state.packing.cell.tilt_moves[0]);
+    const std::string moved = (folder / "moved.json").string();
+    expect(run({"import", made, "-o", moved, "--jitter", "1e-6"}), 0); // a state has its own cell
+    BOOST_TEST(!isostat::read_any_state<2>(moved).state.packing.cell.tilt_moves[0]);
 }
 
 BOOST_AUTO_TEST_CASE(a_cell_that_keeps_its_shape_is_prepared_read_and_not_followed) {

@@ -51,7 +51,7 @@ void expect_no_trace(const fs::path& folder) {
 }
 
 std::string in_toml(const std::string& name) {
-    return json(name).dump(); // its escapes are those of TOML, too
+    return json(name).dump(-1, ' ', true); // all escaped, as TOML asks of control characters
 }
 
 /// Up and down by turns: no sample of 10 disks goes far one way.

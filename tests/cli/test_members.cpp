@@ -65,7 +65,7 @@ BOOST_AUTO_TEST_CASE(one_wrong_or_missing_run_decides_the_status_of_an_ensemble)
     BOOST_TEST(contains(unreadable.out, "equilibria     8 of 8 proved")); // the others were checked
 
     const fs::path events = many / seed(3) / "events.jsonl";
-    scratch::write(events, scratch::replaced(scratch::read(events), "\"opened\":\"", "\"opened\":\"1"));
+    scratch::write(events, scratch::replaced(scratch::read(events), "\"power\":", "\"power\":1"));
     forger::seal(many / seed(3));
     fs::remove_all(many / seed(1));
     const Outcome wrong = run({"verify", many.string()});

@@ -18,7 +18,7 @@ std::string scene(const std::string& packing, int equilibria) {
 
 /// Runs a scene in a folder of its own; the folder of the run is `run` in it.
 Outcome run_scene(const scratch::Folder& folder, const std::string& text) {
-    scratch::write(folder / "s.toml", text);
+    scratch::write_scene(folder / "s.toml", text);
     return run({"run", (folder / "s.toml").string(), "-o", (folder / "run").string(), "-q", "--force"});
 }
 

@@ -75,7 +75,8 @@ BOOST_AUTO_TEST_CASE(numbers_of_options_are_finite_and_in_their_range) {
         refuses({"plateau", called.state, "--thresholds"}, word);
     }
     expect(run({"inspect", called.state, "--at", "1.5"}), 0);
-    expect(run({"inspect", called.state, "--at=-1e100"}), 1);
+    expect(run({"inspect", called.state, "--at=-1e98"}), 1);
+    expect(run({"inspect", called.state, "--at=-1e100"}), 2); // times a length it is beyond what is computed with
 }
 
 BOOST_AUTO_TEST_CASE(integers_of_options_are_written_as_integers) {

@@ -5,6 +5,7 @@
 #include <isostat/io/certificate_file.hpp>
 #include <isostat/io/state_file.hpp>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -100,7 +101,7 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     BOOST_TEST(answer["equilibria_proved"] == 7);
 
     const std::string events = scratch::read(folder / "out/events.jsonl");
-    scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"opened\":\"", "\"opened\":\"1"));
+    scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"power\":", "\"power\":1"));
     const Outcome wrong = run({"verify", out});
     expect(wrong, 1);
     BOOST_TEST(contains(wrong.out, "events.jsonl: damaged"));
@@ -139,14 +140,19 @@ BOOST_AUTO_TEST_CASE(a_shear_near_0_is_known_as_well_as_the_largest_stress_asks)
         row[name] = value;
     }
     BOOST_TEST_REQUIRE(std::abs(std::stod(row["sigma2_low"])) < 8e-4);
-    const std::string& bound = row["sigma2_low_bound"];
-    const auto said = [&](const char* other) {
-        return forger::altered(out, "equilibria.csv", "," + bound + ",", std::string(",") + other + ",").verdict;
+    const double low = std::stod(row["sigma2_low"]);
+    const auto said = [&](double number, const char* bound) {
+        std::string other = scratch::replaced(first, "," + row["sigma2_low"] + ",", fmt::format(",{},", number));
+        other = scratch::replaced(other, "," + row["sigma2_low_bound"] + ",", std::string(",") + bound + ",");
+        return forger::altered(out, "equilibria.csv", first, other).verdict;
     };
-    BOOST_TEST(std::stod(bound) < 1e-8);
-    BOOST_TEST((said("9e-7") == isostat::Verdict::proved));
-    BOOST_TEST((said("1.1e-6") == isostat::Verdict::undecided)); // true, and says too little
-    BOOST_TEST((said("1e-18") == isostat::Verdict::refuted));
+    BOOST_TEST(std::stod(row["sigma2_low_bound"]) < 1e-8);
+    BOOST_TEST((said(low, "9e-7") == isostat::Verdict::proved));
+    // Such a bound says too little: the number itself must be right to 1e-6 of the largest stress.
+    BOOST_TEST((said(low, "1e-3") == isostat::Verdict::proved));
+    BOOST_TEST((said(low + 5e-7, "1e-3") == isostat::Verdict::proved));
+    BOOST_TEST((said(low + 2e-6, "1e-3") == isostat::Verdict::undecided));
+    BOOST_TEST((said(low, "1e-18") == isostat::Verdict::refuted));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

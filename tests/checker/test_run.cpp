@@ -134,6 +134,36 @@ Alteration in_row(const std::string& csv, int line, const std::string& column, c
     return {"equilibria.csv", line, text, text.substr(0, begin) + value + text.substr(end), ""};
 }
 
+/// checkpoint.json and summary.json of a run whose last row is that of equilibrium `last`, in its first segment.
+void count_until(const std::filesystem::path& folder, int last, int arcs) {
+    using json::Json;
+    const std::string csv = scratch::read(folder / "equilibria.csv");
+    const auto value = [&](const std::string& column) {
+        const std::string row = line_of(csv, last + 2);
+        const auto names = equilibria_columns({});
+        const auto index = std::find(names.begin(), names.end(), column) - names.begin();
+        std::size_t begin = 0;
+        for (std::ptrdiff_t k = 0; k < index; ++k) {
+            begin = row.find(',', begin) + 1;
+        }
+        return Json::parse(row.substr(begin, row.find(',', begin) - begin));
+    };
+    Json point = Json::parse(scratch::read(folder / "checkpoint.json"));
+    Json summary = Json::parse(scratch::read(folder / "summary.json"));
+    point["counters"]["arcs"] = arcs;
+    point["counters"]["equilibria"] = last;
+    point["strain"] = {value("eps1"), value("eps2")};
+    point["made"] = last;
+    point["segment"] = summary["segment"] = value("segment");
+    summary["counters"] = point["counters"];
+    summary["last_equilibrium"] = last;
+    for (const char* name : {"ratio", "eps1", "eps2", "solid_fraction"}) {
+        summary[name] = value(name);
+    }
+    scratch::write(folder / "checkpoint.json", point.dump());
+    scratch::write(folder / "summary.json", summary.dump());
+}
+
 /// A row one arc too early, where the contact that `line` of the events opens still pulls.
 void refutes_a_row_before(const std::filesystem::path& folder, int line) {
     const std::string events = scratch::read(folder / "events.jsonl");
@@ -158,10 +188,8 @@ void refutes_a_row_before(const std::filesystem::path& folder, int line) {
     const Alteration row = in_row(csv, reached + 2, "arcs", std::to_string(arcs));
     scratch::write(folder / "events.jsonl", head_of(events, line - 1));
     scratch::write(folder / "equilibria.csv", scratch::replaced(head_of(csv, reached + 2), row.from, row.to));
-    json::Json counted = json::Json::parse(summary);
-    counted["counters"]["arcs"] = line - 1;
-    counted["last_equilibrium"] = reached;
-    scratch::write(folder / "summary.json", counted.dump());
+    const std::string checkpoint = scratch::read(folder / "checkpoint.json");
+    count_until(folder, reached, line - 1);
     forger::seal(folder);
     const RunVerification early = verify_run(folder);
     BOOST_TEST((early.verdict == Verdict::refuted));
@@ -169,6 +197,7 @@ void refutes_a_row_before(const std::filesystem::path& folder, int line) {
     scratch::write(folder / "events.jsonl", events);
     scratch::write(folder / "equilibria.csv", csv);
     scratch::write(folder / "summary.json", summary);
+    scratch::write(folder / "checkpoint.json", checkpoint);
     forger::seal(folder);
 }
 
@@ -278,18 +307,17 @@ BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits
     BOOST_TEST((most.wrong.find("but the rule 'least_index' takes") != std::string::npos), most.wrong);
 }
 
-// Under true stresses the power can turn and come back within one step of an arc (0, 1.2e-3, 7e-5, -1.3e-3, 2e-4, 9e-3
-// at intervals of 0.01): its derivatives count that the load changes too.
-BOOST_AUTO_TEST_CASE(a_power_that_turns_and_comes_back_under_true_stresses_is_not_stepped_over) {
+// Under true stresses the load changes along an arc: the derivatives of the power count that.
+BOOST_AUTO_TEST_CASE(power_turns_under_true_stresses_are_found_and_replayed) {
     const scratch::Folder folder;
     Segment up;
     up.equilibria = 4;
-    State<2> start = prepared(36, 7);
+    State<2> start = prepared(36, 3);
     start.load.kind = LoadKind::true_stress;
     play_and_store(start, {up}, folder / "run", OpeningRule::least_index);
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.turns_checked == 2);
+    BOOST_TEST(run.turns_checked == 3);
 }
 
 BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {
@@ -403,8 +431,10 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
                                "min_gap",
                                "min_gap_j",
                                "proved"}) {
-        // The first row is checked before any arc; it has no equilibrium before it.
-        finds(folder / "run", in_row(csv, column == std::string("previous") ? 4 : 2, column, "9"));
+        // The first row is checked before any arc; it has no equilibrium before it. Contacts keep their spelling.
+        const std::string name = column;
+        const char* other = name.ends_with("_i") ? "0" : name.ends_with("_j") ? "-1" : "9";
+        finds(folder / "run", in_row(csv, name == "previous" ? 4 : 2, name, other));
     }
 }
 
@@ -477,7 +507,7 @@ BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
         finds(run, alteration);
     }
     finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-8", "no contact of the structure"});
-    finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-8(1,0,0)", "no contact of the structure"});
+    forger::unreadable(run, "events.jsonl", "3-8(1,0)", "3-8(1,0,0)", "opened is");
     finds(run, {"events.jsonl", 2, "3-8(1,0)", "3-5(1,0)", ""}); // a contact, but another one
     finds(run, {"events.jsonl", 4, "8-10(-1,0)", "3-5(1,0)", "closed already"});
     for (const auto& [column, value] :
@@ -514,15 +544,16 @@ BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
 BOOST_AUTO_TEST_CASE(folders_without_the_records_are_bad_input) {
     const scratch::Folder folder;
     BOOST_CHECK_THROW((void)verify_run(folder.path()), Error);
-    scratch::write(folder / "run.json",
-                   R"({"format":"isostat-run","status":"completed","settings":{"run":{"rule":"most_negative"}}})");
+    scratch::write(
+        folder / "run.json",
+        R"({"format":"isostat-run","version":1,"status":"completed","program":"","programme":[],"settings":{"run":{"rule":"most_negative"}}})");
     scratch::write(folder / "events.jsonl", "");
     scratch::write(folder / "equilibria.csv", "# number,previous\n0,-1\n");
     try {
         (void)verify_run(folder.path());
         BOOST_ERROR("accepted");
     } catch (const Error& error) {
-        BOOST_TEST((std::string(error.what()).find("no column") != std::string::npos), error.what());
+        BOOST_TEST((std::string(error.what()).find("the names of the columns") != std::string::npos), error.what());
     }
 }
 

@@ -62,6 +62,13 @@ class Motions {
         if (rows.cols() == 0) {
             return Verdict::proved;
         }
+        if (strains && rows.rows() == rows.cols() + 1) { // isostatic: the forces under an isotropic pressure decide
+            const Eigen::VectorXd pressure = -rows.bottomRows(1).transpose();
+            const Eigen::VectorXd force = rows.topRows(rows.cols()).transpose().fullPivLu().solve(pressure);
+            if (force.cwiseAbs().minCoeff() < 1e-6 * force.cwiseAbs().maxCoeff()) {
+                return Verdict::undecided; // too small for doubles
+            }
+        }
         const auto [most, error] = largest_sum(rows);
         if (most - 2 * error > 1e-6) {
             return Verdict::refuted;

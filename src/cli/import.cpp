@@ -430,6 +430,20 @@ std::string advice(const ImportArguments& a, bool crafted, std::vector<double> r
                                               : "";
 }
 
+/// A state of this program is imported with a jitter, a crafted packing without.
+void require_importable(const ImportArguments& a, bool own, bool crafted) {
+    if (own && a.jitter == 0) {
+        (void)read_any_state<2>(a.file); // says what is wrong where it is none
+        refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
+    }
+    if (crafted && a.jitter != 0) {
+        refuse(a.file,
+               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
+                           "it is {}",
+                           a.jitter));
+    }
+}
+
 } // namespace
 
 int import(const ImportArguments& arguments) {
@@ -440,19 +454,10 @@ int import(const ImportArguments& arguments) {
     const std::string format = a.foreign.format.empty() ? recognise_format(text) : a.foreign.format;
     const bool listed = format == "vertex" && a.jitter == 0;
     const bool own = !listed && (format == "state" || format == "vertex");
-    if (own && a.jitter == 0) {
-        (void)read_any_state<2>(a.file); // says what is wrong where it is none
-        refuse(a.file, "is a state of this program: expected a packing of another one, or --jitter");
-    }
+    const bool crafted = format == "packing";
+    require_importable(a, own, crafted);
     if (own) {
         keep_load(a);
-    }
-    const bool crafted = format == "packing";
-    if (crafted && a.jitter != 0) {
-        refuse(a.file,
-               fmt::format("is a crafted packing, whose contacts are those of its exact radii: expected no --jitter, "
-                           "it is {}",
-                           a.jitter));
     }
     ReadPacking file = listed ? ReadPacking{} : read_imported(a, crafted, own);
     file.format = listed ? format : file.format;

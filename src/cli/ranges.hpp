@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-namespace CLI {
+namespace CLI { // NOLINT(readability-identifier-naming): a library's
 class Validator;
 }
 

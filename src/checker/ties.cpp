@@ -98,7 +98,7 @@ struct Arc {
             return first_limit(base, name, opened, what != "limit");
         }
         const auto l = position(to, name);
-        const bool tied = l && to.first && (what != "force" || contains(to.ties, *l));
+        const bool tied = l && to.first && (what != "force" || contains(to.ties, *l) || contains(to.zeros, *l));
         return tied ? std::optional(to.first_force[*l]) : std::nullopt;
     }
 

@@ -27,6 +27,7 @@ inline constexpr std::array reasons{
     Reason{"cannot order", "two forces are not ordered"},
     Reason{"vanish together", "two forces are not ordered"},
     Reason{"certificates/", "a claim of a certificate is narrower than what the checker encloses"},
+    Reason{"if counting makes", "in a cell counting calls another force structural than the run did"},
     Reason{"says too little", "a bound says nothing, and the number beside it is off"},
 };
 

@@ -142,7 +142,7 @@ template <int Dim> struct PreparationReport {
 /// \post On success the state is one as described for `find_vertex`, and depends on nothing but the options (same seed,
 /// same bits; lengths scaled by a power of two give the state scaled by it). On failure `report.last` holds what was
 /// reached. Throws `Error(bad_input)` for options that make no sense, naming the field and the value. Cost: see
-/// bench/preparation.cpp; the dynamics takes most of it.
+/// tests/bench/preparation.cpp; the dynamics takes most of it.
 template <int Dim> Result<State<Dim>> prepare(const PreparationOptions& options, PreparationReport<Dim>& report);
 
 /// The vertex downhill from a packing that is nearly jammed in the box with two fixed and two movable walls, or with

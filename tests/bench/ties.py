@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Samples with equal radii: how their runs end under each policy for ties.
 
-    python3 bench/ties.py build/release/isostat OUT --law bidisperse --disks 100 --seeds 20 --policy choose
+    python3 tests/bench/ties.py build/release/isostat OUT --law bidisperse --disks 100 --seeds 20 --policy choose
 
 Policies: stop, choose, first (choose with max_choices = 0), or a jitter such as 1e-9 (with ties = "stop"). One process, one line per sample and one of
 sums: finished, failed (caps), tied, undecided, other, seconds. Folders of the runs stay in OUT."""

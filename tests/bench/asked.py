@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """The figures that were asked for, from the JSON files of the programs here: median, range, and whether it is met.
 
-    /usr/bin/python3 bench/asked.py FOLDER [--json FILE]
-    /usr/bin/python3 bench/asked.py --peak FILE COMMAND...      runs a command, writes its peak memory to FILE
+    /usr/bin/python3 tests/bench/asked.py FOLDER [--json FILE]
+    /usr/bin/python3 tests/bench/asked.py --peak FILE COMMAND...      runs a command, writes its peak memory to FILE
 
 FOLDER: arc_cost.json, arc_cost_2.json (with --threads 2), growth.json (the same program, with 20 000 disks), exact_rank.json, linear_programmes.json and
-memory.json, as `bash bench/run` makes them; what is not there is left out. Exit status 1 when a figure is not met.
+memory.json, as `bash tests/bench/run` makes them; what is not there is left out. Exit status 1 when a figure is not met.
 """
 import argparse
 import json

@@ -3,7 +3,7 @@
 
     apt-get install python3-scipy
     cmake --preset bench && cmake --build --preset bench --target bench_linear_programmes
-    /usr/bin/python3 bench/highs_chain.py build/bench/bench/bench_linear_programmes [--sizes 400 1936]
+    /usr/bin/python3 tests/bench/highs_chain.py build/bench/bench/bench_linear_programmes [--sizes 400 1936]
         [--seeds 1] [--runs 3] [--methods highs-ds highs-ipm] [--limit 120] [--json FILE]
 
 Both start from the relaxed soft packing of `isostat prepare` and solve the same programmes (linearised gaps of all

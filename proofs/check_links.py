@@ -3,7 +3,7 @@
 
   python3 proofs/check_links.py [TOP]     another top folder: for check_links_test.sh
 
-  `name`, `other` (code)     some file of src, include, tests, bench or examples has each name as a word outside of comments
+  `name`, `other` (code)     some file of src, include, tests or examples has each name as a word outside of comments
   `name`, `other` (test)     a test case has this name; so functions and tests may move from file to file
   `name`, `other` (src|include|tests|proofs|examples/... file)
                              the file exists and has each name; one in a .v file must be stated there, one in a
@@ -38,7 +38,7 @@ def read(path):
 def named_in(path):
     """The names that a file may be asked for, or all code, or all tests."""
     if path in ("code", "test"):
-        folders = ("src", "include", "tests", "bench", "examples") if path == "code" else ("tests",)
+        folders = ("src", "include", "tests", "examples") if path == "code" else ("tests",)
         kinds = ("*.cpp", "*.hpp", "*.py") if path == "code" else ("test_*.cpp",)
         files = [file for folder in folders for kind in kinds for file in (top / folder).rglob(kind)]
         return set().union(*(named_in(str(file.relative_to(top))) for file in files))

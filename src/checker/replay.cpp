@@ -162,6 +162,7 @@ Objections sharpen(Place& place, int digits) {
         make_place(State<2>(*place.state), sharper, place.load, place.fresh, place.evidence->solver, digits);
     if (sharper.evidence->vertex.found) {
         sharper.evidence->solver = place.evidence->solver; // the next motion starts with the same factors
+        sharper.said = std::move(place.said);
         place = std::move(sharper);
     }
     return open;

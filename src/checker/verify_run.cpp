@@ -575,10 +575,12 @@ class Replay {
             return;
         }
         if (here_.first && here_.ties.empty() && (here_.load.shift.lower != 0 || here_.load.shift.upper != 0)) {
+            const std::vector<TieRecord> said = here_.said;
             go_to(State<2>(*here_.state), line.where, {}); // no force vanishes: the load is the stored one
             if (!here_.state) {
                 return;
             }
+            here_.said = said;
         }
         const std::string state = fmt::format("states/eq_{:06}.json", number);
         const bool row = judged(asked([&] { return check_equilibrium(here_, line); }), line.where);

@@ -27,7 +27,7 @@ inline constexpr std::array reasons{
     Reason{"cannot order", "two forces are not ordered"},
     Reason{"vanish together", "two forces are not ordered"},
     Reason{"certificates/", "a claim of a certificate is narrower than what the checker encloses"},
-    Reason{"if counting makes", "in a cell counting calls another force structural than the run did"},
+    Reason{"which the run left at 0", "a load is 0: forces that the run left at 0 by choice vanish by counting"},
     Reason{"says too little", "a bound says nothing, and the number beside it is off"},
 };
 

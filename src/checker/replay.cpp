@@ -149,10 +149,20 @@ ExactLoad meant_load(const State<2>& state) {
         return {};
     }
     const auto l = static_cast<std::size_t>(vanishes - contacts.begin());
+    const Range& slope = at.evidence->slopes()[l];
+    if (slope.has_zero()) {
+        return {};
+    }
+    // A stored load is that one rounded. One farther away is meant by no file: then the stored load is taken as it is.
+    const Range step = step_to_limit(at, l);
+    const auto& stress = state.load.stress;
+    const Rational room(record_tolerance * std::max(std::abs(stress[0]), std::abs(stress[1])));
+    if (step.lower < -room || step.upper > room) {
+        return {};
+    }
+    // The rate is that of a contact that has opened: of a start it is given, like its radii.
     const Enclosure& rate = state.perturbation->stress_rate;
-    return at.evidence->slopes()[l].has_zero()
-               ? ExactLoad{}
-               : ExactLoad{step_to_limit(at, l), Range::around(Rational(rate.value), Rational(rate.radius))};
+    return {step, Range::around(Rational(rate.value), Rational(rate.radius))};
 }
 
 Objections sharpen(Place& place, int digits) {

@@ -148,6 +148,17 @@ BOOST_AUTO_TEST_CASE(a_run_from_a_state_stored_at_a_limit_is_replayed_at_the_loa
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
     BOOST_TEST(run.equilibria_proved == run.equilibria);
+
+    // A force that vanishes at another load is not the one that is meant.
+    const ExactLoad meant = meant_load(reached);
+    BOOST_TEST((meant.shift.lower != 0 && meant.shift.upper != 0));
+    State<2> elsewhere = reached;
+    elsewhere.load.loaded_stress() *= 1 + 1e-6;
+    const ExactLoad stored = meant_load(elsewhere);
+    BOOST_TEST((stored.shift.lower == 0 && stored.shift.upper == 0));
+    write_state<2>(folder / "second/states/eq_000000.json", elsewhere, {});
+    forger::seal(folder / "second");
+    BOOST_TEST((verify_run(folder / "second").verdict != Verdict::proved));
 }
 
 // Phi = sum sigma_a ln L_a falls from an equilibrium to the next one, and grows on the way back.

@@ -295,6 +295,15 @@ Objections check_work(const Place& from, const Place& to, const EventRecord& eve
     return {};
 }
 
+/// By the record of the last arc, or by the stored state, the force of a contact was left at 0.
+bool is_left(const Place& place, std::size_t l) {
+    const auto& radii = place.state->perturbation;
+    const Contact& contact = place.state->contacts[l];
+    return recorded_choice(place.said, "force", place.evidence->name(l), "") != nullptr ||
+           (radii && std::any_of(radii->zero.begin(), radii->zero.end(),
+                                 [&contact](const auto& zero) { return zero.first == contact; }));
+}
+
 /// No force is negative.
 Objections check_forces(const Place& place) {
     Decision decision;
@@ -316,7 +325,7 @@ Objections check_forces(const Place& place) {
                                           e.name(l), shown(forces[l]));
     // Where the load of an axis is 0 counting makes forces vanish that the run saw near 0 only, and left at 0 by
     // choice: an equilibrium of the finite loads, whatever infinitesimal ones do (C1).
-    const bool left = rattler && recorded_choice(place.said, "force", e.name(l), "") != nullptr;
+    const bool left = rattler && is_left(place, l);
     return Objection{wrong && !left, left ? found + ", which the run left at 0" : found};
 }
 

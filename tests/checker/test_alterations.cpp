@@ -2,6 +2,7 @@
 #include "checker/maker.hpp"
 #include "checker/oracle_claims.hpp"
 #include "checker/small_states.hpp"
+#include "oracle/pairs.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
 
@@ -123,7 +124,7 @@ std::vector<ClaimAlteration> alterations_of_claims(const Certificate& original) 
 
     add("smallest gap", [](Certificate& c) { c.claims.gaps->smallest *= 1 + 1e-6; });
     add("smallest gap without end", [](Certificate& c) { c.claims.gaps->smallest = huge; });
-    for (const Contact& pair : maker::all_pairs(original.state)) {
+    for (const Contact& pair : oracle::all_pairs(original.state.packing)) {
         if (pair != original.claims.gaps->where && original.state.packing.disk_count() < 10) {
             add("nearest pair " + to_string<2>(pair), [=](Certificate& c) { c.claims.gaps->where = pair; });
         }

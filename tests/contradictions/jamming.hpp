@@ -2,7 +2,7 @@
 // Whether the disks of a cell that carry a force are jammed, by linear programmes in double, against what `inspect`
 // says of the state and what the exact packing says.
 
-#include "oracle/truth.hpp"
+#include "contradictions/exact.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/crafted/inspection.hpp>

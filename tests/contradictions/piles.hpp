@@ -2,7 +2,7 @@
 // Isostatic structures by construction: every disk rests on two earlier things, the upper walls on the outermost disk.
 // Loads are made from the forces that one wants.
 
-#include "oracle/truth.hpp"
+#include "contradictions/exact.hpp"
 #include "oracle/random.hpp"
 
 #include <cmath>

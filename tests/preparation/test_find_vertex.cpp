@@ -50,7 +50,7 @@ Packing<2> loose_lattice(int side, unsigned long long seed) {
 
 double smallest_gap(const Packing<2>& packing) {
     double smallest = std::numeric_limits<double>::infinity();
-    for (const Contact& pair : check::all_pairs(packing)) {
+    for (const Contact& pair : oracle::all_pairs(packing)) {
         smallest = std::min(smallest, gap(packing, pair));
     }
     return smallest;

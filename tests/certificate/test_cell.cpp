@@ -4,13 +4,6 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
-
 using isostat::Certification;
 using isostat::certify;
 using isostat::Contact;

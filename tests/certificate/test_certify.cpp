@@ -7,10 +7,6 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <random>
-
 using namespace isostat;
 using namespace crafted;
 using oracle::Real;

@@ -3,10 +3,9 @@
 // checker: intervals are widened by a relative 1e-11, far more than the errors, so that the claims are true.
 
 #include "oracle/truth.hpp"
+#include "support/test.hpp"
 
 #include <isostat/io/certificate_file.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 namespace maker {
 

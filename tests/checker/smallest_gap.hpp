@@ -3,8 +3,7 @@
 
 #include "checker/gaps.hpp"
 #include "oracle/truth.hpp"
-
-#include <boost/test/unit_test.hpp>
+#include "support/test.hpp"
 
 namespace small_states {
 

@@ -14,10 +14,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <random>
-
 using namespace isostat;
 
 namespace {

@@ -15,11 +15,6 @@
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <functional>
-#include <random>
-
 using namespace isostat;
 
 namespace {

@@ -7,8 +7,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using forger::altered;
 namespace fs = std::filesystem;

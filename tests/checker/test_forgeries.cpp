@@ -12,11 +12,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <functional>
-#include <sstream>
-
 using namespace isostat;
 namespace fs = std::filesystem;
 using json::Json;

@@ -8,8 +8,6 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <tuple>
 
 using namespace isostat;

@@ -12,11 +12,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <cstdlib>
-
 using namespace isostat;
 
 namespace {

@@ -10,11 +10,6 @@
 #include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <cstdlib>
-#include <set>
-
 using namespace isostat;
 using crafted::Ties;
 namespace fs = std::filesystem;

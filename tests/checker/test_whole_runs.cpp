@@ -11,12 +11,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <boost/multiprecision/mpfr.hpp>
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 using namespace isostat;
 using namespace isostat::checker;

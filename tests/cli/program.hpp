@@ -3,12 +3,7 @@
 
 #include "support/scratch.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <sys/wait.h>
-
-#include <cstdlib>
-#include <string>
-#include <vector>
 
 namespace program {
 

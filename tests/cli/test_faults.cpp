@@ -2,7 +2,6 @@
 #include "cli/program.hpp"
 
 #include <chrono>
-#include <random>
 
 using namespace program;
 namespace fs = std::filesystem;

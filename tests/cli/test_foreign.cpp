@@ -2,8 +2,6 @@
 
 #include "cli/program.hpp"
 
-#include <filesystem>
-
 namespace {
 
 using program::contains;

@@ -4,7 +4,6 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 using namespace program;

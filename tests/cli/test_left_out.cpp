@@ -3,9 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <map>
-#include <set>
-
 using namespace program;
 using nlohmann::json;
 namespace fs = std::filesystem;

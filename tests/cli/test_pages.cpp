@@ -8,12 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <array>
-#include <map>
 #include <regex>
-#include <set>
-#include <sstream>
 
 using namespace program;
 namespace fs = std::filesystem;

@@ -4,8 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <set>
-
 using namespace program;
 namespace fs = std::filesystem;
 

@@ -4,10 +4,7 @@
 #include <isostat/io/foreign.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <cmath>
 
 using namespace program;
 using namespace isostat;

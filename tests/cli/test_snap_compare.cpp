@@ -2,11 +2,7 @@
 // written.
 #include "cli/program.hpp"
 
-#include <array>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <sstream>
 
 using namespace program;
 namespace fs = std::filesystem;

@@ -5,10 +5,6 @@
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <functional>
 #include <tuple>
 
 using namespace isostat;

@@ -6,12 +6,6 @@
 #include <isostat/core/error.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <functional>
-#include <utility>
-
 using namespace isostat;
 using compare::Comparison;
 using compare::FrameStatus;

@@ -3,18 +3,13 @@
 // says of the state and what the exact packing says.
 
 #include "contradictions/exact.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/crafted/inspection.hpp>
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
-
-#include <limits>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace contradictions {
 

@@ -4,10 +4,7 @@
 
 #include "contradictions/exact.hpp"
 #include "oracle/random.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <optional>
+#include "support/test.hpp"
 
 namespace contradictions {
 

@@ -8,12 +8,8 @@
 
 #include <isostat/checker/verify.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
-#include <map>
 
 using namespace isostat;
 using namespace contradictions;

@@ -3,10 +3,6 @@
 #include "crafted/enclosed_bases.hpp"
 #include "crafted/examples.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-
 namespace {
 
 using namespace isostat::crafted;

@@ -1,18 +1,13 @@
 // Inspection of exact packings: what must be refused, invariances, agreement with independent counts, large lattices.
 
 #include "examples.hpp"
+#include "support/test.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
 #include <chrono>
-#include <fstream>
-#include <random>
-#include <sstream>
 
 namespace {
 

@@ -7,9 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <set>
-#include <sstream>
-
 using namespace program;
 namespace fs = std::filesystem;
 

@@ -3,12 +3,13 @@
 // rows become a table at the end. A wrong answer is a failed test, and so is an outcome
 // that is not that of the committed table; an honest refusal is a row.
 
+#include "support/test.hpp"
+
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <chrono>
-#include <string>
 
 namespace extreme {
 

@@ -5,12 +5,6 @@
 
 #include <isostat/certificate/inspect.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 using namespace isostat;
 
 namespace {

@@ -1,15 +1,8 @@
 #include "linear/factorisation.hpp"
+#include "support/test.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
-#include <random>
 
 using namespace isostat;
 

@@ -5,8 +5,6 @@
 
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <type_traits>
 
 using namespace isostat;

@@ -5,17 +5,11 @@
 #include "contact/candidates.hpp"
 #include "oracle/pairs.hpp"
 #include "oracle/truth.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <vector>
 
 namespace check {
 

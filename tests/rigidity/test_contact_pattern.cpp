@@ -2,10 +2,6 @@
 #include "rigidity/contact_pattern.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -9,11 +9,7 @@
 #include <isostat/core/error.hpp>
 #include <isostat/rigidity/counting.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <gmpxx.h>
-
-#include <cmath>
-#include <random>
 
 using namespace isostat;
 using namespace crafted;

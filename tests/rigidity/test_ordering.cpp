@@ -3,11 +3,8 @@
 #include "rigidity/isostatic.hpp"
 #include "support/same_sequence.hpp"
 
-#include <boost/test/unit_test.hpp>
-
 #include <barrier>
 #include <thread>
-#include <vector>
 
 using namespace isostat;
 

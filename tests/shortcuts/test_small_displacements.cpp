@@ -3,11 +3,6 @@
 #include "support/prepared.hpp"
 #include "support/shortcuts/small_displacements.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-
 using namespace isostat;
 using namespace crafted;
 

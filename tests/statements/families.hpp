@@ -2,16 +2,10 @@
 // Exact packings with as many contacts as possible, and the derivative of their gaps with respect to coordinates and
 // radii.
 
+#include "support/test.hpp"
+
 #include <isostat/crafted/exact_packing.hpp>
 #include <isostat/exact/kernel.hpp>
-
-#include <array>
-#include <cstdint>
-#include <random>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace families {
 

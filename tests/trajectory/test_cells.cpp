@@ -6,12 +6,7 @@
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
 
 using namespace isostat;
 using crafted::Disguised;

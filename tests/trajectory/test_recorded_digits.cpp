@@ -6,8 +6,6 @@
 
 #include <isostat/contact/contact.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace ::crafted;
 using oracle::Real;

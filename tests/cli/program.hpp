@@ -49,6 +49,15 @@ inline void expect(const Outcome& outcome, int status, const std::vector<std::st
     }
 }
 
+/// Exit status, and all of the words on standard output.
+inline Outcome says(Outcome outcome, int status, const std::vector<std::string>& words) {
+    expect(outcome, status);
+    for (const std::string& word : words) {
+        BOOST_TEST(contains(outcome.out, word), "'" << word << "' is not in: " << outcome.out << outcome.err);
+    }
+    return outcome;
+}
+
 /// A scene that starts from a sample and does what `programme` says.
 inline std::string scene_from(const std::string& file, const std::string& programme, const std::string& rest = "") {
     return "[packing]\nfile = \"" + file + "\"\n" + programme + "[output]\npictures = false\n" + rest;

@@ -142,9 +142,7 @@ BOOST_AUTO_TEST_CASE(forces_name_the_contacts_by_their_ids) {
     const std::vector<std::string> options{
         "--box", soft.box, "--contacts", dump, "--contact-columns", "c_i[1],c_i[2],c_f"};
     scratch::write(dump, soft.forces(1000));
-    const Outcome all = import_text(folder, soft.table(), options);
-    expect(all, 0);
-    BOOST_TEST(contains(all.out, "188 carry a force, those of the file"));
+    says(import_text(folder, soft.table(), options), 0, {"188 carry a force, those of the file"});
     scratch::write(dump, soft.forces(100));
     expect(import_text(folder, soft.table(), options), 1,
            {"moving: the contacts of the file", "k = ", "--contacts nearest"});

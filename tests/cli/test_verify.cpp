@@ -32,9 +32,7 @@ BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
 
     // Another input than the one that is named.
     scratch::write(folder / "other.txt", scratch::read(state) + "\n");
-    const Outcome other = run({"verify", good, "--input", (folder / "other.txt").string()});
-    expect(other, 1);
-    BOOST_TEST(contains(other.out, "refuted"));
+    says(run({"verify", good, "--input", (folder / "other.txt").string()}), 1, {"refuted"});
 }
 
 BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apart) {
@@ -49,16 +47,12 @@ BOOST_AUTO_TEST_CASE(verify_tells_altered_false_and_incomplete_certificates_apar
     isostat::Certificate altered = original;
     altered.claims.gaps->smallest *= 2;
     isostat::write_certificate(file, altered);
-    const Outcome refuted = run({"verify", file});
-    expect(refuted, 1);
-    BOOST_TEST(contains(refuted.out, "gaps           refuted"));
+    says(run({"verify", file}), 1, {"gaps           refuted"});
 
     altered = original;
     altered.claims.load_interval = {};
     isostat::write_certificate(file, altered);
-    const Outcome incomplete = run({"verify", file});
-    expect(incomplete, 2);
-    BOOST_TEST(contains(incomplete.out, "load_interval  absent"));
+    says(run({"verify", file}), 2, {"load_interval  absent"});
 
     expect(run({"verify", scratch::data("vertex100.txt")}), 65, {"vertex100.txt", "JSON"});
     expect(run({"verify", (folder / "nothing.json").string()}), 65, {"nothing.json"});
@@ -77,9 +71,8 @@ BOOST_AUTO_TEST_CASE(the_state_of_a_certificate_is_compared_with_the_input_itsel
     isostat::Certificate certificate = isostat::read_certificate(file);
     certificate.input_hash = isostat::sha256(scratch::read(input));
     isostat::write_certificate(file, certificate);
-    const Outcome other = run({"verify", file, "--input", input});
-    expect(other, 1);
-    BOOST_TEST(contains(other.out, "the list of radii of the state in the certificate is not that of"));
+    says(run({"verify", file, "--input", input}), 1,
+         {"the list of radii of the state in the certificate is not that of"});
 }
 
 BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
@@ -97,19 +90,14 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
 
     const std::string events = scratch::read(folder / "out/events.jsonl");
     scratch::write(folder / "out/events.jsonl", scratch::replaced(events, "\"power\":", "\"power\":1"));
-    const Outcome wrong = run({"verify", out});
-    expect(wrong, 1);
-    BOOST_TEST(contains(wrong.out, "events.jsonl: damaged"));
-    BOOST_TEST(contains(wrong.out, "refuted"));
+    says(run({"verify", out}), 1, {"events.jsonl: damaged", "refuted"});
     expect(run({"report", out}), 65, {"events.jsonl: damaged"});
     forger::seal(out);
     BOOST_TEST(contains(run({"verify", out}).out, "events.jsonl:1"));
 
     const std::string header = scratch::read(folder / "out/run.json");
     scratch::write(folder / "out/run.json", scratch::replaced(header, "\"completed\"", "\"running\""));
-    const Outcome going = run({"verify", out});
-    expect(going, 2);
-    BOOST_TEST(contains(going.out, "not finished"));
+    says(run({"verify", out}), 2, {"not finished"});
     scratch::write(folder / "out/run.json", header);
 
     scratch::write(folder / "out/events.jsonl", events.substr(0, events.size() / 2));

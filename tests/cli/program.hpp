@@ -3,6 +3,7 @@
 
 #include "support/scratch.hpp"
 
+#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 
 namespace program {
@@ -56,6 +57,12 @@ inline Outcome says(Outcome outcome, int status, const std::vector<std::string>&
         BOOST_TEST(contains(outcome.out, word), "'" << word << "' is not in: " << outcome.out << outcome.err);
     }
     return outcome;
+}
+
+/// The JSON on standard output.
+inline nlohmann::json json_of(const Outcome& outcome, int status = 0) {
+    expect(outcome, status);
+    return nlohmann::json::parse(outcome.out);
 }
 
 /// A scene that starts from a sample and does what `programme` says.

@@ -53,7 +53,7 @@ BOOST_AUTO_TEST_CASE(inspect_counts_and_proves_a_rectangle) {
           "degrees of freedom N_f   32", "isostatic equilibrium    proved", "backbone, 15 disks",
           "jammed collectively      proved", "jammed strictly          refuted",
           "29 for a bulk modulus, 31 for all moduli"});
-    const auto json = nlohmann::json::parse(run({"inspect", rectangle, "--json"}).out);
+    const auto json = json_of(run({"inspect", rectangle, "--json"}));
     BOOST_TEST(json.at("cell").at("backbone").at("fixed cell").at("h") == 2);
     BOOST_TEST(json.at("cell").at("backbone").at("full strain").at("k") == 1);
     BOOST_TEST(json.at("cell").at("jammed").at("strict").at("verdict") == "refuted");
@@ -80,7 +80,7 @@ BOOST_AUTO_TEST_CASE(plateau_of_a_periodic_dump) {
     const std::string file = (folder / "disks.dump").string();
     scratch::write(file, dump());
     says(run({"plateau", file, "--cell", "diagonal"}), 0, {"periodic along x and y", "from N = 30 with 1 rattlers"});
-    const auto json = nlohmann::json::parse(run({"plateau", file, "--cell", "diagonal", "--json"}).out);
+    const auto json = json_of(run({"plateau", file, "--cell", "diagonal", "--json"}));
     BOOST_TEST(json.at("cell").at("backbone").at("isotropic").at("h") == 1);
     expect(run({"plateau", file, "--cell", "diagonal", "--not-periodic"}), 1);
     const auto open = run({"plateau", file, "--periodic", "--not-periodic"});
@@ -257,7 +257,7 @@ BOOST_AUTO_TEST_CASE(periodic_packings_of_other_programs_become_states) {
                 const std::string from = scratch::data(std::string("cells/") + name + ".json");
                 const isostat::State<2> state = isostat::read_any_state<2>(from).state;
                 scratch::write(file, soft_dump(from, part));
-                const auto json = nlohmann::json::parse(run({"import", file, "-o", made, "--json"}).out);
+                const auto json = json_of(run({"import", file, "-o", made, "--json"}));
                 BOOST_TEST(json.at("verdict") == "proved");
                 const isostat::Packing<2> found = isostat::read_any_state<2>(made).state.packing;
                 BOOST_TEST((found.cell.tilt_moves == state.packing.cell.tilt_moves));
@@ -435,7 +435,7 @@ BOOST_AUTO_TEST_CASE(crafted_packings_in_cells_become_states_or_the_reason_is_sa
     expect(run({"import", packings + "cell_one_disk_tilted.toml", "-o", state, "--cell", "tilted"}), 64, {"no --cell"});
     expect(run({"plan", packings + "cell_one_disk_tilted.toml"}), 65, {"is a crafted packing"});
     says({"inspect", packings + "cell_hexagonal_saddle.toml"}, "isotropic              N_f = 5, N = 6, h = 2, k = 1");
-    const auto json = nlohmann::json::parse(run({"inspect", packings + "cell_two_disks_tilted.toml", "--json"}).out);
+    const auto json = json_of(run({"inspect", packings + "cell_two_disks_tilted.toml", "--json"}));
     BOOST_TEST(json.at("strains").at("diagonal").at("h") == 1);
     BOOST_TEST(json.at("strains").at("full strain").at("h") == 0);
 }

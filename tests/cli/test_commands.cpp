@@ -40,9 +40,7 @@ BOOST_AUTO_TEST_CASE(wrong_use_is_64) {
 BOOST_AUTO_TEST_CASE(inspect_tells_the_closed_form_of_two_disks) {
     const scratch::Folder folder;
     scratch::write(folder / "two.json", state_text(crafted::two_disks(1, 2, 1, 1)));
-    const Outcome outcome = run({"inspect", (folder / "two.json").string(), "--json"});
-    expect(outcome, 0);
-    const json j = json::parse(outcome.out);
+    const auto j = json_of(run({"inspect", (folder / "two.json").string(), "--json"}));
     BOOST_TEST(j["N_f"] == 6);
     BOOST_TEST(j["N"] == 6);
     BOOST_TEST(j["rank"] == 6);
@@ -148,7 +146,7 @@ BOOST_AUTO_TEST_CASE(plan_prints_a_scene_that_gives_the_same_plan) {
         };
         BOOST_TEST(settings(again.out) == settings(plan.out));
     }
-    const json j = json::parse(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/biaxial-400.toml", "--json"}).out);
+    const json j = json_of(run({"plan", std::string(ISOSTAT_EXAMPLES) + "/biaxial-400.toml", "--json"}));
     BOOST_TEST(j["plan"].size() > 10U);
     BOOST_TEST(j["programme"].size() == 5U);
 }

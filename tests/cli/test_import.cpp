@@ -71,9 +71,8 @@ BOOST_AUTO_TEST_CASE(soft_grains_end_at_the_vertex_that_they_came_from) {
             const scratch::Folder folder;
             const Soft soft(part);
             const std::string moved = (folder / "moved.csv").string();
-            const Outcome outcome = import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved});
-            expect(outcome, 0);
-            const json answer = json::parse(outcome.out);
+            const auto answer =
+                json_of(import_text(folder, soft.table(), {"--box", soft.box, "--json", "--moved", moved}));
             BOOST_TEST(answer.at("verdict") == "proved");
             BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "188 carry a force, those of the file"));
             const double backbone = answer.at("moved").at("backbone").get<double>();
@@ -115,10 +114,8 @@ BOOST_AUTO_TEST_CASE(soft_grains_of_yade_end_at_the_vertex_that_they_came_from) 
     const State<2> from = read_state<2>(start).state;
     for (const std::string contacts : {"plateau", "nearest"}) {
         BOOST_TEST_CONTEXT(contacts) {
-            const Outcome outcome = import_text(folder, scratch::read(scratch::data("yade20.txt")),
-                                                {"--box", box, "--contacts", contacts, "--json"});
-            expect(outcome, 0);
-            const json answer = json::parse(outcome.out);
+            const auto answer = json_of(import_text(folder, scratch::read(scratch::data("yade20.txt")),
+                                                    {"--box", box, "--contacts", contacts, "--json"}));
             BOOST_TEST(answer.at("file_format") == "table");
             BOOST_TEST(contains(answer.at("contacts").get<std::string>(), "34 carry a force"));
             const double moved = answer.at("moved").at("backbone").get<double>();

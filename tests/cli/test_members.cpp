@@ -29,14 +29,11 @@ BOOST_AUTO_TEST_SUITE(cli)
 BOOST_AUTO_TEST_CASE(verify_takes_an_ensemble_and_adds_up_its_runs) {
     const scratch::Folder folder;
     const fs::path many = ensemble(folder);
-    const Outcome good = run({"verify", many.string(), "--json"});
-    expect(good, 0);
-    const nlohmann::json answer = nlohmann::json::parse(good.out);
+    const auto answer = json_of(run({"verify", many.string(), "--json"}));
     BOOST_TEST_REQUIRE(answer["members"].size() == 3U);
     int arcs = 0;
     for (const nlohmann::json& member : answer["members"]) {
-        const nlohmann::json one =
-            nlohmann::json::parse(run({"verify", member["folder"].get<std::string>(), "--json"}).out);
+        const nlohmann::json one = json_of(run({"verify", member["folder"].get<std::string>(), "--json"}));
         BOOST_TEST(one["verdict"] == member["verdict"]);
         BOOST_TEST(one["arcs"] == member["arcs"]);
         arcs += one["arcs"].get<int>();

@@ -29,9 +29,7 @@ std::vector<std::string> square_13(const std::string& file) {
 BOOST_AUTO_TEST_SUITE(cli_rounding)
 
 BOOST_AUTO_TEST_CASE(a_hyperstatic_packing_is_not_isostatic_by_rounding) {
-    const Outcome square = run(square_13(file_of("square13.txt")));
-    expect(square, 1);
-    const Answer answer = Answer::parse(square.out);
+    const auto answer = json_of(run(square_13(file_of("square13.txt"))), 1);
     BOOST_TEST(answer.at("isostatic").empty());
     BOOST_TEST(answer.at("widest").at("N") == 25);
     BOOST_TEST(answer.at("widest").at("rattlers") == 1);
@@ -88,9 +86,8 @@ BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
     const std::string state = (folder / "s.json").string();
     for (const auto& [name, gaps] : {std::pair{"torus7.xyz", 8}, {"torus8.xyz", 1}, {"torus11.xyz", 1}}) {
         BOOST_TEST_CONTEXT(name) {
-            const Outcome imported = run({"import", file_of(name), "--cell", "isotropic", "-o", state, "--json"});
-            expect(imported, 2);
-            const Answer answer = Answer::parse(imported.out);
+            const auto answer =
+                json_of(run({"import", file_of(name), "--cell", "isotropic", "-o", state, "--json"}), 2);
             BOOST_TEST(answer.at("verdict") == "undecided");
             BOOST_TEST(static_cast<int>(answer.at("untold").at("gaps").size()) == gaps);
             BOOST_TEST(answer.at("untold").at("verdict_of_the_doubles") == "proved");
@@ -110,10 +107,9 @@ BOOST_AUTO_TEST_CASE(an_imported_state_says_what_its_file_cannot_tell) {
 BOOST_AUTO_TEST_CASE(where_every_gap_is_told_the_answer_is_that_of_the_doubles) {
     const scratch::Folder folder;
     const std::string state = (folder / "s.json").string();
-    const Outcome imported = run({"import", scratch::data("yade20.txt"), "--box",
-                                  "0:6.797743980394215,0:6.804741233269178", "-o", state, "--stress", "1,1", "--json"});
-    expect(imported, 0);
-    const Answer answer = Answer::parse(imported.out);
+    const auto answer =
+        json_of(run({"import", scratch::data("yade20.txt"), "--box", "0:6.797743980394215,0:6.804741233269178", "-o",
+                     state, "--stress", "1,1", "--json"}));
     BOOST_TEST(answer.at("rounding").get<double>() > 1e-6); // six digits
     BOOST_TEST(answer.at("rounding").get<double>() < 1e-4);
     BOOST_TEST(answer.at("load").at("by_default").at("stress") == false);

@@ -17,9 +17,7 @@ BOOST_AUTO_TEST_CASE(verify_answers_for_every_claim_of_a_certificate) {
     const std::string good = (folder / "good.json").string();
     expect(run({"certify", state, "-o", good}), 0);
     expect(run({"verify", good}), 0);
-    const Outcome outcome = run({"verify", good, "--input", state, "--json"});
-    expect(outcome, 0);
-    const nlohmann::json answer = nlohmann::json::parse(outcome.out);
+    const auto answer = json_of(run({"verify", good, "--input", state, "--json"}));
     BOOST_TEST(answer["verdict"] == "proved");
     std::vector<std::string> claims;
     for (const nlohmann::json& check : answer["checks"]) {
@@ -80,9 +78,7 @@ BOOST_AUTO_TEST_CASE(verify_replays_a_run_and_names_the_first_wrong_record) {
     scratch::write_scene(folder / "scene.toml", scene_from(scratch::data("vertex100.txt"), up_6));
     const std::string out = (folder / "out").string();
     expect(run({"run", (folder / "scene.toml").string(), "-o", out, "-q"}), 0);
-    const Outcome good = run({"verify", out, "--json"});
-    expect(good, 0);
-    const nlohmann::json answer = nlohmann::json::parse(good.out);
+    const auto answer = json_of(run({"verify", out, "--json"}));
     BOOST_TEST(answer["verdict"] == "ends proved, way looked at");
     BOOST_TEST(answer["ends_proved"] == answer["arcs"]);
     BOOST_TEST(answer["ways_proved"] == 0);

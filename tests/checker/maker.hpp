@@ -25,7 +25,7 @@ inline Interval around(Real value, Real width) {
 
 using Truth = isostat::oracle::TruthIn<Real>;
 
-inline Matrix dense(const isostat::oracle::Dense<Real>& matrix) {
+inline Matrix dense(const isostat::oracle::SquareMatrix<Real>& matrix) {
     const auto n = static_cast<Eigen::Index>(matrix.size());
     return Matrix::NullaryExpr(n, n, [&](Eigen::Index i, Eigen::Index j) {
         return matrix(static_cast<std::size_t>(i), static_cast<std::size_t>(j));

@@ -39,9 +39,9 @@ template <class Real> int sign_of(const Real& x, const Real& scale) {
 }
 
 /// Square, row by row, with LU factors made by partial pivoting.
-template <class Real> class Dense {
+template <class Real> class SquareMatrix {
   public:
-    explicit Dense(std::size_t n) : n_(n), entry_(n * n, Real(0)), order_(n) {}
+    explicit SquareMatrix(std::size_t n) : n_(n), entry_(n * n, Real(0)), order_(n) {}
     Real& operator()(std::size_t i, std::size_t j) { return entry_[i * n_ + j]; }
     const Real& operator()(std::size_t i, std::size_t j) const { return entry_[i * n_ + j]; }
     [[nodiscard]] std::size_t size() const { return n_; }
@@ -156,7 +156,7 @@ template <class Real> class TruthIn {
     [[nodiscard]] double singular_value() const;
     [[nodiscard]] Real gap(const Contact& c) const;
     /// H, one column per contact.
-    [[nodiscard]] Dense<Real> contact_matrix() const;
+    [[nodiscard]] SquareMatrix<Real> contact_matrix() const;
     /// From disk i to disk j, or to the image of it that the contact names.
     [[nodiscard]] std::array<Real, 2> between(const Contact& c) const;
 
@@ -279,8 +279,8 @@ template <class Real> void TruthIn<Real>::find_dofs() {
     }
 }
 
-template <class Real> Dense<Real> TruthIn<Real>::contact_matrix() const {
-    Dense<Real> h(coordinate_.size());
+template <class Real> SquareMatrix<Real> TruthIn<Real>::contact_matrix() const {
+    SquareMatrix<Real> h(coordinate_.size());
     for (std::size_t l = 0; l < state_->contacts.size(); ++l) {
         gradient(state_->contacts[l], [&](std::size_t dof, const Real& value) { h(dof, l) = -value; });
     }
@@ -293,7 +293,7 @@ template <class Real> bool TruthIn<Real>::newton() {
     for (int iteration = 0; iteration < 14; ++iteration) {
         Vector residual(n);
         Real worst = 0;
-        Dense<Real> rows(n);
+        SquareMatrix<Real> rows(n);
         for (std::size_t l = 0; l < n; ++l) {
             residual[l] = gap(state_->contacts[l]);
             worst = std::max(worst, Real(abs(residual[l])));
@@ -319,7 +319,7 @@ template <class Real> bool TruthIn<Real>::newton() {
 template <class Real> void TruthIn<Real>::find_forces() {
     const auto& load = state_->load;
     const std::size_t n = coordinate_.size();
-    Dense<Real> h = contact_matrix();
+    SquareMatrix<Real> h = contact_matrix();
     if (!h.factorise()) {
         known = false;
         why = "singular";
@@ -491,7 +491,7 @@ template <class Real> std::vector<Contact> TruthIn<Real>::most_negative() const 
 }
 
 template <class Real> double TruthIn<Real>::singular_value() const {
-    const Dense<Real> h = contact_matrix();
+    const SquareMatrix<Real> h = contact_matrix();
     const auto n = static_cast<Eigen::Index>(h.size());
     Eigen::MatrixXd m(n, n);
     for (std::size_t i = 0; i < h.size(); ++i) {

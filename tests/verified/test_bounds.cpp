@@ -26,8 +26,8 @@ void scale(Vector& x) {
 }
 
 /// A lower bound of |H^-1|_2 that converges to it: power iteration on H^-T H^-1.
-Real norm_of_inverse(oracle::Dense<Real> h) {
-    oracle::Dense<Real> transposed(h.size());
+Real norm_of_inverse(oracle::SquareMatrix<Real> h) {
+    oracle::SquareMatrix<Real> transposed(h.size());
     for (std::size_t i = 0; i < h.size(); ++i) {
         for (std::size_t j = 0; j < h.size(); ++j) {
             transposed(i, j) = h(j, i);
@@ -54,7 +54,7 @@ bool check(const State<2>& state, const std::vector<double>& force) {
     if (at.inverse.verdict != Verdict::proved) {
         return false;
     }
-    oracle::Dense<Real> h = oracle::Truth(state, oracle::At::stored).contact_matrix();
+    oracle::SquareMatrix<Real> h = oracle::Truth(state, oracle::At::stored).contact_matrix();
     const Real norm = norm_of_inverse(h);
     BOOST_TEST(Real(at.inverse.sigma_min) * norm <= 1,
                "sigma_min " << at.inverse.sigma_min << " above the true one " << 1 / norm.convert_to<double>());

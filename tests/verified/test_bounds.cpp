@@ -139,13 +139,12 @@ BOOST_AUTO_TEST_CASE(an_exactly_collinear_strut_is_never_proved_regular) {
 
 BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_regular) {
     const State<2> state = nearly_collinear(1e-10); // too near for the first route
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(structure.ok());
-    const Factorisation factorisation(structure.value());
+    const auto structure = crafted::Regular::proved(state);
+    const Factorisation factorisation(structure);
     for (const bool worth : {false, true}) {
         InverseBoundCache cache;
         int asked = 0;
-        const InverseBound bound = bound_inverse(structure.value(), factorisation, cache, [&] {
+        const InverseBound bound = bound_inverse(structure, factorisation, cache, [&] {
             ++asked;
             return worth;
         });

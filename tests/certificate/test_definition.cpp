@@ -3,6 +3,7 @@
 #include "linear/factorisation.hpp"
 #include "statics/decisions.hpp"
 #include "support/crafted.hpp"
+#include "support/regular.hpp"
 #include "support/scratch.hpp"
 #include "verified/configuration.hpp"
 
@@ -11,11 +12,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <boost/test/data/test_case.hpp>
-#include <boost/test/unit_test.hpp>
-
-#include <array>
-#include <cmath>
-#include <optional>
 
 using namespace isostat;
 using namespace crafted;
@@ -28,13 +24,9 @@ State<2> stored(const std::string& name) {
 
 /// What the engine of runs says: the contact that opens, nothing for an equilibrium; undecided is a failure.
 Result<OpeningDecision> decided(const State<2>& state, std::optional<LoadLimit>* low = nullptr) {
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_REQUIRE(structure.ok());
-    const Factorisation factorisation(structure.value());
-    InverseBoundCache cache;
-    const InverseBound inverse = bound_inverse(structure.value(), factorisation, cache);
-    const VertexEnclosure vertex = enclose_vertex(state.packing, structure.value(), factorisation, inverse);
-    Statics<2> statics(state.packing, state.load, structure.value(), factorisation, inverse, {{}, &vertex});
+    const Regular at(state);
+    const VertexEnclosure vertex = enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse);
+    Statics<2> statics(state.packing, state.load, at.structure, at.factorisation, at.inverse, {{}, &vertex});
     const double sigma = state.load.loaded_stress();
     auto decision = decide_opening(statics, sigma, OpeningRule::most_negative, ContactId(), 0);
     if (low != nullptr) {

@@ -7,10 +7,6 @@
 
 #include <isostat/core/error.hpp>
 
-#include <functional>
-#include <map>
-#include <set>
-
 namespace altered_run {
 
 namespace fs = std::filesystem;

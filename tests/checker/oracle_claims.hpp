@@ -3,8 +3,6 @@
 
 #include "checker/maker.hpp"
 
-#include <string>
-
 namespace maker {
 
 /// Empty, or what is wrong with a claim of the certificate beyond a relative 1e-9. The approximations are made again

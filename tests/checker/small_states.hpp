@@ -3,8 +3,6 @@
 
 #include "support/crafted.hpp"
 
-#include <cmath>
-
 namespace small_states {
 
 using isostat::State;

@@ -2,17 +2,13 @@
 #include "checker/maker.hpp"
 #include "checker/oracle_claims.hpp"
 #include "checker/small_states.hpp"
+#include "oracle/pairs.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <functional>
-#include <random>
 
 using namespace isostat;
 
@@ -123,7 +119,7 @@ std::vector<ClaimAlteration> alterations_of_claims(const Certificate& original) 
 
     add("smallest gap", [](Certificate& c) { c.claims.gaps->smallest *= 1 + 1e-6; });
     add("smallest gap without end", [](Certificate& c) { c.claims.gaps->smallest = huge; });
-    for (const Contact& pair : maker::all_pairs(original.state)) {
+    for (const Contact& pair : oracle::all_pairs(original.state.packing)) {
         if (pair != original.claims.gaps->where && original.state.packing.disk_count() < 10) {
             add("nearest pair " + to_string<2>(pair), [=](Certificate& c) { c.claims.gaps->where = pair; });
         }

@@ -1,13 +1,9 @@
 // Runs under ties = "choose", re-checked from their records; a forged choice must be found.
-#include "support/forger.hpp"
 #include "support/mirror.hpp"
-#include "support/scratch.hpp"
+#include "support/played.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using forger::altered;
@@ -16,23 +12,11 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Plays one segment under `choose` into a folder; how it ends does not matter.
-void play(State<2> state, int direction, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
-    RunHeader header;
-    header.program = "test";
-    header.settings = R"({"run":{"rule":"most_negative","ties":"choose"}})";
-    header.states_every = 1;
-    RunCounters counters;
-    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
-    Segment segment;
-    segment.direction = direction;
-    segment.equilibria = equilibria;
+void play(const State<2>& state, int equilibria, const fs::path& folder, std::uint64_t seed = 1) {
     RunOptions options;
     options.ties = TiePolicy::choose;
     options.ties_seed = seed;
-    directory.begin_segment(0, segment, 0, 0);
-    const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
-    BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));
-    directory.finish(RunStatus::completed, "");
+    (void)played::into(folder, state, {played::towards(equilibria)}, options);
 }
 
 /// The entry of a record that names an exchange of the list, with the braces; empty: none does.
@@ -55,9 +39,7 @@ struct ForgedExchange {
     }
     void refuted(const std::string& from, const std::string& by, const std::string& said) const {
         BOOST_TEST_CONTEXT(from << " -> " << by) {
-            const RunVerification forged = with(from, by);
-            BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
-            BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
+            played::refuted(with(from, by), said);
         }
     }
     void not_proved(const std::string& from, const std::string& by) const {
@@ -77,10 +59,8 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     State<2> state = crafted::mirror_forces();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
-    play(state, -1, 1, folder);
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    play(state, -1, folder);
+    const RunVerification run = played::proved(folder);
     BOOST_TEST(run.choices_checked > 0);
     const std::string events = scratch::read(folder / "events.jsonl");
     const bool one = events.find("\"opened\":\"1-bottom\"") != std::string::npos;
@@ -88,9 +68,7 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     const std::string other = one ? "2-bottom" : "1-bottom";
     const auto refuted = [&](const std::string& from, const std::string& to, const std::string& said) {
         BOOST_TEST_CONTEXT(from << " -> " << to) {
-            const RunVerification forged = altered(folder, "events.jsonl", from, to);
-            BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
-            BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
+            played::refuted(altered(folder, "events.jsonl", from, to), said);
         }
     };
     const std::string loads = "\"choice\":\"infinitesimal loads\"";
@@ -108,9 +86,7 @@ BOOST_AUTO_TEST_CASE(a_forged_choice_is_refused) {
     }
     scratch::write(folder / "events.jsonl", swapped);
     forger::seal(folder);
-    const RunVerification forged = verify_run(folder);
-    BOOST_TEST((forged.verdict == Verdict::refuted));
-    BOOST_TEST(forged.wrong.find("infinitesimal loads take") != std::string::npos, forged.wrong);
+    played::refuted(verify_run(folder), "infinitesimal loads take");
 }
 
 /// The run with the radii of another, whose first-order terms take another one of two forces that vanish together; with
@@ -144,7 +120,7 @@ BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_t
     std::map<bool, std::pair<fs::path, std::vector<double>>> runs; // by what opens
     for (std::uint64_t seed = 1; runs.size() < 2 && seed < 10; ++seed) {
         const fs::path folder = scratch_folder / std::to_string(seed);
-        play(start, -1, 1, folder, seed);
+        play(start, -1, folder, seed);
         BOOST_REQUIRE((verify_run(folder).verdict == Verdict::proved));
         const bool one = scratch::read(folder / "events.jsonl").find("\"opened\":\"1-bottom\"") != std::string::npos;
         runs[one] = {folder, read_state<2>(folder / "states/eq_000000.json").state.perturbation->rho};
@@ -169,7 +145,7 @@ BOOST_AUTO_TEST_CASE(bounds_so_wide_that_they_say_nothing_are_no_evidence_of_a_t
 BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::mirror_forces(), -1, 1, folder);
+    play(crafted::mirror_forces(), -1, folder);
     BOOST_TEST((verify_run(folder).verdict == Verdict::proved));
     const std::string rows = scratch::read(folder / "equilibria.csv");
     const bool one = rows.find(",1,-2,") < rows.find(",2,-2,");
@@ -181,7 +157,7 @@ BOOST_AUTO_TEST_CASE(a_row_may_name_any_of_the_forces_that_vanish_at_an_end) {
 BOOST_AUTO_TEST_CASE(the_way_of_a_square_of_disks_is_replayed) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::square(), +1, 3, folder);
+    play(crafted::square(), 3, folder);
     const RunVerification run = verify_run(folder);
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.equilibria > 0);
@@ -197,15 +173,14 @@ BOOST_AUTO_TEST_CASE(rows_that_change_their_lists_where_they_are_and_spread_are_
     State<2> state = crafted::pile(5, 4);
     state.load.reference_length = {16, 4}; // the same forces; strains stay below the cap
     state.load.stress = {0.25, 0.25};
-    play(state, +1, 3, folder);
+    play(state, 3, folder);
     const RunVerification run = verify_run(folder);
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.equilibria == 4);
     BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
-    const RunVerification forged =
-        altered(folder, "events.jsonl", "\"decision\":\"gap\"", "\"choice\":\"watched\",\"decision\":\"gap\"");
-    BOOST_TEST((forged.verdict == Verdict::refuted));
-    BOOST_TEST(forged.wrong.find("is left as 'watched'") != std::string::npos, forged.wrong);
+    played::refuted(
+        altered(folder, "events.jsonl", "\"decision\":\"gap\"", "\"choice\":\"watched\",\"decision\":\"gap\""),
+        "is left as 'watched'");
     // Pairs that touch besides the contacts: the last column but one.
     const std::string rows = scratch::read(folder / "equilibria.csv");
     const std::size_t time = rows.rfind(',');
@@ -227,18 +202,15 @@ BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
     State<2> state = crafted::mirror_gaps();
     state.perturbation.emplace();
     state.perturbation->rho.assign(state.packing.radius.size(), 0.5);
-    play(state, +1, 1, folder);
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    play(state, 1, folder);
+    const RunVerification run = played::proved(folder);
     BOOST_TEST(run.choices_checked > 0);
     const std::string header = scratch::read(folder / "run.json");
     const RunVerification stopped = altered(folder, "run.json", "choose", "stop");
     BOOST_TEST((stopped.verdict == Verdict::refuted));
     const std::string capped = "choose\",\"max_choices\":";
-    const RunVerification fewer =
-        altered(folder, "run.json", "choose\"", capped + std::to_string(run.choices_checked - 1));
-    BOOST_TEST((fewer.verdict == Verdict::refuted));
-    BOOST_TEST(fewer.wrong.find("which may choose") != std::string::npos, fewer.wrong);
+    played::refuted(altered(folder, "run.json", "choose\"", capped + std::to_string(run.choices_checked - 1)),
+                    "which may choose");
     const RunVerification as_many =
         altered(folder, "run.json", "choose\"", capped + std::to_string(run.choices_checked));
     BOOST_TEST((as_many.verdict == Verdict::proved));
@@ -247,10 +219,8 @@ BOOST_AUTO_TEST_CASE(a_choice_in_a_run_that_chooses_nothing_is_refused) {
 BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::two_crests(true), -1, 1, folder);
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    play(crafted::two_crests(true), -1, folder);
+    const RunVerification run = played::proved(folder);
     BOOST_TEST(run.equilibria_proved == 2);
     const ForgedExchange forged{folder, exchange_in(scratch::read(folder / "events.jsonl"), "second order")};
     BOOST_TEST_MESSAGE(forged.entry);
@@ -270,10 +240,8 @@ BOOST_AUTO_TEST_CASE(a_forged_exchange_at_second_order_is_refused) {
 BOOST_AUTO_TEST_CASE(a_list_that_is_exchanged_for_the_end_of_an_arc_is_proved_and_a_forged_one_refused) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::triangular(3, 4), +1, 20, folder);
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    play(crafted::triangular(3, 4), 20, folder);
+    const RunVerification run = played::proved(folder);
     const ForgedExchange forged{folder, exchange_in(scratch::read(folder / "events.jsonl"), "end")};
     BOOST_TEST_REQUIRE(forged.entry.find("\"contact\":\"3-8\"") != std::string::npos, forged.entry);
     forged.refuted("\"3-8\"", "\"4-5\"", "no such exchange"); // does not touch
@@ -290,10 +258,9 @@ BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refuse
     const scratch::Folder scratch_folder;
     const fs::path needed = scratch_folder / "needed";
     const fs::path folder = scratch_folder / "run";
-    play(crafted::two_crests(true), -1, 1, needed);
-    play(crafted::two_crests(false), -1, 1, folder);
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    play(crafted::two_crests(true), -1, needed);
+    play(crafted::two_crests(false), -1, folder);
+    const RunVerification run = played::proved(folder);
     const std::string events = scratch::read(folder / "events.jsonl");
     BOOST_TEST(exchange_in(events, "second order").empty());
     std::string entry = exchange_in(scratch::read(needed / "events.jsonl"), "second order");
@@ -303,12 +270,10 @@ BOOST_AUTO_TEST_CASE(an_exchange_for_a_pair_that_parts_at_second_order_is_refuse
     }
     const std::string key = "\"perturbed\":[";
     const bool others = events.find(key) < events.find('\n');
-    const RunVerification forged =
-        others ? altered(folder, "events.jsonl", key,
-                         key + entry + (events[events.find(key) + key.size()] == ']' ? "" : ","))
-               : altered(folder, "events.jsonl", "}\n", ",\"perturbed\":[" + entry + "]}\n");
-    BOOST_TEST((forged.verdict == Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
-    BOOST_TEST(forged.wrong.find("second derivative") != std::string::npos, forged.wrong);
+    played::refuted(others ? altered(folder, "events.jsonl", key,
+                                     key + entry + (events[events.find(key) + key.size()] == ']' ? "" : ","))
+                           : altered(folder, "events.jsonl", "}\n", ",\"perturbed\":[" + entry + "]}\n"),
+                    "second derivative");
 }
 
 BOOST_AUTO_TEST_SUITE_END()

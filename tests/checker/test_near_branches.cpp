@@ -1,14 +1,10 @@
 // Nearly equal disks: where some stand nearly in line two branches of the motion come near each other, and steps in
 // double may end on the wrong one. Small steps from the equilibrium before tell them apart.
-#include "support/forger.hpp"
-#include "support/scratch.hpp"
+#include "support/played.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/run_directory.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 #include <tuple>
 
@@ -27,17 +23,7 @@ void play(std::uint64_t seed, int equilibria, const fs::path& folder) {
     PreparationReport<2> report;
     auto prepared = prepare<2>(options, report);
     BOOST_REQUIRE(prepared.ok());
-    RunHeader header;
-    header.program = "test";
-    header.settings = R"({"run":{"rule":"most_negative"}})";
-    RunCounters counters;
-    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
-    Segment segment;
-    segment.equilibria = equilibria;
-    directory.begin_segment(0, segment, 0, 0);
-    const SegmentOutcome outcome = run_segment<2>(prepared.value(), segment, 0, RunOptions(), counters, directory);
-    BOOST_REQUIRE(outcome.completed);
-    directory.finish(RunStatus::completed, "");
+    BOOST_REQUIRE(played::into(folder, prepared.value(), {played::towards(equilibria)}).completed);
 }
 
 } // namespace
@@ -52,9 +38,7 @@ BOOST_AUTO_TEST_CASE(ends_near_another_branch_are_proved_and_what_contradicts_th
         BOOST_TEST_CONTEXT("seed " << seed) {
             const fs::path folder = scratch_folder / std::to_string(seed);
             play(static_cast<std::uint64_t>(seed), equilibria, folder);
-            const RunVerification run = verify_run(folder);
-            BOOST_TEST(run.wrong == "");
-            BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+            const RunVerification run = played::proved(folder);
             BOOST_TEST(run.equilibria_proved == equilibria + 1);
             const std::string events = scratch::read(folder / "events.jsonl");
             const std::size_t arc = events.rfind("\"opened\":\"" + std::string(opened));

@@ -1,52 +1,30 @@
 // Runs re-checked from their records; altered records must be found, the first of them named.
 #include "checker/strut.hpp"
 #include "support/crafted.hpp"
-#include "support/forger.hpp"
+#include "support/played.hpp"
 #include "support/same_sequence.hpp"
-#include "support/scratch.hpp"
 #include "support/strut.hpp"
 
 #include <isostat/checker/verify.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
-#include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <cstdlib>
 
 using namespace isostat;
 
 namespace {
 
-/// Plays segments from a state into a folder, every state stored.
-void play_and_store(const State<2>& start, const std::vector<Segment>& segments, const std::filesystem::path& folder,
-                    OpeningRule rule = OpeningRule::most_negative, bool arcs = false,
-                    TiePolicy ties = TiePolicy::stop) {
-    RunHeader header;
-    header.witnesses = arcs;
-    header.program = "test";
-    const std::string word = opening_rule_words[static_cast<std::size_t>(rule)];
-    header.settings = R"({"run":{"rule":")" + word + (arcs ? R"(","certify":"arcs")" : "\"") + R"(,"ties":")" +
-                      tie_policy_words[static_cast<std::size_t>(ties)] + R"("}})";
-    header.states_every = 1;
-    RunCounters counters;
-    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
-    State<2> state = start;
+/// Plays segments, each given by its equilibria, from a state into a folder.
+void play_and_store(const State<2>& start, const std::vector<int>& segments, const std::filesystem::path& folder,
+                    OpeningRule rule = OpeningRule::most_negative, TiePolicy ties = TiePolicy::stop) {
     RunOptions options;
     options.rule = rule;
     options.ties = ties;
     options.max_strain = 1e9;
-    options.certify = arcs ? CertifyLevel::arcs : CertifyLevel::decisions;
-    for (std::size_t k = 0; k < segments.size(); ++k) {
-        directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
-        const SegmentOutcome outcome =
-            run_segment<2>(state, segments[k], static_cast<int>(k), options, counters, directory);
-        BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
-    }
-    directory.finish(RunStatus::completed, "");
+    std::vector<Segment> all;
+    std::transform(segments.begin(), segments.end(), std::back_inserter(all), played::towards);
+    const SegmentOutcome outcome = played::into(folder, start, all, options);
+    BOOST_REQUIRE_MESSAGE(outcome.completed, (outcome.failure ? outcome.failure->message() : ""));
 }
 
 std::string line_of(const std::string& text, int number) {
@@ -191,9 +169,7 @@ void refutes_a_row_before(const std::filesystem::path& folder, int line) {
     const std::string checkpoint = scratch::read(folder / "checkpoint.json");
     count_until(folder, reached, line - 1);
     forger::seal(folder);
-    const RunVerification early = verify_run(folder);
-    BOOST_TEST((early.verdict == Verdict::refuted));
-    BOOST_TEST((early.wrong.find("no equilibrium") != std::string::npos), early.wrong);
+    played::refuted(verify_run(folder), "no equilibrium");
     scratch::write(folder / "events.jsonl", events);
     scratch::write(folder / "equilibria.csv", csv);
     scratch::write(folder / "summary.json", summary);
@@ -207,9 +183,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 
 BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
     const scratch::Folder folder;
-    Segment up;
-    up.equilibria = 2;
-    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {up}, folder / "run");
+    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {2}, folder / "run");
     int arcs = 0;
     int equilibria = 0;
     VerificationProgress last;
@@ -228,18 +202,8 @@ BOOST_AUTO_TEST_CASE(progress_counts_every_arc_and_every_equilibrium_once) {
 // Case 2: bottom of disk 1 opens at F2/F1 = t, disk 1 rolls over disk 0.
 BOOST_AUTO_TEST_CASE(the_rolling_disk_is_replayed) {
     const scratch::Folder folder;
-    Segment down;
-    down.direction = -1;
-    down.equilibria = 1;
-    Segment up;
-    up.direction = 1;
-    up.equilibria = 1;
-    play_and_store(crafted::two_disks(1, 2, 1, 1), {down, up}, folder / "run");
-    const RunVerification run = verify_run(folder / "run");
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-    BOOST_TEST((run.verdict == Verdict::proved));
-    BOOST_TEST(run.arcs_proved == run.arcs);
+    play_and_store(crafted::two_disks(1, 2, 1, 1), {-1, 1}, folder / "run");
+    const RunVerification run = played::proved(folder / "run");
     BOOST_TEST(run.equilibria_proved == 3);
 }
 
@@ -259,13 +223,8 @@ BOOST_AUTO_TEST_CASE(what_a_grain_without_force_puts_on_a_strut_orders_its_ends)
 // Arc 23 follows a power turn that holds a grain without force; that grain hangs on a straight strut, whose end opens.
 BOOST_AUTO_TEST_CASE(the_end_of_a_strut_that_a_grain_without_force_hangs_on_is_replayed_and_no_other) {
     const scratch::Folder folder;
-    Segment up;
-    up.equilibria = 5;
-    play_and_store(prepared(40, 15), {up}, folder / "run");
-    const RunVerification run = verify_run(folder / "run");
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-    BOOST_TEST((run.verdict == Verdict::proved));
+    play_and_store(prepared(40, 15), {5}, folder / "run");
+    const RunVerification run = played::proved(folder / "run");
     const std::string opened = R"("opened":"28-34")";
     const std::string other = R"("opened":"28-30")";
     const std::string line = line_of(scratch::read(folder / "run" / "events.jsonl"), 23);
@@ -277,30 +236,21 @@ BOOST_AUTO_TEST_CASE(the_end_of_a_strut_that_a_grain_without_force_hangs_on_is_r
 // never one of theirs.
 BOOST_AUTO_TEST_CASE(contacts_that_carry_nothing_at_a_power_turn_do_not_compete, *boost::unit_test::label("threads")) {
     const scratch::Folder folder;
-    Segment up;
-    up.equilibria = 4;
-    play_and_store(prepared(36, 3), {up}, folder / "run", OpeningRule::least_negative);
-    const RunVerification run = verify_run(folder / "run");
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-    BOOST_TEST((run.verdict == Verdict::proved));
+    play_and_store(prepared(36, 3), {4}, folder / "run", OpeningRule::least_negative);
+    const RunVerification run = played::proved(folder / "run");
     BOOST_TEST(run.turns_checked > 20);
     same_with_threads(folder / "run", run); // coordinates let go in either direction too
 }
 
 BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits_it) {
     const scratch::Folder folder;
-    Segment up;
-    up.equilibria = 3;
-    play_and_store(prepared(36, 3), {up}, folder / "run", OpeningRule::least_index);
-    const RunVerification run = verify_run(folder / "run");
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST((run.verdict == Verdict::proved), (run.undecided.empty() ? "" : run.undecided[0]));
+    play_and_store(prepared(36, 3), {3}, folder / "run", OpeningRule::least_index);
+    const RunVerification run = played::proved(folder / "run");
     const std::string header = scratch::read(folder / "run/run.json");
     scratch::write(folder / "run/run.json", scratch::replaced(header, "least_index", "most_negative"));
     const RunVerification other = verify_run(folder / "run");
     BOOST_TEST((other.wrong.find("but the rule 'most_negative' takes") != std::string::npos), other.wrong);
-    play_and_store(prepared(36, 3), {up}, folder / "most");
+    play_and_store(prepared(36, 3), {3}, folder / "most");
     const std::string paper = scratch::read(folder / "most/run.json");
     scratch::write(folder / "most/run.json", scratch::replaced(paper, "most_negative", "least_index"));
     const RunVerification most = verify_run(folder / "most");
@@ -310,11 +260,9 @@ BOOST_AUTO_TEST_CASE(a_run_by_contact_numbers_is_verified_and_no_other_rule_fits
 // Under true stresses the load changes along an arc: the derivatives of the power count that.
 BOOST_AUTO_TEST_CASE(power_turns_under_true_stresses_are_found_and_replayed) {
     const scratch::Folder folder;
-    Segment up;
-    up.equilibria = 4;
     State<2> start = prepared(36, 3);
     start.load.kind = LoadKind::true_stress;
-    play_and_store(start, {up}, folder / "run", OpeningRule::least_index);
+    play_and_store(start, {4}, folder / "run", OpeningRule::least_index);
     const RunVerification run = verify_run(folder / "run");
     BOOST_TEST(run.wrong == "");
     BOOST_TEST(run.turns_checked == 3);
@@ -322,17 +270,8 @@ BOOST_AUTO_TEST_CASE(power_turns_under_true_stresses_are_found_and_replayed) {
 
 BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_are_named) {
     const scratch::Folder folder;
-    Segment up;
-    up.equilibria = 3;
-    Segment down;
-    down.direction = -1;
-    down.equilibria = 1;
-    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {up, down}, folder / "run");
-    const RunVerification run = verify_run(folder / "run");
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-    BOOST_REQUIRE((run.verdict == Verdict::proved));
-    BOOST_TEST(run.arcs_proved == run.arcs);
+    play_and_store(read_state<2>(scratch::data("vertex100.txt")).state, {3, -1}, folder / "run");
+    const RunVerification run = played::proved(folder / "run");
     BOOST_TEST(run.equilibria_proved == 5);
     BOOST_TEST_MESSAGE(run.arcs << " arcs");
 
@@ -373,9 +312,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
     // Several forces are negative somewhere: the other rule takes another one of them.
     const std::string header = scratch::read(folder / "run/run.json");
     scratch::write(folder / "run/run.json", scratch::replaced(header, "most_negative", "least_negative"));
-    const RunVerification other_rule = verify_run(folder / "run");
-    BOOST_TEST((other_rule.verdict == Verdict::refuted));
-    BOOST_TEST((other_rule.wrong.find("but the rule 'least_negative' takes") != std::string::npos), other_rule.wrong);
+    played::refuted(verify_run(folder / "run"), "but the rule 'least_negative' takes");
     scratch::write(folder / "run/run.json", header);
     // A record left out.
     const std::string without = scratch::replaced(events, line_of(events, tension) + "\n", "");
@@ -397,9 +334,7 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
         }
         write_state(stored, altered);
         forger::seal(folder / "run");
-        const RunVerification found = verify_run(folder / "run");
-        BOOST_TEST((found.verdict == Verdict::refuted));
-        BOOST_TEST((found.wrong.find("eq_000001") != std::string::npos), found.wrong);
+        played::refuted(verify_run(folder / "run"), "eq_000001");
     }
     write_state(stored, state);
     forger::seal(folder / "run");
@@ -440,15 +375,13 @@ BOOST_AUTO_TEST_CASE(a_run_of_a_hundred_disks_is_replayed_and_altered_records_ar
 
 /// Where a rattler is pinned its own pattern shows no structural zero: another disk counts as pinned (C9, cells.md).
 BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinned) {
-    Segment up;
-    up.equilibria = 3;
     for (const char* name : {"tilt_16", "rect_16", "channel_16"}) {
         for (const int pin : {0, 8, 9}) { // 8 and 9 become rattlers, or are
             for (const TiePolicy ties : {TiePolicy::stop, TiePolicy::choose}) {
                 BOOST_TEST_CONTEXT(name << ", disk " << pin << " pinned, ties "
                                         << tie_policy_words[static_cast<std::size_t>(ties)]) {
                     const scratch::Folder folder;
-                    play_and_store(of_cell(name, pin), {up}, folder / "run", OpeningRule::most_negative, false, ties);
+                    play_and_store(of_cell(name, pin), {3}, folder / "run", OpeningRule::most_negative, ties);
                     const RunVerification run = verify_run(folder / "run");
                     BOOST_TEST(run.wrong == "");
                     BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -470,11 +403,9 @@ BOOST_AUTO_TEST_CASE(runs_in_periodic_cells_are_replayed_whichever_disk_is_pinne
 }
 
 BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
-    Segment up;
-    up.equilibria = 3;
     const auto is_replayed = [&](const State<2>& state) {
         const scratch::Folder folder;
-        play_and_store(state, {up}, folder / "run");
+        play_and_store(state, {3}, folder / "run");
         const RunVerification run = verify_run(folder / "run");
         BOOST_TEST(run.wrong == "");
         BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
@@ -495,9 +426,7 @@ BOOST_AUTO_TEST_CASE(true_stresses_and_forces_on_disks_in_cells_are_replayed) {
 BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
     const scratch::Folder folder;
     const std::filesystem::path run = folder / "run";
-    Segment up;
-    up.equilibria = 2;
-    play_and_store(of_cell("tilt_16", 0), {up}, run);
+    play_and_store(of_cell("tilt_16", 0), {2}, run);
     const std::string events = scratch::read(run / "events.jsonl");
     const std::string csv = scratch::read(run / "equilibria.csv");
     for (const auto& [name, said] :
@@ -535,9 +464,7 @@ BOOST_AUTO_TEST_CASE(altered_records_of_a_run_in_a_cell_are_named) {
         }
         write_state(stored, altered);
         forger::seal(run);
-        const RunVerification found = verify_run(run);
-        BOOST_TEST((found.verdict == Verdict::refuted));
-        BOOST_TEST((found.wrong.find("eq_000001") != std::string::npos), found.wrong);
+        played::refuted(verify_run(run), "eq_000001");
     }
 }
 

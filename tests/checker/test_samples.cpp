@@ -5,8 +5,6 @@
 #include <isostat/checker/verify.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 BOOST_AUTO_TEST_SUITE(checker)

@@ -11,7 +11,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <Eigen/SVD>
-#include <boost/test/unit_test.hpp>
 
 using namespace isostat;
 using isostat::checker::Problem;

@@ -4,8 +4,6 @@
 
 #include <isostat/checker/verify.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 
 namespace {

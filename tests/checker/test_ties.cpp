@@ -1,55 +1,30 @@
 // Runs with power turns, held coordinates and ties settled at first order, re-checked from their records; one number or
 // name changed in each kind of record must be found.
 #include "support/course.hpp"
-#include "support/forger.hpp"
 #include "support/mirror.hpp"
 #include "support/mirror_cells.hpp"
-#include "support/scratch.hpp"
+#include "support/played.hpp"
 
 #include <isostat/checker/verify.hpp>
-#include <isostat/io/run_directory.hpp>
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <cstdlib>
-#include <set>
 
 using namespace isostat;
 using crafted::Ties;
+using played::towards;
 namespace fs = std::filesystem;
 
 namespace {
 
 /// Plays one segment into a folder, every state stored; how it ends does not matter.
-void play(State<2> state, const Segment& segment, Ties ties, std::uint64_t seed, const fs::path& folder) {
-    RunHeader header;
-    header.program = "test";
-    header.settings = R"({"run":{"rule":"most_negative"}})";
-    header.states_every = 1;
-    RunCounters counters;
-    RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
+void play(const State<2>& state, const Segment& segment, Ties ties, std::uint64_t seed, const fs::path& folder) {
     RunOptions options;
     crafted::settle(options, ties);
     options.ties_seed = seed;
-    directory.begin_segment(0, segment, 0, 0);
-    (void)run_segment<2>(state, segment, 0, options, counters, directory);
-    directory.finish(RunStatus::completed, "");
-}
-
-Segment towards(int direction, int equilibria) {
-    Segment segment;
-    segment.direction = direction;
-    segment.equilibria = equilibria;
-    return segment;
+    (void)played::into(folder, state, {segment}, options);
 }
 
 void is_proved(const fs::path& folder) {
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-    BOOST_TEST((run.verdict == Verdict::proved));
-    BOOST_TEST(run.arcs_proved == run.arcs);
+    const RunVerification run = played::proved(folder);
     BOOST_TEST(run.equilibria_proved == run.equilibria);
 }
 
@@ -96,7 +71,7 @@ BOOST_AUTO_TEST_SUITE(checker)
 BOOST_AUTO_TEST_CASE(power_turn_held_coordinate_and_release_are_replayed_and_altered_ones_are_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1, 1), Ties::stop, 1,
+    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/three-disks.json").state, towards(-1), Ties::stop, 1,
          folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).turns_checked == 1);
@@ -119,11 +94,10 @@ BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
     // The turning arc closes 3-bottom; said to close another pair, the record is wrong.
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1, 1), Ties::stop, 1,
-         folder);
+    play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(-1), Ties::stop, 1, folder);
     if (verify_run(folder).arcs == 0) {
         const fs::path other = scratch_folder / "up";
-        play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(+1, 1), Ties::stop, 1,
+        play(read_state<2>(fs::path(ISOSTAT_EXAMPLES) / "turns/four-disks.json").state, towards(1), Ties::stop, 1,
              other);
         is_proved(other);
         return;
@@ -134,7 +108,7 @@ BOOST_AUTO_TEST_CASE(a_contact_that_is_passed_on_the_way_is_found) {
 BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_terms_are_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::mirror_forces(), towards(-1, 1), Ties::first_order, 1, folder);
+    play(crafted::mirror_forces(), towards(-1), Ties::first_order, 1, folder);
     is_proved(folder);
     BOOST_TEST(verify_run(folder).ties_checked == 2);
     const std::string events = scratch::read(folder / "events.jsonl");
@@ -160,7 +134,7 @@ BOOST_AUTO_TEST_CASE(a_tie_of_two_forces_is_replayed_and_altered_first_order_ter
 BOOST_AUTO_TEST_CASE(a_tie_of_two_gaps_is_replayed_and_an_altered_choice_is_found) {
     const scratch::Folder scratch_folder;
     const fs::path folder = scratch_folder / "run";
-    play(crafted::mirror_gaps(), towards(+1, 1), Ties::first_order, 1, folder);
+    play(crafted::mirror_gaps(), towards(1), Ties::first_order, 1, folder);
     is_proved(folder);
     const std::string events = scratch::read(folder / "events.jsonl");
     const bool one = events.find("\"closed\":\"1-bottom\"") != std::string::npos;
@@ -182,7 +156,7 @@ BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_ar
     int ties = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const fs::path folder = scratch_folder / ("mirror" + std::to_string(seed));
-        play(cells::mirror_pairs(), towards(+1, 1), Ties::first_order, seed, folder);
+        play(cells::mirror_pairs(), towards(1), Ties::first_order, seed, folder);
         is_proved(folder);
         ties += verify_run(folder).ties_checked;
         const std::string events = scratch::read(folder / "events.jsonl");
@@ -200,7 +174,7 @@ BOOST_AUTO_TEST_CASE(ties_in_cells_are_replayed_and_altered_first_order_terms_ar
     BOOST_TEST(ties > 5);
     // A hyperstatic start.
     const fs::path folder = scratch_folder / "hyperstatic";
-    play(cells::unfolded(crafted::three_disks(1, 1.1, 1.5, 1, 1), 0), towards(+1, 2), Ties::first_order, 1, folder);
+    play(cells::unfolded(crafted::three_disks(1, 1.1, 1.5, 1, 1), 0), towards(2), Ties::first_order, 1, folder);
     is_proved(folder);
 }
 
@@ -217,7 +191,7 @@ BOOST_AUTO_TEST_CASE(a_hyperstatic_start_and_lattices_are_replayed) {
     std::set<std::string> kinds;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const fs::path folder = scratch_folder / ("lattice" + std::to_string(seed));
-        play(crafted::triangular(3, 2), towards(+1, 3), Ties::first_order, seed, folder);
+        play(crafted::triangular(3, 2), towards(3), Ties::first_order, seed, folder);
         if (fs::file_size(folder / "equilibria.csv") < 600) {
             continue; // not even an equilibrium 0: nothing to check
         }

@@ -2,8 +2,8 @@
 // found.
 #include "checker/logarithm.hpp"
 #include "checker/replay.hpp"
-#include "support/forger.hpp"
 #include "support/mirror.hpp"
+#include "support/played.hpp"
 #include "support/prepared.hpp"
 #include "support/scratch.hpp"
 
@@ -11,12 +11,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <boost/multiprecision/mpfr.hpp>
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 using namespace isostat;
 using namespace isostat::checker;
@@ -28,17 +22,13 @@ namespace {
 void play_whole(State<2> state, int equilibria, const RunOptions& options, const fs::path& folder) {
     RunHeader header;
     header.program = "test";
-    header.settings = fmt::format(R"({{"run":{{"rule":"{}","rule_seed":{},"ties":"{}"}}}})",
-                                  opening_rule_words[static_cast<std::size_t>(options.rule)], options.rule_seed,
-                                  tie_policy_words[static_cast<std::size_t>(options.ties)]);
+    header.settings = played::settings(options);
     header.states_every = 1;
     header.touching = options.at_first_order();
     RunCounters counters;
     RunDirectory directory(folder, header, RunDirectory::Mode::fresh, counters);
     directory.store_start(state);
-    Segment segment;
-    segment.direction = equilibria > 0 ? 1 : -1;
-    segment.equilibria = std::abs(equilibria);
+    const Segment segment = played::towards(equilibria);
     directory.begin_segment(0, segment, 0, 0);
     const SegmentOutcome outcome = run_segment<2>(state, segment, 0, options, counters, directory);
     directory.finish(outcome.completed ? RunStatus::completed : RunStatus::failed,
@@ -46,11 +36,7 @@ void play_whole(State<2> state, int equilibria, const RunOptions& options, const
 }
 
 RunVerification all_is_proved(const fs::path& folder) {
-    const RunVerification run = verify_run(folder);
-    BOOST_TEST(run.wrong == "");
-    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
-    BOOST_TEST((run.verdict == Verdict::proved));
-    BOOST_TEST(run.arcs_proved == run.arcs);
+    const RunVerification run = played::proved(folder);
     return run;
 }
 

@@ -2,6 +2,7 @@
 // Jammed packings of few disks in periodic cells: soft disks that relax under dead forces on the cell, then Newton.
 
 #include "contradictions/piles.hpp"
+#include "support/cells.hpp"
 
 #include <isostat/preparation/preparation.hpp>
 
@@ -212,29 +213,18 @@ inline std::optional<State<2>> make_cell(const CellOptions& options, Random& ran
 
 /// Disks in the cell, but for some that are a period beside it, and another pin: the same packing.
 inline void describe_otherwise(State<2>& state, Random& random) {
-    auto& p = state.packing;
-    const Packing<2> before = p;
-    std::vector<std::array<int, 2>> by;
+    const auto& p = state.packing;
+    std::vector<isostat::Image> by;
     for (std::size_t i = 0; i < p.radius.size(); ++i) {
-        const double up = before.q[2 * i + 1] / before.lattice(1, 1);
-        const double across = (before.q[2 * i] - up * before.lattice(0, 1)) / before.lattice(0, 0);
+        const double up = p.q[2 * i + 1] / p.lattice(1, 1);
+        const double across = (p.q[2 * i] - up * p.lattice(0, 1)) / p.lattice(0, 0);
         const auto beside = [&random] { return random.integer(4) == 0 ? random.integer(3) - 1 : 0; };
-        by.push_back({p.cell.periodic[0] ? beside() - static_cast<int>(std::floor(across)) : 0,
-                      p.cell.periodic[1] ? beside() - static_cast<int>(std::floor(up)) : 0});
-        p.q[2 * i] += by[i][0] * before.lattice(0, 0) + by[i][1] * before.lattice(0, 1);
-        p.q[2 * i + 1] += by[i][1] * before.lattice(1, 1);
+        const int m = p.cell.periodic[0] ? beside() - static_cast<int>(std::floor(across)) : 0;
+        by.push_back(cells::image(m, p.cell.periodic[1] ? beside() - static_cast<int>(std::floor(up)) : 0));
     }
-    for (Contact& c : state.contacts) {
-        if (c.kind == ContactKind::disk_disk) {
-            const auto& i = by[static_cast<std::size_t>(c.i)];
-            const auto& j = by[static_cast<std::size_t>(c.j)];
-            c = isostat::pair_of(c.i, c.j,
-                                 {{static_cast<std::int8_t>(c.image.m[0] + i[0] - j[0]),
-                                   static_cast<std::int8_t>(c.image.m[1] + i[1] - j[1]), 0}});
-        }
-    }
+    state = cells::with_other_representatives(std::move(state), by);
     std::sort(state.contacts.begin(), state.contacts.end());
-    p.cell.pin = random.integer(p.disk_count());
+    state.packing.cell.pin = random.integer(p.disk_count());
 }
 
 } // namespace contradictions

@@ -2,19 +2,14 @@
 // Whether the disks of a cell that carry a force are jammed, by linear programmes in double, against what `inspect`
 // says of the state and what the exact packing says.
 
-#include "contradictions/truth.hpp"
+#include "contradictions/exact.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/crafted/inspection.hpp>
 
 #include <ClpSimplex.hpp>
 #include <CoinPackedMatrix.hpp>
-
-#include <limits>
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace contradictions {
 

@@ -2,12 +2,9 @@
 // Isostatic structures by construction: every disk rests on two earlier things, the upper walls on the outermost disk.
 // Loads are made from the forces that one wants.
 
-#include "contradictions/truth.hpp"
+#include "contradictions/exact.hpp"
 #include "oracle/random.hpp"
-
-#include <cmath>
-#include <numbers>
-#include <optional>
+#include "support/test.hpp"
 
 namespace contradictions {
 

@@ -11,10 +11,6 @@
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
-#include <fmt/format.h>
-
-#include <optional>
-
 namespace contradictions {
 
 namespace fs = std::filesystem;

@@ -1,9 +1,8 @@
 #pragma once
 // Why `verify` leaves a random run undecided: the table of README.md.
 
-#include <algorithm>
-#include <array>
-#include <string>
+#include "support/test.hpp"
+
 #include <string_view>
 
 namespace contradictions {

@@ -3,8 +3,6 @@
 
 #include "contradictions/cell_states.hpp"
 
-#include <functional>
-
 namespace contradictions {
 
 struct StateClass {

@@ -8,12 +8,8 @@
 
 #include <isostat/checker/verify.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <chrono>
-#include <cstdlib>
 #include <iostream>
-#include <map>
 
 using namespace isostat;
 using namespace contradictions;
@@ -188,13 +184,24 @@ RandomRun run_from(const char* name, int direction) {
     return run;
 }
 
-RunVerification verified(const char* name, int direction, const fs::path& folder) {
-    RandomRun run = run_from(name, direction);
+/// That run, played into a folder.
+struct Again {
+    scratch::Folder folder;
     std::vector<Recorded> records;
-    BOOST_REQUIRE(play(run, folder / "run", 0, records));
-    BOOST_TEST_REQUIRE(records.size() == 2U);
-    return verify_run(folder / "run");
-}
+
+    explicit Again(RandomRun run) {
+        BOOST_REQUIRE(play(run, folder / "run", 0, records));
+        BOOST_TEST_REQUIRE(!records.empty());
+    }
+    Again(const char* name, int direction) : Again(run_from(name, direction)) {}
+    [[nodiscard]] std::string events() const { return scratch::read(folder / "run" / "events.jsonl"); }
+    /// It must not be refuted.
+    [[nodiscard]] RunVerification verified() const {
+        const RunVerification answer = verify_run(folder / "run");
+        BOOST_TEST(answer.wrong == "");
+        return answer;
+    }
+};
 
 constexpr std::uint64_t seed = 2100;
 
@@ -265,9 +272,9 @@ BOOST_AUTO_TEST_CASE(nor_those_in_cells_that_were_wrong_once) {
 // Two vertices of one contact list, mirror images to 3e-4 of a radius and with the same box: the checker's steps lead
 // to the other one, in which a pair overlaps.
 BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refuted) {
-    const scratch::Folder folder;
-    const RunVerification answer = verified("mirror_vertices.json", +1, folder.path());
-    BOOST_TEST(answer.wrong == "");
+    const Again run("mirror_vertices.json", +1);
+    const RunVerification answer = run.verified();
+    BOOST_TEST(run.records.size() == 2U);
     BOOST_TEST(answer.arcs == 23);
     BOOST_TEST(answer.undecided.size() == 0U);
     BOOST_TEST(answer.arcs_proved == 23);
@@ -275,62 +282,43 @@ BOOST_AUTO_TEST_CASE(a_run_past_two_vertices_that_mirror_each_other_is_not_refut
 
 // An equilibrium at the very end of its interval: the first limit is at the load where it stands.
 BOOST_AUTO_TEST_CASE(an_arc_that_begins_at_the_load_of_its_equilibrium_is_not_refuted) {
-    const scratch::Folder folder;
-    const auto answer = verified("at_its_limit.json", +1, folder.path());
-    BOOST_TEST(answer.wrong == "");
-    BOOST_TEST(answer.arcs >= 1);
+    const Again run("at_its_limit.json", +1);
+    BOOST_TEST(run.records.size() == 2U);
+    BOOST_TEST(run.verified().arcs >= 1);
 }
 
 // The true vertex is 3e-9 away from the doubles of the stored state, whose gaps are closed to rounding.
 BOOST_AUTO_TEST_CASE(a_stored_state_far_from_its_vertex_is_not_refuted) {
-    const scratch::Folder folder;
-    RandomRun run = run_from("far_from_its_vertex.json", +1);
-    std::vector<Recorded> records;
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+    (void)Again("far_from_its_vertex.json", +1).verified();
 }
 
 // Nor is the start that was given, 2.7e-7 from its true vertex with contacts as open as that.
 BOOST_AUTO_TEST_CASE(a_start_far_from_its_vertex_is_not_refuted) {
-    const scratch::Folder folder;
-    RandomRun run = run_from("../definition/11-same-height-refuted.json", -1);
-    std::vector<Recorded> records;
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    BOOST_TEST(!records.empty());
-    write_state<2>(folder.path() / "run" / "start.json", run.start); // as the program does
-    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+    const RandomRun run = run_from("../definition/11-same-height-refuted.json", -1);
+    const Again again(run);
+    write_state<2>(again.folder / "run" / "start.json", run.start); // as the program does
+    (void)again.verified();
 }
 
 // W counts what the load does to the degrees of freedom: a force on a fixed disk does nothing.
 BOOST_AUTO_TEST_CASE(a_force_on_a_fixed_disk_has_no_part_in_the_potential) {
-    const scratch::Folder folder;
-    RandomRun run = run_from("force_on_a_fixed_disk.json", +1);
-    std::vector<Recorded> records;
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    BOOST_TEST_REQUIRE(!records.empty());
-    BOOST_TEST(records.front().record.potential < 10);
-    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+    const Again run("force_on_a_fixed_disk.json", +1);
+    BOOST_TEST(run.records.front().record.potential < 10);
+    (void)run.verified();
 }
 
 // Steered ahead to an end that is none; the next proposal fails at once, and there is no end to prove.
 BOOST_AUTO_TEST_CASE(a_rearrangement_steered_in_vain_ends_with_words) {
-    const scratch::Folder folder;
-    std::vector<Recorded> records;
-    RandomRun run = run_from("steered_in_vain.json", +1);
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
+    (void)Again("steered_in_vain.json", +1).verified();
 }
 
 // The power of the load jumps where the motion of a nearly singular list turns round: no coordinate is held there, and
 // no equilibrium is reported.
 BOOST_AUTO_TEST_CASE(a_power_that_changes_its_sign_without_vanishing_is_no_turn) {
-    const scratch::Folder folder;
-    std::vector<Recorded> records;
-    RandomRun run = run_from("power_jump.json", -1);
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    BOOST_TEST(verify_run(folder.path() / "run").wrong == "");
-    BOOST_TEST(scratch::read(folder.path() / "run" / "events.jsonl").find("\"power_turn\":true") == std::string::npos);
-    for (const Recorded& recorded : records) {
+    const Again run("power_jump.json", -1);
+    (void)run.verified();
+    BOOST_TEST(run.events().find("\"power_turn\":true") == std::string::npos);
+    for (const Recorded& recorded : run.records) {
         BOOST_TEST(recorded.record.held == 0);
     }
 }
@@ -338,12 +326,9 @@ BOOST_AUTO_TEST_CASE(a_power_that_changes_its_sign_without_vanishing_is_no_turn)
 // The rule opens forces of 1e-7 and of 1e-15: the power is as small where the arc starts, and turns at once. The first
 // turn is found; the second is too near, and the run says so (W rose along the first arc, and the run ended with that).
 BOOST_AUTO_TEST_CASE(a_power_that_turns_right_after_the_start_is_seen_to_turn) {
-    const scratch::Folder folder;
-    std::vector<Recorded> records;
     RandomRun run = run_from("small_power_at_start.json", +1);
     run.options.rule = OpeningRule::least_negative;
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    const std::string events = scratch::read(folder.path() / "run" / "events.jsonl");
+    const std::string events = Again(run).events();
     BOOST_TEST(std::count(events.begin(), events.end(), '\n') >= 391);
     BOOST_TEST(events.find("\"work\":-") == std::string::npos);
     BOOST_TEST(events.find("\"opened\":\"32-left\",\"closed\":\"held") != std::string::npos);
@@ -352,17 +337,12 @@ BOOST_AUTO_TEST_CASE(a_power_that_turns_right_after_the_start_is_seen_to_turn) {
 // Small beside its terms, the power falls below 0 and rises again within one step: the slope that old factors gave hid
 // it, and the run went on to a contact (25-68) that the arc does not reach.
 BOOST_AUTO_TEST_CASE(a_power_that_is_negative_only_within_a_step_is_seen_to_turn) {
-    const scratch::Folder folder;
-    std::vector<Recorded> records;
     RandomRun run = run_from("power_dip.json", +1);
     run.options.certify = CertifyLevel::arcs;
-    BOOST_REQUIRE(play(run, folder.path() / "run", 0, records));
-    const std::string events = scratch::read(folder.path() / "run" / "events.jsonl");
-    BOOST_TEST(events.find("\"opened\":\"22-31\",\"closed\":\"held y of grain 31\",\"power_turn\":true") !=
+    const Again again(run);
+    BOOST_TEST(again.events().find("\"opened\":\"22-31\",\"closed\":\"held y of grain 31\",\"power_turn\":true") !=
                std::string::npos);
-    const RunVerification verified = verify_run(folder.path() / "run");
-    BOOST_TEST(verified.wrong == "");
-    BOOST_TEST(verified.undecided.empty());
+    BOOST_TEST(again.verified().undecided.empty());
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -10,15 +10,10 @@
 #include <isostat/crafted/inspection.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <iomanip>
 #include <iostream>
-#include <map>
-#include <sstream>
 
 using namespace isostat;
 using namespace contradictions;

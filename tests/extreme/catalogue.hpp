@@ -3,14 +3,13 @@
 // rows become a table at the end. A wrong answer is a failed test, and so is an outcome
 // that is not that of the committed table; an honest refusal is a row.
 
-#include "oracle/dense_forces.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/preparation/preparation.hpp>
 #include <isostat/trajectory/trajectory.hpp>
 
 #include <chrono>
-#include <string>
 
 namespace extreme {
 
@@ -41,9 +40,9 @@ class Clock {
 };
 
 /// Inspects a state and checks what was said about it:
-/// - proved: every force positive in lexicographic order, in 400 bits, and every force within its bound; no pair
+/// - proved: every force positive in lexicographic order, to 200 digits, and every force within its bound; no pair
 ///   overlaps by more than the rounding of the coordinates;
-/// - refuted: a force that is negative in 400 bits, or a pair that overlaps, or a matrix that is singular.
+/// - refuted: a force that is negative to 200 digits, or a pair that overlaps, or a matrix that is singular.
 /// Adds the row. Returns the inspection, if there is one.
 std::optional<Inspection<2>> inspect(const std::string& family, const std::string& parameter, const State<2>& state);
 

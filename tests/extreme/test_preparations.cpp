@@ -1,11 +1,6 @@
 // Preparations that nobody planned for: from the loose start to the proof, or to an honest end.
 #include "extreme/catalogue.hpp"
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <cmath>
-
 using namespace isostat;
 
 namespace {

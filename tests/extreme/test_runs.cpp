@@ -5,12 +5,6 @@
 
 #include <isostat/certificate/inspect.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
 using namespace isostat;
 
 namespace {
@@ -28,7 +22,7 @@ PreparationOptions disks_of(int count, double smallest = 1, double largest = 2) 
     return options;
 }
 
-/// One row for a run; the state where it ends is a row of its own, checked in 400 bits. W never grows.
+/// One row for a run; the state where it ends is a row of its own, checked to 200 digits. W never grows.
 void follow(const std::string& family, const std::string& parameter, State<2> state, const Segment& segment) {
     BOOST_TEST_CONTEXT(family << ", " << parameter) {
         RunOptions options;
@@ -55,7 +49,7 @@ void follow(const std::string& family, const std::string& parameter, State<2> st
         }
         row.rung = to_string(rung);
         row.outcome = "proved";
-        row.checked = "W along every arc; the last state in 400 bits (next row)";
+        row.checked = "W along every arc; the last state to 200 digits (next row)";
         if (!outcome.completed) {
             const FailureKind kind = outcome.failure->kind;
             row.outcome = kind == FailureKind::undecided || kind == FailureKind::tie ? "undecided" : "refused";

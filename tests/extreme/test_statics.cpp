@@ -4,12 +4,6 @@
 
 #include <isostat/certificate/inspect.hpp>
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <cmath>
-#include <utility>
-
 using namespace isostat;
 using namespace crafted;
 

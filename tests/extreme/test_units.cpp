@@ -2,11 +2,6 @@
 #include "extreme/catalogue.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-#include <fmt/format.h>
-
-#include <cmath>
-
 using namespace isostat;
 using namespace crafted;
 

@@ -1,15 +1,10 @@
+#include "linear/disturbed.hpp"
 #include "linear/factorisation.hpp"
+#include "support/regular.hpp"
+#include "support/test.hpp"
 #include "support/threads.hpp"
 
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
-#include <random>
 
 using namespace isostat;
 
@@ -101,10 +96,9 @@ BOOST_AUTO_TEST_CASE(exchanged_operators_solve_with_the_exchanged_matrix) {
 }
 
 BOOST_AUTO_TEST_CASE(copies_of_fresh_factors_solve_side_by_side_like_one_alone, *boost::unit_test::label("threads")) {
-    const auto proved = IsostaticStructure<2>::prove(vertex400().packing, vertex400().contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const ApproximateInverse inverse(proved.value().matrix());
-    const std::vector<double> rhs = some_numbers(static_cast<std::size_t>(proved.value().size()));
+    const auto proved = crafted::Regular::proved(vertex400());
+    const ApproximateInverse inverse(proved.matrix());
+    const std::vector<double> rhs = some_numbers(static_cast<std::size_t>(proved.size()));
     std::vector<double> forces = rhs;
     std::vector<double> velocities = rhs;
     inverse.forces(forces);
@@ -227,14 +221,10 @@ BOOST_AUTO_TEST_CASE(renewed_factors_take_over_the_order_until_they_have_filled_
 
 BOOST_AUTO_TEST_CASE(solving_until_it_is_enough_says_how_far_it_is_from_the_solution) {
     const State<2> state = vertex400();
-    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    sparse::Matrix<double> stale = proved.value().matrix();
-    for (std::size_t e = 0; e < stale.value.size(); ++e) {
-        stale.value[e] *= 1 + 1e-3 * std::sin(static_cast<double>(e));
-    }
-    const Factorisation taken_over(proved.value(), ApproximateInverse(stale));
-    const std::vector<double> load(static_cast<std::size_t>(proved.value().size()), 1.0);
+    const auto proved = crafted::Regular::proved(state);
+    const auto stale = disturbed(proved.matrix(), 1e-3);
+    const Factorisation taken_over(proved, ApproximateInverse(stale));
+    const std::vector<double> load(static_cast<std::size_t>(proved.size()), 1.0);
     auto solution = load;
     taken_over.solve_forces(solution);
     int passes = taken_over.passes();
@@ -262,16 +252,12 @@ BOOST_AUTO_TEST_CASE(solving_until_it_is_enough_says_how_far_it_is_from_the_solu
 
 BOOST_AUTO_TEST_CASE(what_is_enough_scales_with_the_load) {
     const State<2> state = vertex400();
-    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    sparse::Matrix<double> stale = proved.value().matrix();
-    for (std::size_t e = 0; e < stale.value.size(); ++e) {
-        stale.value[e] *= 1 + 1e-3 * std::sin(static_cast<double>(e));
-    }
+    const auto proved = crafted::Regular::proved(state);
+    const auto stale = disturbed(proved.matrix(), 1e-3);
     std::vector<double> errors;
     for (const double unit : {1.0, 0x1p-70, 0x1p60}) {
-        const Factorisation taken_over(proved.value(), ApproximateInverse(stale));
-        std::vector<double> f(static_cast<std::size_t>(proved.value().size()), unit);
+        const Factorisation taken_over(proved, ApproximateInverse(stale));
+        std::vector<double> f(static_cast<std::size_t>(proved.size()), unit);
         double asked = 0;
         const double said = taken_over.solve_forces_until(f, {}, [&](std::span<const double> now, double error) {
             asked = error;
@@ -287,20 +273,16 @@ BOOST_AUTO_TEST_CASE(what_is_enough_scales_with_the_load) {
 
 BOOST_AUTO_TEST_CASE(when_old_factors_give_up_after_questions_the_forces_are_those_of_new_ones) {
     const State<2> state = vertex400();
-    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation fresh(proved.value());
-    const std::vector<double> load(static_cast<std::size_t>(proved.value().size()), 1.0);
+    const auto proved = crafted::Regular::proved(state);
+    const Factorisation fresh(proved);
+    const std::vector<double> load(static_cast<std::size_t>(proved.size()), 1.0);
     auto solution = load;
     fresh.solve_forces(solution);
     int gave_up_after_questions = 0;
     for (int tenths = 1; tenths <= 30; ++tenths) {
-        sparse::Matrix<double> stale = proved.value().matrix();
-        for (std::size_t e = 0; e < stale.value.size(); ++e) {
-            stale.value[e] *= 1 + 0.005 * tenths * std::sin(static_cast<double>(e));
-        }
+        const auto stale = disturbed(proved.matrix(), 0.005 * tenths);
         for (const double wanted : {0.0, 1e-3}) {
-            const Factorisation taken_over(proved.value(), ApproximateInverse(stale));
+            const Factorisation taken_over(proved, ApproximateInverse(stale));
             auto f = load;
             int questions = 0;
             const double said = taken_over.solve_forces_until(f, {}, [&](std::span<const double>, double error) {

@@ -1,11 +1,11 @@
 // The gate is a fact of the types; the factors solve what they should.
+#include "linear/disturbed.hpp"
 #include "linear/factorisation.hpp"
 #include "statics/statics.hpp"
 #include "support/crafted.hpp"
+#include "support/regular.hpp"
 
 #include <isostat/io/state_file.hpp>
-
-#include <boost/test/unit_test.hpp>
 
 #include <type_traits>
 
@@ -29,17 +29,16 @@ BOOST_AUTO_TEST_SUITE(linear)
 
 BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_other) {
     const State<2> state = three_disks(1, 1.2, 1.4, 1, 1);
-    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation factorisation(proved.value());
-    const auto n = static_cast<std::size_t>(proved.value().size());
+    const auto proved = crafted::Regular::proved(state);
+    const Factorisation factorisation(proved);
+    const auto n = static_cast<std::size_t>(proved.size());
     std::vector<double> together(6 * n);
     for (std::size_t k = 0; k < together.size(); ++k) {
         together[k] = std::sin(static_cast<double>(k));
     }
     const std::vector<double> right_hand_sides = together;
     factorisation.solve_forces(together, 6);
-    const sparse::Matrix<double>& h = proved.value().matrix();
+    const sparse::Matrix<double>& h = proved.matrix();
     for (std::size_t s = 0; s < 6; ++s) {
         std::vector<double> residual(right_hand_sides.begin() + static_cast<long>(s * n),
                                      right_hand_sides.begin() + static_cast<long>((s + 1) * n));
@@ -57,9 +56,8 @@ BOOST_AUTO_TEST_CASE(several_right_hand_sides_are_solved_like_one_after_the_othe
 
 BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at_exactly_0) {
     const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
-    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const IsostaticStructure<2>& structure = proved.value();
+    const auto proved = crafted::Regular::proved(state);
+    const IsostaticStructure<2>& structure = proved;
     const Factorisation whole(structure);
     int blocks = 0;
     for (int slot = 0; slot < structure.size(); ++slot) {
@@ -87,15 +85,11 @@ BOOST_AUTO_TEST_CASE(rattlers_move_in_a_block_of_their_own_and_the_rest_stays_at
 
 BOOST_AUTO_TEST_CASE(a_guess_changes_the_way_and_not_the_forces) {
     const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex400.txt").state;
-    const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    sparse::Matrix<double> stale = proved.value().matrix();
-    for (std::size_t e = 0; e < stale.value.size(); ++e) {
-        stale.value[e] *= 1 + 1e-3 * std::sin(static_cast<double>(e));
-    }
-    const Factorisation fresh(proved.value());
-    const Factorisation taken_over(proved.value(), ApproximateInverse(stale));
-    const auto n = static_cast<std::size_t>(proved.value().size());
+    const auto proved = crafted::Regular::proved(state);
+    const auto stale = disturbed(proved.matrix(), 1e-3);
+    const Factorisation fresh(proved);
+    const Factorisation taken_over(proved, ApproximateInverse(stale));
+    const auto n = static_cast<std::size_t>(proved.size());
     std::vector<double> f(n, 1.0);
     fresh.solve_forces(f);
     const double size = std::abs(*std::max_element(f.begin(), f.end()));
@@ -120,9 +114,8 @@ BOOST_AUTO_TEST_CASE(factors_can_be_moved_and_outlive_their_structure) {
     const State<2> state = two_disks(1, 2, 1, 1);
     std::optional<Factorisation> kept;
     {
-        const auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-        BOOST_TEST_REQUIRE(proved.ok());
-        Factorisation factorisation(proved.value());
+        const auto proved = crafted::Regular::proved(state);
+        Factorisation factorisation(proved);
         kept.emplace(std::move(factorisation));
     }
     std::vector<double> force(6, 0.0);
@@ -133,13 +126,12 @@ BOOST_AUTO_TEST_CASE(factors_can_be_moved_and_outlive_their_structure) {
 
 BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_fresh_ones) {
     const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
-    const auto first = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(first.ok());
-    const Factorisation base(first.value());
+    const auto first = crafted::Regular::proved(state);
+    const Factorisation base(first);
     ApproximateInverse inverse = base.approximate();
     std::vector<Contact> contacts = state.contacts;
     Packing<2> packing = state.packing;
-    const auto n = static_cast<std::size_t>(first.value().size());
+    const auto n = static_cast<std::size_t>(first.size());
     // Contacts give way to held coordinates, one of the places twice, while the grains move a little.
     const std::array<std::size_t, 4> places{10, 77, 10, 150};
     for (std::size_t k = 0; k < places.size(); ++k) {
@@ -176,21 +168,20 @@ BOOST_AUTO_TEST_CASE(factors_taken_over_from_another_structure_solve_as_well_as_
         BOOST_TEST(inverse.exchanges() == static_cast<int>(k) + 1);
     }
     std::vector<double> zero(n, 0.0);
-    Factorisation(first.value(), inverse).solve_forces(zero);
+    Factorisation(first, inverse).solve_forces(zero);
     BOOST_TEST((zero == std::vector<double>(n, 0.0)));
 }
 
 BOOST_AUTO_TEST_CASE(factors_that_do_not_converge_are_replaced_by_fresh_ones) {
     const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(structure.ok());
-    sparse::Matrix<double> other = structure.value().matrix(); // the same pattern, unrelated values
+    const auto structure = crafted::Regular::proved(state);
+    sparse::Matrix<double> other = structure.matrix(); // the same pattern, unrelated values
     for (std::size_t e = 0; e < other.value.size(); ++e) {
         other.value[e] = std::sin(static_cast<double>(e * e + 1));
     }
-    const Factorisation factorisation(structure.value(), ApproximateInverse(other));
-    const Factorisation fresh(structure.value());
-    std::vector<double> a(static_cast<std::size_t>(structure.value().size()), 1.0);
+    const Factorisation factorisation(structure, ApproximateInverse(other));
+    const Factorisation fresh(structure);
+    std::vector<double> a(static_cast<std::size_t>(structure.size()), 1.0);
     std::vector<double> b = a;
     factorisation.solve_forces(a);
     fresh.solve_forces(b);
@@ -202,11 +193,10 @@ BOOST_AUTO_TEST_CASE(factors_that_do_not_converge_are_replaced_by_fresh_ones) {
 
 BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by_fresh_ones) {
     const State<2> state = read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/vertex100.txt").state;
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(structure.ok());
-    const sparse::Matrix<double>& matrix = structure.value().matrix();
-    const auto n = static_cast<std::size_t>(structure.value().size());
-    const Factorisation fresh(structure.value());
+    const auto structure = crafted::Regular::proved(state);
+    const sparse::Matrix<double>& matrix = structure.matrix();
+    const auto n = static_cast<std::size_t>(structure.size());
+    const Factorisation fresh(structure);
     for (const double factor : {0.0, 1e-308, 1e-300, 1e-160, 1e-8, 1e8, 1e160, 1e300}) {
         for (const std::size_t column : {std::size_t{0}, n / 2, n - 1}) {
             sparse::Matrix<double> other = matrix;
@@ -215,7 +205,7 @@ BOOST_AUTO_TEST_CASE(factors_of_a_singular_or_overflowing_matrix_are_replaced_by
                 other.value[e] *= factor;
             }
             for (const bool forces : {true, false}) {
-                const Factorisation factorisation(structure.value(), ApproximateInverse(other));
+                const Factorisation factorisation(structure, ApproximateInverse(other));
                 std::vector<double> a(n, 1.0);
                 std::vector<double> b = a;
                 forces ? factorisation.solve_forces(a) : factorisation.solve_velocities(a);

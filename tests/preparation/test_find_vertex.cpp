@@ -4,12 +4,11 @@
 #include "../../src/preparation/polish.hpp"
 #include "../../src/preparation/programme.hpp"
 #include "check.hpp"
+#include "support/prepared.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
-
-#include <map>
-#include <random>
 
 namespace {
 
@@ -23,16 +22,6 @@ class Noise {
   private:
     std::mt19937_64 engine_;
 };
-
-State<2> prepared(int disks, std::uint64_t seed) {
-    PreparationOptions options;
-    options.disks = disks;
-    options.seed = seed;
-    PreparationReport<2> report;
-    Result<State<2>> result = prepare<2>(options, report);
-    BOOST_REQUIRE(result.ok());
-    return result.value();
-}
 
 /// Disks on a square lattice with noise: no overlap, no contact.
 Packing<2> loose_lattice(int side, unsigned long long seed) {
@@ -50,7 +39,7 @@ Packing<2> loose_lattice(int side, unsigned long long seed) {
 
 double smallest_gap(const Packing<2>& packing) {
     double smallest = std::numeric_limits<double>::infinity();
-    for (const Contact& pair : check::all_pairs(packing)) {
+    for (const Contact& pair : oracle::all_pairs(packing)) {
         smallest = std::min(smallest, gap(packing, pair));
     }
     return smallest;

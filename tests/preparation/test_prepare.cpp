@@ -1,16 +1,13 @@
 // From random disks to a proved vertex: the contract, its invariances, its failures.
 
 #include "check.hpp"
+#include "support/test.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
 #include <isostat/core/machine.hpp>
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <atomic>
-#include <set>
 
 namespace {
 

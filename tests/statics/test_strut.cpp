@@ -8,8 +8,6 @@
 
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/test/unit_test.hpp>
-
 #include <queue>
 
 using namespace isostat;

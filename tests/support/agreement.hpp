@@ -4,12 +4,6 @@
 #include "support/course.hpp"
 #include "support/really_perturbed.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <set>
-#include <string>
-#include <vector>
-
 namespace crafted {
 
 /// Both runs, for several directions rho: the symbolic one may end undecided where first order does not tell, and is

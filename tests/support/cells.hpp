@@ -6,10 +6,6 @@
 
 #include <isostat/contact/state.hpp>
 
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 namespace cells {
 
 using ::crafted::DiskAt;

@@ -1,12 +1,9 @@
 #pragma once
 // A run of one segment, kept: events, arcs, equilibria, states, and how it ended.
 
+#include "support/test.hpp"
+
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <fmt/format.h>
-
-#include <string>
-#include <vector>
 
 namespace crafted {
 

@@ -3,13 +3,10 @@
 // forces F1 (right wall) and F2 (top wall): reference lengths 1, so that stress and force have the same number.
 
 #include "support/recorder.hpp"
+#include "support/test.hpp"
 
 #include <isostat/contact/state.hpp>
 #include <isostat/trajectory/trajectory.hpp>
-
-#include <cmath>
-#include <string>
-#include <vector>
 
 namespace crafted {
 

@@ -8,11 +8,6 @@
 #include <isostat/core/error.hpp>
 #include <isostat/io/certificate_file.hpp>
 
-#include <boost/test/unit_test.hpp>
-
-#include <filesystem>
-#include <string>
-
 namespace forger {
 
 /// Makes every digest in checkpoint.json that of what the folder holds now, and its state that of states/last.json.

@@ -3,9 +3,6 @@
 
 #include "support/crafted.hpp"
 
-#include <cmath>
-#include <vector>
-
 namespace crafted {
 
 /// Two disks of radius 3 on a fixed one of radius 2, pushed together by 12, under the top wall; weights 1. Loading

@@ -1,12 +1,9 @@
 #pragma once
 // A packing to start from.
 
+#include "support/test.hpp"
+
 #include <isostat/preparation/preparation.hpp>
-
-#include <boost/test/unit_test.hpp>
-
-#include <cstdint>
-#include <string>
 
 /// The first equilibrium of random disks, diameters 1 to 2.
 inline isostat::State<2> prepared(int disks, std::uint64_t seed) {

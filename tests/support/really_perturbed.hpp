@@ -5,10 +5,6 @@
 #include "statics/first_order_backbone.hpp"
 #include "support/crafted.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <vector>
-
 namespace crafted {
 
 /// The contacts that a run under `choose` starts from.

@@ -4,12 +4,6 @@
 #include "support/crafted.hpp"
 #include "support/prepared.hpp"
 
-#include <boost/test/unit_test.hpp>
-
-#include <functional>
-#include <numeric>
-#include <random>
-
 namespace crafted {
 
 using namespace isostat;

@@ -1,9 +1,9 @@
 #pragma once
 // How many random trials: a number in the test, times ISOSTAT_TEST_SCALE.
 
-#include <cstdlib>
+#include "support/test.hpp"
+
 #include <stdexcept>
-#include <string>
 
 namespace isostat::testing {
 

@@ -1,12 +1,9 @@
 #pragma once
 // A folder of its own for a test, deleted at the end, and small helpers for files.
 
-#include <unistd.h>
+#include "support/test.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <string>
+#include <unistd.h>
 
 namespace scratch {
 

@@ -3,10 +3,6 @@
 
 #include "support/crafted.hpp"
 
-#include <array>
-#include <cmath>
-#include <vector>
-
 namespace crafted {
 
 /// Infinitesimal loads: along x on the strut, and on the grain along the directions of its two contacts.

@@ -1,17 +1,11 @@
 // Trajectories in periodic cells: three sequences of an independent program, and what is a matter of description.
-#include "support/cells.hpp"
-#include "support/same_sequence.hpp"
+#include "support/disguised_cells.hpp"
 #include "support/scratch.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/io/state_file.hpp>
 
-#include <boost/test/unit_test.hpp>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
 
 using namespace isostat;
 using crafted::Disguised;
@@ -73,66 +67,6 @@ void check_sequence(const Played& played, const Json& sequence, bool lengths_too
     BOOST_TEST(step == played.records.arcs.size());
 }
 
-/// Disk i stored in another period, k[i] periods further: the same packing.
-Disguised shifted(const State<2>& start, const std::vector<std::array<int, 2>>& k) {
-    State<2> state = start;
-    const Packing<2>& p = start.packing;
-    for (std::size_t i = 0; i < k.size(); ++i) {
-        state.packing.q[2 * i] += k[i][0] * p.lattice(0, 0) + k[i][1] * p.lattice(0, 1);
-        state.packing.q[2 * i + 1] += k[i][1] * p.length(1);
-    }
-    snap_to_grid(state.packing);
-    const auto moved = [k](int sign) {
-        return [k, sign](const Contact& c) {
-            if (c.kind != ContactKind::disk_disk) {
-                return c;
-            }
-            const auto& i = k[static_cast<std::size_t>(c.i)];
-            const auto& j = k[static_cast<std::size_t>(c.j)];
-            return cells::across(c.i, c.j, c.image.m[0] + sign * (i[0] - j[0]), c.image.m[1] + sign * (i[1] - j[1]));
-        };
-    };
-    return crafted::disguised(std::move(state), moved(1), moved(-1));
-}
-
-/// Disks in the opposite order.
-Disguised reversed(const State<2>& start) {
-    State<2> state = start;
-    const int n = start.packing.disk_count();
-    for (int i = 0; i < n; ++i) {
-        const auto to = static_cast<std::size_t>(n - 1 - i);
-        const auto from = static_cast<std::size_t>(i);
-        state.packing.radius[to] = start.packing.radius[from];
-        for (std::size_t a = 0; a < 2; ++a) {
-            state.packing.q[2 * to + a] = start.packing.q[2 * from + a];
-            state.load.infinitesimal[2 * to + a] = start.load.infinitesimal[2 * from + a];
-        }
-    }
-    state.packing.cell.pin = n - 1 - start.packing.cell.pin;
-    const auto rename = [n](const Contact& c) {
-        return c.kind == ContactKind::disk_disk ? pair_of(n - 1 - c.i, n - 1 - c.j, c.image)
-                                                : Contact{c.kind, n - 1 - c.i, c.j};
-    };
-    return crafted::disguised(std::move(state), rename, rename);
-}
-
-/// x and y exchanged. \pre no tilt
-Disguised transposed(const State<2>& start) {
-    Disguised other = crafted::exchanged(start);
-    State<2>& state = other.state;
-    const auto swap_axes = [](auto& pair) { std::swap(pair[0], pair[1]); };
-    swap_axes(state.packing.cell.periodic);
-    swap_axes(state.packing.cell.period_moves);
-    swap_axes(state.packing.walls.lower);
-    swap_axes(state.packing.walls.upper);
-    state.contacts = start.contacts;
-    const auto exchange = [](const Contact& c) {
-        return c.kind == ContactKind::disk_disk ? cells::across(c.i, c.j, c.image.m[1], c.image.m[0])
-                                                : Contact{c.kind, c.i, 1 - c.j};
-    };
-    return crafted::disguised(std::move(state), exchange, exchange);
-}
-
 /// All disks moved along the periodic axes.
 Disguised elsewhere(const State<2>& start) {
     State<2> state = start;
@@ -140,17 +74,6 @@ Disguised elsewhere(const State<2>& start) {
         state.packing.q[k] += start.packing.cell.periodic[k % 2] ? (k % 2 == 0 ? 1.25 : -0.375) : 0;
     }
     return crafted::disguised(std::move(state), crafted::same, crafted::same);
-}
-
-/// Period vectors a and b + times a instead of a and b. \pre the tilt moves, no shear stress
-Disguised in_other_basis(const State<2>& start, int times) {
-    State<2> state = start;
-    state.packing.q[state.packing.tilt_at(0, 1)] += times * start.packing.length(0);
-    const auto moved = [](int by) {
-        return
-            [by](const Contact& c) { return cells::across(c.i, c.j, c.image.m[0] - by * c.image.m[1], c.image.m[1]); };
-    };
-    return crafted::disguised(std::move(state), moved(times), moved(-times));
 }
 
 /// Two disks are pulled apart; a force across a channel is borne by its walls.
@@ -220,12 +143,12 @@ BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
     for (const std::string& name : names) {
         BOOST_TEST_CONTEXT(name) {
             const State<2> start = start_of(name);
-            std::vector<std::array<int, 2>> k(16, {0, 0});
+            std::vector<Image> k(16);
             const int along_y = start.packing.cell.periodic[1] ? 1 : 0;
-            k[3] = {1, 0};
-            k[8] = {0, along_y};
-            k[9] = {0, -along_y};
-            const Disguised other = shifted(start, k);
+            k[3] = cells::image(1, 0);
+            k[8] = cells::image(0, along_y);
+            k[9] = cells::image(0, -along_y);
+            const Disguised other = cells::shifted(start, k);
             const Played a = play(start, +1, 6);
             const Played b = play(other.state, +1, 6);
             BOOST_TEST_REQUIRE(b.outcome.completed, b.why());
@@ -236,9 +159,9 @@ BOOST_AUTO_TEST_CASE(whichever_image_of_a_disk_is_stored) {
 
 BOOST_AUTO_TEST_CASE(a_disk_that_rolled_many_periods_away_ends_the_run_with_words) {
     const State<2> start = start_of("rect_16");
-    const State<2> near = shifted(start, std::vector<std::array<int, 2>>(16, {23, 0})).state;
+    const State<2> near = cells::shifted(start, std::vector<Image>(16, cells::image(23, 0))).state;
     BOOST_TEST(play(near, +1, 1).outcome.completed);
-    const State<2> far = shifted(start, std::vector<std::array<int, 2>>(16, {28, 0})).state;
+    const State<2> far = cells::shifted(start, std::vector<Image>(16, cells::image(28, 0))).state;
     const Played played = play(far, +1, 1);
     BOOST_TEST(!played.outcome.completed);
     BOOST_TEST((played.why().find("periods from the origin") != std::string::npos), played.why());
@@ -250,13 +173,13 @@ BOOST_AUTO_TEST_CASE(in_whichever_order_place_and_basis) {
         BOOST_TEST_CONTEXT(name) {
             const State<2> start = start_of(name);
             const Played played = play(start, +1, 6);
-            crafted::check_same_sequence(played, reversed(start), 6);
+            crafted::check_same_sequence(played, cells::reversed(start), 6);
             crafted::check_same_sequence(played, elsewhere(start), 6);
             if (name == "tilt_16") {
-                crafted::check_same_sequence(played, in_other_basis(start, 1), 6);
-                crafted::check_same_sequence(played, in_other_basis(start, -1), 6);
+                crafted::check_same_sequence(played, cells::in_other_basis(start, 1), 6);
+                crafted::check_same_sequence(played, cells::in_other_basis(start, -1), 6);
             } else {
-                crafted::check_same_sequence(played, transposed(start), 6);
+                crafted::check_same_sequence(played, cells::transposed(start), 6);
             }
         }
     }

@@ -1,8 +1,10 @@
-// Proved bounds against a reference in 100 digits: the bound is never below the error, and it is not useless.
+// Proved bounds against the truth to 200 digits: the bound is never below the error, and it is not useless.
 #include "contact/candidates.hpp"
 #include "oracle/random.hpp"
+#include "oracle/truth.hpp"
 #include "statics/statics.hpp"
 #include "support/crafted.hpp"
+#include "support/regular.hpp"
 #include "verified/configuration.hpp"
 #include "verified/force_ladder.hpp"
 #include "verified/vertex_bounds.hpp"
@@ -10,142 +12,55 @@
 #include <isostat/io/state_file.hpp>
 #include <isostat/preparation/preparation.hpp>
 
-#include <boost/multiprecision/cpp_dec_float.hpp>
-#include <boost/test/unit_test.hpp>
-
 using namespace isostat;
 using namespace crafted;
 
 namespace {
 
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_dec_float<100>, boost::multiprecision::et_off>;
-using Dense = std::vector<std::vector<Real>>;
+using oracle::Real;
+using Vector = oracle::Truth::Vector;
 
-/// H with unit normals of the stored coordinates, to 100 digits.
-Dense reference_matrix(const Packing<2>& packing, const std::vector<Contact>& contacts) {
-    const DofMap<2> dofs(packing);
-    Dense h(static_cast<std::size_t>(dofs.dof_count()), std::vector<Real>(contacts.size(), Real(0)));
-    const auto add = [&](int coordinate, std::size_t l, const Real& value) {
-        const int dof = dofs.dof_of(static_cast<std::size_t>(coordinate));
-        if (dof >= 0) {
-            h[static_cast<std::size_t>(dof)][l] += value;
-        }
-    };
-    for (std::size_t l = 0; l < contacts.size(); ++l) {
-        const Contact& c = contacts[l];
-        if (c.kind == ContactKind::disk_disk) {
-            const Real dx = Real(packing.coordinate(DiskId(c.j), 0)) - Real(packing.coordinate(DiskId(c.i), 0));
-            const Real dy = Real(packing.coordinate(DiskId(c.j), 1)) - Real(packing.coordinate(DiskId(c.i), 1));
-            const Real d = sqrt(dx * dx + dy * dy);
-            add(2 * c.i, l, dx / d);
-            add(2 * c.i + 1, l, dy / d);
-            add(2 * c.j, l, -dx / d);
-            add(2 * c.j + 1, l, -dy / d);
-        } else if (c.kind == ContactKind::lower_wall) {
-            add(2 * c.i + c.j, l, Real(-1));
-        } else if (c.kind == ContactKind::upper_wall) {
-            add(2 * c.i + c.j, l, Real(1));
-            add(2 * packing.disk_count() + c.j, l, Real(-1));
-        }
-    }
-    return h;
+void scale(Vector& x) {
+    const Real size = sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real(0)));
+    std::for_each(x.begin(), x.end(), [&size](Real& c) { c /= size; });
 }
 
-/// Inverse by Gauss-Jordan with partial pivoting; empty when singular to 80 digits.
-Dense inverse(Dense a) {
-    const std::size_t n = a.size();
-    Dense b(n, std::vector<Real>(n, Real(0)));
-    for (std::size_t i = 0; i < n; ++i) {
-        b[i][i] = 1;
-    }
-    for (std::size_t k = 0; k < n; ++k) {
-        std::size_t pivot = k;
-        for (std::size_t i = k; i < n; ++i) {
-            if (abs(a[i][k]) > abs(a[pivot][k])) {
-                pivot = i;
-            }
-        }
-        if (abs(a[pivot][k]) < Real("1e-80")) {
-            return {};
-        }
-        std::swap(a[k], a[pivot]);
-        std::swap(b[k], b[pivot]);
-        const Real scale = 1 / a[k][k];
-        for (std::size_t j = 0; j < n; ++j) {
-            a[k][j] *= scale;
-            b[k][j] *= scale;
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            if (i != k && a[i][k] != 0) {
-                const Real factor = a[i][k];
-                for (std::size_t j = 0; j < n; ++j) {
-                    a[i][j] -= factor * a[k][j];
-                    b[i][j] -= factor * b[k][j];
-                }
-            }
+/// A lower bound of |H^-1|_2 that converges to it: power iteration on H^-T H^-1.
+Real norm_of_inverse(oracle::SquareMatrix<Real> h) {
+    oracle::SquareMatrix<Real> transposed(h.size());
+    for (std::size_t i = 0; i < h.size(); ++i) {
+        for (std::size_t j = 0; j < h.size(); ++j) {
+            transposed(i, j) = h(j, i);
         }
     }
-    return b;
-}
-
-/// A lower bound of |A|_2 that converges to it: power iteration on A^T A.
-Real spectral_norm(const Dense& a, int iterations) {
-    const std::size_t n = a.size();
-    std::vector<Real> x(n, Real(1));
-    for (std::size_t i = 0; i < n; ++i) {
-        x[i] += Real(static_cast<int>(i % 7)) / 10;
+    BOOST_TEST_REQUIRE((h.factorise() && transposed.factorise()));
+    Vector x(h.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i] = Real(1) + Real(static_cast<int>(i % 7)) / 10;
     }
     Real norm = 0;
-    for (int k = 0; k < iterations; ++k) {
-        Real size = 0;
-        for (const Real& c : x) {
-            size += c * c;
-        }
-        size = sqrt(size);
-        std::vector<Real> y(n, Real(0));
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t j = 0; j < n; ++j) {
-                y[i] += a[i][j] * x[j] / size;
-            }
-        }
-        norm = 0;
-        for (const Real& c : y) {
-            norm += c * c;
-        }
-        norm = sqrt(norm);
-        std::fill(x.begin(), x.end(), Real(0));
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t j = 0; j < n; ++j) {
-                x[j] += a[i][j] * y[i];
-            }
-        }
+    for (int k = 0; k < 30; ++k) {
+        scale(x);
+        x = h.solve(x);
+        norm = sqrt(std::inner_product(x.begin(), x.end(), x.begin(), Real(0)));
+        x = transposed.solve(x);
     }
     return norm;
 }
 
-/// Bounds of one structure against the reference; returns whether the inverse bound was proved.
-bool check(const Packing<2>& packing, const std::vector<Contact>& contacts, const std::vector<double>& force) {
-    auto proved = IsostaticStructure<2>::prove(packing, contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const IsostaticStructure<2>& structure = proved.value();
-    const Factorisation factorisation(structure);
-    InverseBoundCache cache;
-    const InverseBound bound = bound_inverse(structure, factorisation, cache);
-    const Dense reference = inverse(reference_matrix(packing, contacts));
-    BOOST_TEST_REQUIRE(!reference.empty());
-    if (bound.verdict != Verdict::proved) {
+/// Bounds of one structure against the truth; returns whether the inverse bound was proved.
+bool check(const State<2>& state, const std::vector<double>& force) {
+    const Regular at(state);
+    if (at.inverse.verdict != Verdict::proved) {
         return false;
     }
-    const Real norm = spectral_norm(reference, 30);
-    BOOST_TEST(Real(bound.sigma_min) * norm <= 1,
-               "sigma_min " << bound.sigma_min << " above the true one " << 1 / norm.convert_to<double>());
-    std::vector<Real> exact(force.size(), Real(0));
-    for (std::size_t l = 0; l < exact.size(); ++l) {
-        for (std::size_t i = 0; i < exact.size(); ++i) {
-            exact[l] += reference[l][i] * Real(force[i]);
-        }
-    }
-    ForceSolution solution = solve_forces(structure, factorisation, bound, force);
+    oracle::SquareMatrix<Real> h = oracle::Truth(state, oracle::At::stored).contact_matrix();
+    const Real norm = norm_of_inverse(h);
+    BOOST_TEST(Real(at.inverse.sigma_min) * norm <= 1,
+               "sigma_min " << at.inverse.sigma_min << " above the true one " << 1 / norm.convert_to<double>());
+    BOOST_TEST_REQUIRE(h.factorise());
+    const Vector exact = h.solve(Vector(force.begin(), force.end()));
+    ForceSolution solution = solve_forces(at.structure, at.factorisation, at.inverse, force);
     const auto error = [&] {
         Real worst = 0;
         for (std::size_t l = 0; l < exact.size(); ++l) {
@@ -154,16 +69,15 @@ bool check(const Packing<2>& packing, const std::vector<Contact>& contacts, cons
         }
         return worst;
     };
-    const Real in_double = error();
-    BOOST_TEST(in_double <= Real(solution.bound), "double: error above the bound");
+    BOOST_TEST(error() <= Real(solution.bound), "double: error above the bound");
     const double double_bound = solution.bound;
-    ForceLadder<2> ladder(packing, structure, factorisation, bound);
+    ForceLadder<2> ladder(state.packing, at.structure, at.factorisation, at.inverse);
     const int part = ladder.add(force);
     BOOST_TEST_REQUIRE(ladder.climb());
     solution = ladder.solution(part);
     BOOST_TEST(error() <= Real(solution.bound),
                "double-double: error " << error().convert_to<double>() << " above the bound " << solution.bound);
-    if (bound.sigma_min > 1e-10) {
+    if (at.inverse.sigma_min > 1e-10) {
         BOOST_TEST(solution.bound < 1e-8 * double_bound);
     }
     return true;
@@ -196,8 +110,7 @@ BOOST_AUTO_TEST_CASE(bounds_hold_on_prepared_packings) {
                 BOOST_TEST_MESSAGE("n = " << n << ", seed " << seed << ": " << state.failure().message());
                 continue;
             }
-            const Packing<2>& packing = state.value().packing;
-            BOOST_TEST(check(packing, state.value().contacts, state.value().load.external_force(packing)));
+            BOOST_TEST(check(state.value(), state.value().load.external_force(state.value().packing)));
         }
     }
 }
@@ -206,7 +119,7 @@ BOOST_AUTO_TEST_CASE(bounds_hold_near_singular_matrices) {
     int proved = 0;
     for (const double angle : {0.5, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13}) {
         const State<2> state = nearly_collinear(angle);
-        proved += check(state.packing, state.contacts, {0.3, -1}) ? 1 : 0;
+        proved += check(state, {0.3, -1}) ? 1 : 0;
     }
     BOOST_TEST(proved >= 7); // by rows where the Cholesky route ends
 }
@@ -226,13 +139,12 @@ BOOST_AUTO_TEST_CASE(an_exactly_collinear_strut_is_never_proved_regular) {
 
 BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_regular) {
     const State<2> state = nearly_collinear(1e-10); // too near for the first route
-    const auto structure = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(structure.ok());
-    const Factorisation factorisation(structure.value());
+    const auto structure = crafted::Regular::proved(state);
+    const Factorisation factorisation(structure);
     for (const bool worth : {false, true}) {
         InverseBoundCache cache;
         int asked = 0;
-        const InverseBound bound = bound_inverse(structure.value(), factorisation, cache, [&] {
+        const InverseBound bound = bound_inverse(structure, factorisation, cache, [&] {
             ++asked;
             return worth;
         });
@@ -244,25 +156,21 @@ BOOST_AUTO_TEST_CASE(the_long_routes_to_a_bound_are_for_structures_that_may_be_r
 BOOST_AUTO_TEST_CASE(the_true_vertex_lies_within_the_radius) {
     // Two disks: the true vertex is known in closed form.
     const State<2> state = two_disks(1, 2, 1, 1);
-    auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation factorisation(proved.value());
-    InverseBoundCache cache;
-    const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
+    const Regular at(state);
     const Real root2 = sqrt(Real(2));
     const std::vector<Real> exact{1, 1, 1 + 2 * root2, 2, 3 + 2 * root2, 4};
     for (const int way : {0, 1, 2}) {
         const bool extended = way == 2;
         const VertexEnclosure vertex =
-            extended   ? enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound)
-            : way == 1 ? enclose_vertex(state.packing, proved.value(), factorisation, bound)
-                       : enclose_vertex(state.packing, proved.value(), bound);
+            extended   ? enclose_vertex_double_double(state.packing, at.structure, at.factorisation, at.inverse)
+            : way == 1 ? enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse)
+                       : enclose_vertex(state.packing, at.structure, at.inverse);
         BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
         Real square = 0;
         for (std::size_t k = 0; k < exact.size(); ++k) {
-            const Real at =
+            const Real place =
                 Real(state.packing.q[k]) + (vertex.correction.empty() ? Real(0) : Real(vertex.correction[k]));
-            square += (at - exact[k]) * (at - exact[k]);
+            square += (place - exact[k]) * (place - exact[k]);
         }
         BOOST_TEST(sqrt(square) <= Real(vertex.radius));
         BOOST_TEST(vertex.radius < (extended ? 1e-26 : way == 1 ? 2e-15 : 1e-13));
@@ -285,13 +193,10 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
         if (moved.packing.cell.any()) {
             snap_to_grid(moved.packing);
         }
-        auto proved = IsostaticStructure<2>::prove(moved.packing, moved.contacts);
-        BOOST_TEST_REQUIRE(proved.ok());
-        const Factorisation factorisation(proved.value());
-        InverseBoundCache cache;
-        const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
-        const VertexEnclosure step = enclose_vertex(moved.packing, proved.value(), factorisation, bound);
-        const VertexEnclosure fine = enclose_vertex_double_double(moved.packing, proved.value(), factorisation, bound);
+        const Regular at(moved);
+        const VertexEnclosure step = enclose_vertex(moved.packing, at.structure, at.factorisation, at.inverse);
+        const VertexEnclosure fine =
+            enclose_vertex_double_double(moved.packing, at.structure, at.factorisation, at.inverse);
         BOOST_TEST_REQUIRE((step.verdict == Verdict::proved));
         BOOST_TEST_REQUIRE((fine.rung == Rung::double_double));
         double square = 0;
@@ -300,7 +205,7 @@ BOOST_AUTO_TEST_CASE(the_newton_step_encloses_the_vertex_and_hardly_more) {
         }
         BOOST_TEST(std::sqrt(square) <= step.radius + fine.radius);
         BOOST_TEST(step.radius < 1.6 * std::sqrt(square));
-        BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, proved.value(), bound).radius);
+        BOOST_TEST(step.radius < 0.1 * enclose_vertex(moved.packing, at.structure, at.inverse).radius);
     }
 }
 
@@ -353,12 +258,9 @@ BOOST_AUTO_TEST_CASE(the_distance_to_the_true_vertex_includes_the_correction) {
     for (double& length : state.packing.q) {
         length *= 1 - 1e-12;
     }
-    auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation factorisation(proved.value());
-    InverseBoundCache cache;
-    const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
-    const VertexEnclosure vertex = enclose_vertex_double_double(state.packing, proved.value(), factorisation, bound);
+    const Regular at(state);
+    const VertexEnclosure vertex =
+        enclose_vertex_double_double(state.packing, at.structure, at.factorisation, at.inverse);
     BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
     const Real root2 = sqrt(Real(2));
     const std::vector<Real> exact{1, 1, 1 + 2 * root2, 2, 3 + 2 * root2, 4};
@@ -376,13 +278,10 @@ BOOST_AUTO_TEST_CASE(no_vertex_is_proved_where_there_is_none) {
     // Contacts that are open by a tenth of a radius cannot all close near the stored place at once.
     State<2> state = two_disks(1, 2, 1, 1);
     state.packing.q[2] += 0.1;
-    auto proved = IsostaticStructure<2>::prove(state.packing, state.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation factorisation(proved.value());
-    InverseBoundCache cache;
-    const InverseBound bound = bound_inverse(proved.value(), factorisation, cache);
-    BOOST_TEST((enclose_vertex(state.packing, proved.value(), bound).verdict == Verdict::undecided));
-    BOOST_TEST((enclose_vertex(state.packing, proved.value(), factorisation, bound).verdict == Verdict::undecided));
+    const Regular at(state);
+    BOOST_TEST((enclose_vertex(state.packing, at.structure, at.inverse).verdict == Verdict::undecided));
+    BOOST_TEST(
+        (enclose_vertex(state.packing, at.structure, at.factorisation, at.inverse).verdict == Verdict::undecided));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -4,6 +4,7 @@
 #include "oracle/random.hpp"
 #include "statics/statics.hpp"
 #include "support/crafted.hpp"
+#include "support/regular.hpp"
 #include "verified/block_cholesky.hpp"
 #include "verified/inverse_bound.hpp"
 #include "verified/row_scales.hpp"
@@ -11,11 +12,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <Eigen/Dense>
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <numeric>
 
 using namespace isostat;
 using namespace crafted;
@@ -50,16 +46,8 @@ double smallest_singular_value(const IsostaticStructure<2>& structure) {
 }
 
 /// A start, and one exchange of it along an arc.
-struct Exchange {
-    State<2> state;
-    IsostaticStructure<2> structure;
-    Factorisation factorisation;
-    InverseBoundCache cache;
-    InverseBound bound;
-
-    explicit Exchange(State<2> s)
-        : state(std::move(s)), structure(IsostaticStructure<2>::prove(state.packing, state.contacts).value()),
-          factorisation(structure), bound(bound_inverse(structure, factorisation, cache)) {}
+struct Exchange : Regular {
+    using Regular::Regular;
 
     Result<Arc<2>> open(int contact) {
         CandidateList<2> candidates = find_candidates(state.packing, candidate_fraction);
@@ -100,7 +88,7 @@ BOOST_AUTO_TEST_CASE(bounds_after_an_exchange_lie_below_the_smallest_singular_va
             ++fresh;
         }
         const auto bound =
-            carry_bound(from.structure, from.bound, *next, approximate, from.on_dofs(arc.value().tangent));
+            carry_bound(from.structure, from.inverse, *next, approximate, from.on_dofs(arc.value().tangent));
         if (!bound) {
             continue;
         }
@@ -124,20 +112,20 @@ BOOST_AUTO_TEST_CASE(without_motion_a_bound_is_carried_with_little_loss_and_a_wr
     const auto next = IsostaticStructure<2>::exchange(from.structure, from.state.packing, ContactId(5), held);
     BOOST_TEST_REQUIRE(next.has_value());
     const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
-    const auto bound = carry_bound(from.structure, from.bound, *next, approximate, v);
+    const auto bound = carry_bound(from.structure, from.inverse, *next, approximate, v);
     BOOST_TEST_REQUIRE(bound.has_value());
     const auto proved = IsostaticStructure<2>::prove(from.state.packing, next->contacts());
     BOOST_TEST_REQUIRE(proved.ok());
     const double sigma = smallest_singular_value(proved.value());
     BOOST_TEST(bound->bound.sigma_min < sigma * 1.001);
-    BOOST_TEST(bound->bound.sigma_min > 0.5 * std::min(sigma, from.bound.sigma_min));
+    BOOST_TEST(bound->bound.sigma_min > 0.5 * std::min(sigma, from.inverse.sigma_min));
     // A guess that is no mechanism at all is refined or refused; what comes out is still a bound.
     oracle::Random random(5);
     std::vector<double> wrong(v.size());
     for (double& c : wrong) {
         c = static_cast<double>(random.integer(2001)) / 1000 - 1;
     }
-    const auto still = carry_bound(from.structure, from.bound, *next, approximate, wrong);
+    const auto still = carry_bound(from.structure, from.inverse, *next, approximate, wrong);
     BOOST_TEST((!still || still->bound.sigma_min < sigma * 1.001));
 }
 
@@ -348,7 +336,7 @@ BOOST_AUTO_TEST_CASE(rough_forces_lie_within_their_bound_and_the_first_climb_tak
         const Factorisation stale(structure, approximate);
         const Factorisation fresh(structure);
         const Packing<2>& packing = arc.value().end;
-        const Statics<2> near(from.state.packing, from.state.load, from.structure, from.factorisation, from.bound);
+        const Statics<2> near(from.state.packing, from.state.load, from.structure, from.factorisation, from.inverse);
         const double sigma = from.state.load.stress[1];
         (void)near.force(ContactId(0), sigma);
         LadderOptions options;
@@ -406,7 +394,7 @@ BOOST_AUTO_TEST_CASE(no_proof_is_made_for_a_singular_exchange) {
     if (next) { // the pattern alone may have told
         const ApproximateInverse approximate = from.factorisation.approximate().exchanged(40, next->matrix());
         std::vector<double> v = from.factorisation.approximate().mechanism(40);
-        BOOST_TEST(!carry_bound(from.structure, from.bound, *next, approximate, v).has_value());
+        BOOST_TEST(!carry_bound(from.structure, from.inverse, *next, approximate, v).has_value());
         BOOST_TEST(!bound_exchanged(*next, from.factorisation.approximate(), from.cache).has_value());
     }
     BOOST_TEST(!IsostaticStructure<2>::prove(from.state.packing, next ? next->contacts() : from.state.contacts).ok() ==
@@ -422,7 +410,7 @@ BOOST_AUTO_TEST_CASE(nothing_is_carried_when_the_grains_moved_farther_than_the_b
     BOOST_TEST_REQUIRE(next.has_value());
     const ApproximateInverse approximate = from.factorisation.approximate().exchanged(5, next->matrix());
     BOOST_TEST(
-        !carry_bound(from.structure, from.bound, *next, approximate, from.factorisation.approximate().mechanism(5))
+        !carry_bound(from.structure, from.inverse, *next, approximate, from.factorisation.approximate().mechanism(5))
              .has_value());
 }
 

@@ -2,6 +2,7 @@
 // hardly above, also where the error itself stays far below. And bounds where the error comes near them.
 #include "oracle/random.hpp"
 #include "support/crafted.hpp"
+#include "support/regular.hpp"
 #include "support/scale.hpp"
 #include "support/scratch.hpp"
 #include "verified/configuration.hpp"
@@ -14,10 +15,6 @@
 #include <isostat/io/state_file.hpp>
 
 #include <boost/multiprecision/cpp_dec_float.hpp>
-#include <boost/test/unit_test.hpp>
-
-#include <cmath>
-#include <numbers>
 
 using namespace isostat;
 using namespace crafted;
@@ -45,20 +42,8 @@ State<2> sample(const char* name = "vertex100.txt") {
     return read_state<2>(std::string(ISOSTAT_TEST_DATA) + "/" + name).state;
 }
 
-/// A state with what is proved of it.
-struct Known {
-    State<2> state;
-    IsostaticStructure<2> structure;
-    Factorisation factorisation;
-    InverseBound bound;
-
-    explicit Known(State<2> s)
-        : state(std::move(s)), structure(IsostaticStructure<2>::prove(state.packing, state.contacts).value()),
-          factorisation(structure) {
-        InverseBoundCache cache;
-        bound = bound_inverse(structure, factorisation, cache);
-        BOOST_REQUIRE((bound.verdict == Verdict::proved));
-    }
+struct Known : Regular {
+    explicit Known(State<2> s) : Regular(std::move(s)) { BOOST_REQUIRE((inverse.verdict == Verdict::proved)); }
 };
 
 /// K of V4 (a).
@@ -200,7 +185,8 @@ BOOST_AUTO_TEST_CASE(rates_of_change_are_those_of_V4_and_V6) {
         const Real k = lipschitz_of(state);
         check_above(lipschitz(state.packing, state.contacts), k, 1e-12);
         check_above(normal_rate(state.packing, state.contacts), k / Real("0.99"), 0.011);
-        const VertexEnclosure vertex = enclose_vertex(state.packing, known.structure, known.factorisation, known.bound);
+        const VertexEnclosure vertex =
+            enclose_vertex(state.packing, known.structure, known.factorisation, known.inverse);
         check_above(vertex.lipschitz, k, 1e-12);
         std::vector<double> x(state.contacts.size());
         std::vector<Real> weight(state.packing.radius.size(), Real(0));
@@ -255,7 +241,7 @@ BOOST_AUTO_TEST_CASE(rates_of_change_in_cells_are_those_of_C5) {
 BOOST_AUTO_TEST_CASE(residuals_of_forces_are_counted_as_V3_says) {
     const Known known(sample());
     const std::vector<double> force = known.state.load.external_force(known.state.packing);
-    const ForceSolution solution = solve_forces(known.structure, known.factorisation, known.bound, force);
+    const ForceSolution solution = solve_forces(known.structure, known.factorisation, known.inverse, force);
     const sparse::Matrix<double>& h = known.structure.matrix();
     std::vector<Real> size;
     std::vector<Real> residual;
@@ -277,7 +263,7 @@ BOOST_AUTO_TEST_CASE(residuals_of_forces_are_counted_as_V3_says) {
     for (std::size_t i = 0; i < size.size(); ++i) {
         rounding.push_back((terms[i] + Real("6.01")) * u * size[i]);
     }
-    check_above(solution.bound * known.bound.sigma_min, norm_of(rounding), 0.2);
+    check_above(solution.bound * known.inverse.sigma_min, norm_of(rounding), 0.2);
     BOOST_TEST(norm_of(residual) < norm_of(rounding)); // so the 20 % are not the residual's
 }
 
@@ -285,7 +271,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_proved_up_to_the_quarter_of_Kantorovich_and_not
     const State<2> state = pushed(sample(), 1e-12);
     const Known known(state);
     const Real k = lipschitz_of(state);
-    const VertexEnclosure first = enclose_vertex(state.packing, known.structure, known.factorisation, known.bound);
+    const VertexEnclosure first = enclose_vertex(state.packing, known.structure, known.factorisation, known.inverse);
     BOOST_TEST_REQUIRE((first.verdict == Verdict::proved));
     std::vector<Real> step;
     for (const double s : first.step) {
@@ -295,7 +281,7 @@ BOOST_AUTO_TEST_CASE(a_vertex_is_proved_up_to_the_quarter_of_Kantorovich_and_not
     const Real residual = residual_of(state);
     for (const double h : {0.02, 0.1, 0.2, 0.24, 0.2501, 0.3, 0.5, 0.99}) {
         // A worse bound of the inverse is a bound too: h = beta K eta is what it is made to be.
-        InverseBound worse = known.bound;
+        InverseBound worse = known.inverse;
         worse.sigma_min = (k * length / Real(h)).convert_to<double>(); // eta > |p|
         const VertexEnclosure by_step = enclose_vertex(state.packing, known.structure, known.factorisation, worse);
         BOOST_TEST((by_step.verdict == Verdict::proved) == (h < 0.25), h);
@@ -316,7 +302,7 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     // Pushed so far that the stored normals are not those of F: rho >= w |G| |p|, eta = |p| + beta rho.
     const State<2> state = pushed(sample(), 1e-7);
     const Known known(state);
-    const VertexEnclosure vertex = enclose_vertex(state.packing, known.structure, known.factorisation, known.bound);
+    const VertexEnclosure vertex = enclose_vertex(state.packing, known.structure, known.factorisation, known.inverse);
     BOOST_TEST_REQUIRE((vertex.verdict == Verdict::proved));
     const sparse::Matrix<double>& h = known.structure.matrix();
     Real worst = 0;
@@ -335,7 +321,7 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
             worst = std::max(worst, Real(abs(ratio)));
         }
     }
-    const Real beta = (1 + 2 * worst) / Real(known.bound.sigma_min);
+    const Real beta = (1 + 2 * worst) / Real(known.inverse.sigma_min);
     const Real rest = beta * worst * norm_of(left);
     const Real eta = norm_of(step) + rest;
     const Real product = beta * lipschitz_of(state) * eta;
@@ -350,9 +336,9 @@ BOOST_AUTO_TEST_CASE(what_a_newton_step_leaves_is_counted_as_V4_says) {
     exact.packing.fixed = {1, 1, 0};
     exact.contacts = {pair(0, 2), pair(1, 2)};
     const Known at(exact);
-    const VertexEnclosure here = enclose_vertex(exact.packing, at.structure, at.factorisation, at.bound);
+    const VertexEnclosure here = enclose_vertex(exact.packing, at.structure, at.factorisation, at.inverse);
     BOOST_TEST_REQUIRE((here.verdict == Verdict::proved));
-    check_above(here.radius, sqrt(Real(2)) * 5 * Real(0x1p-98) / Real(at.bound.sigma_min), 0.01);
+    check_above(here.radius, sqrt(Real(2)) * 5 * Real(0x1p-98) / Real(at.inverse.sigma_min), 0.01);
 }
 
 BOOST_AUTO_TEST_CASE(the_rounding_of_a_factorisation_is_taken_off_the_shift) {
@@ -360,9 +346,9 @@ BOOST_AUTO_TEST_CASE(the_rounding_of_a_factorisation_is_taken_off_the_shift) {
     // code may take a smaller one, row by row.
     for (const double angle : {3e-7, 4e-7, 1e-6}) {
         const Known known(between_two(angle, 0.6));
-        BOOST_TEST((known.bound.route == InverseBound::Route::cholesky));
+        BOOST_TEST((known.inverse.route == InverseBound::Route::cholesky));
         const Real sigma = smaller_singular_value(known.state);
-        const Real bound = known.bound.sigma_min;
+        const Real bound = known.inverse.sigma_min;
         BOOST_TEST(bound * bound <= sigma * sigma / 2 - 16 * u);
         BOOST_TEST(bound * bound >= sigma * sigma / 2 - 64 * u);
     }
@@ -381,7 +367,7 @@ BOOST_AUTO_TEST_CASE(a_bound_is_carried_less_the_change_of_the_kept_rows) {
         state.packing.fixed.insert(state.packing.fixed.end(), {1, 1, 1, 0});
         state.contacts.insert(state.contacts.end(), {pair(3, 6), pair(4, 6)});
         const Known known(state);
-        InverseBound bound = known.bound; // disk 6 has larger ones
+        InverseBound bound = known.inverse; // disk 6 has larger ones
         bound.sigma_min = smaller_singular_value(state).convert_to<double>() * (1 - 1e-12);
         State<2> moved = state;
         moved.packing.q[5] = 0.5 * std::tan(angle / 2) * 2;
@@ -406,12 +392,12 @@ BOOST_AUTO_TEST_CASE(motions_are_known_to_the_rounding_of_their_residual) {
         const State<2> state = between_two(std::pow(10.0, random.real(-4, -1)), random.real(0, std::numbers::pi));
         const Known known(state);
         const std::vector<double> rho(3, 0.0);
-        const FirstOrder<2> first(state.packing, known.structure, known.factorisation, known.bound, here, rho);
+        const FirstOrder<2> first(state.packing, known.structure, known.factorisation, known.inverse, here, rho);
         const auto exact = motion(state);
         for (const std::size_t a : {0U, 1U}) {
             const Enclosure v = first.rate(ContactId(0), 1, {ContactKind::held, static_cast<int>(4 + a), 0});
             BOOST_TEST(abs(Real(v.value) - exact[a]) <= Real(v.radius));
-            BOOST_TEST(v.radius * known.bound.sigma_min < 1e-13 * (std::abs(v.value) + 1) / known.bound.sigma_min);
+            BOOST_TEST(v.radius * known.inverse.sigma_min < 1e-13 * (std::abs(v.value) + 1) / known.inverse.sigma_min);
         }
     }
 }
@@ -433,7 +419,7 @@ BOOST_AUTO_TEST_CASE(rates_of_gaps_turn_with_the_line_of_a_small_pair) {
         state.packing.fixed.push_back(1);
         const Known known(state);
         const std::vector<double> rho(4, 0.0);
-        const FirstOrder<2> first(state.packing, known.structure, known.factorisation, known.bound, near, rho);
+        const FirstOrder<2> first(state.packing, known.structure, known.factorisation, known.inverse, near, rho);
         const Enclosure rate = first.rate(ContactId(0), 1, pair(2, 3));
         const double direction = random.real(0, 2 * std::numbers::pi);
         const std::array<Real, 2> shift{away * std::cos(direction), away * std::sin(direction)};

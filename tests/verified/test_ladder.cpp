@@ -2,14 +2,12 @@
 #include "exact/rank.hpp"
 #include "oracle/forces.hpp"
 #include "oracle/structures.hpp"
+#include "support/regular.hpp"
+#include "support/test.hpp"
 #include "verified/force_ladder.hpp"
 #include "verified/inverse_bound_multiprecision.hpp"
 
-#include <boost/test/unit_test.hpp>
 #include <mpfr.h>
-
-#include <array>
-#include <map>
 
 using namespace isostat;
 using namespace isostat::oracle;
@@ -198,19 +196,15 @@ namespace {
 void check_layers(int rows, int top, double height, LadderOptions options) {
     Random random(11);
     const Structure s = layers(rows, top, height, random);
-    const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation factorisation(proved.value());
-    InverseBoundCache cache;
-    const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
-    BOOST_TEST_REQUIRE((inverse.verdict == Verdict::proved));
+    const crafted::Regular at(s.packing, s.contacts);
+    BOOST_TEST_REQUIRE((at.inverse.verdict == Verdict::proved));
     std::vector<double> force;
     for (std::size_t i = 0; i < s.contacts.size(); ++i) {
         force.push_back(i % 2 == 0 ? random.real(-0.1, 0.1) : -1);
     }
     constexpr unsigned reference_bits = 1500;
     const std::vector<mpf_class> reference = resting_forces(s.packing, s.contacts, force, reference_bits);
-    ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse, options);
+    ForceLadder<2> ladder(s.packing, at.structure, at.factorisation, at.inverse, options);
     const int part = ladder.add(force);
     double before = std::numeric_limits<double>::infinity();
     do {
@@ -262,11 +256,7 @@ BOOST_AUTO_TEST_CASE(rungs_in_floating_point_hold_at_5000_disks) {
 BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_was_moved_and_ended) {
     Random random(5);
     const Structure s = layers(3, 4, 0.5, random);
-    const auto proved = IsostaticStructure<2>::prove(s.packing, s.contacts);
-    BOOST_TEST_REQUIRE(proved.ok());
-    const Factorisation factorisation(proved.value());
-    InverseBoundCache cache;
-    const InverseBound inverse = bound_inverse(proved.value(), factorisation, cache);
+    const crafted::Regular at(s.packing, s.contacts);
     std::vector<double> down;
     std::vector<double> aside;
     for (std::size_t i = 0; i < s.contacts.size(); ++i) {
@@ -274,7 +264,7 @@ BOOST_AUTO_TEST_CASE(what_a_stress_lacks_to_a_limit_is_known_after_the_ladder_wa
         aside.push_back(i % 2 == 0 ? 0.3 : -0.1);
     }
     const auto loaded = [&](double factor) {
-        ForceLadder<2> ladder(s.packing, proved.value(), factorisation, inverse);
+        ForceLadder<2> ladder(s.packing, at.structure, at.factorisation, at.inverse);
         std::vector<double> force = down;
         std::for_each(force.begin(), force.end(), [&](double& f) { f *= factor; });
         ladder.add(force);

@@ -1,14 +1,8 @@
 // Rates of pairs that touch: exactly 0 where contacts that stay closed make one body of the two grains, a number with a
 // bound where not; against radii and places that are really moved.
-#include "linear/factorisation.hpp"
 #include "support/crafted.hpp"
+#include "support/regular.hpp"
 #include "verified/first_order.hpp"
-
-#include <boost/test/unit_test.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 
 using namespace isostat;
 using namespace crafted;
@@ -26,17 +20,10 @@ State<2> hexagon_in_a_box() {
          pair(4, 5), pair(5, 6), left(4), right(1), bottom(5), bottom(6), top(2)});
 }
 
-struct Vertex {
-    explicit Vertex(const State<2>& state)
-        : packing(state.packing), structure(IsostaticStructure<2>::prove(packing, state.contacts).value()),
-          factorisation(structure), bound(bound_inverse(structure, factorisation, cache)),
-          enclosure(enclose_vertex(packing, structure, factorisation, bound)),
-          first(packing, structure, factorisation, bound, enclosure, rho) {}
-    Packing<2> packing;
-    IsostaticStructure<2> structure;
-    Factorisation factorisation;
-    InverseBoundCache cache;
-    InverseBound bound;
+struct Vertex : Regular {
+    explicit Vertex(const State<2>& s)
+        : Regular(s), enclosure(enclose_vertex(state.packing, structure, factorisation, inverse)),
+          first(state.packing, structure, factorisation, inverse, enclosure, rho) {}
     VertexEnclosure enclosure;
     std::vector<double> rho = {0.5, -0.25, 0.125, 0.75, -0.5, 0.25, -0.125};
     FirstOrder<2> first;

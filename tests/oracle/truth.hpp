@@ -1,7 +1,7 @@
 #pragma once
-// What is true of a state, to some 200 digits: Newton to the vertex, dense elimination, brute force over all pairs, in
-// a periodic cell over all images that can be the nearest. Nothing of the library is used but its data structures. A
-// number below 1e-150 of its scale is taken for 0: the states here have condition numbers far below 1e40.
+// What is true of a state, to the digits of a number type: Newton to the vertex, dense elimination, brute force over
+// all pairs, in a periodic cell over all images that can be the nearest. Nothing of the library is used but its data
+// structures. A number below `negligible` of its scale is taken for 0.
 
 #include <isostat/contact/state.hpp>
 
@@ -11,40 +11,44 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
-namespace contradictions {
+namespace isostat::oracle {
 
-using isostat::Contact;
-using isostat::ContactKind;
-using isostat::Packing;
-using isostat::State;
-using isostat::WallKind;
+using std::abs;
+using std::sqrt;
 
-/// 200 digits: 668 bits.
-using Real =
-    boost::multiprecision::number<boost::multiprecision::mpfr_float_backend<200, boost::multiprecision::allocate_stack>,
-                                  boost::multiprecision::et_off>;
-using Vector = std::vector<Real>;
+template <unsigned Digits>
+using Decimal = boost::multiprecision::number<
+    boost::multiprecision::mpfr_float_backend<Digits, boost::multiprecision::allocate_stack>,
+    boost::multiprecision::et_off>;
 
-inline const Real negligible = pow(Real(10), -150);
+/// 10 to minus a share of the digits of the type.
+template <class Real> Real power_of_ten(double share) {
+    using std::pow;
+    return pow(Real(10), -static_cast<int>(share * std::numeric_limits<Real>::digits10));
+}
+
+template <class Real> inline const Real negligible = power_of_ten<Real>(0.75);
 
 /// -1, 0, +1.
-inline int sign_of(const Real& x, const Real& scale) {
-    return abs(x) <= negligible * scale ? 0 : x > 0 ? 1 : -1;
+template <class Real> int sign_of(const Real& x, const Real& scale) {
+    return abs(x) <= negligible<Real> * scale ? 0 : x > 0 ? 1 : -1;
 }
 
 /// Square, row by row, with LU factors made by partial pivoting.
-class Dense {
+template <class Real> class SquareMatrix {
   public:
-    explicit Dense(std::size_t n) : n_(n), entry_(n * n, Real(0)), order_(n) {}
+    explicit SquareMatrix(std::size_t n) : n_(n), entry_(n * n, Real(0)), order_(n) {}
     Real& operator()(std::size_t i, std::size_t j) { return entry_[i * n_ + j]; }
     const Real& operator()(std::size_t i, std::size_t j) const { return entry_[i * n_ + j]; }
     [[nodiscard]] std::size_t size() const { return n_; }
 
-    /// False: singular to 40 digits.
+    /// False: singular to two thirds of the digits.
     bool factorise() {
+        const Real singular = power_of_ten<Real>(2.0 / 3);
         for (std::size_t k = 0; k < n_; ++k) {
             order_[k] = k;
         }
@@ -53,7 +57,7 @@ class Dense {
             for (std::size_t i = k + 1; i < n_; ++i) {
                 pivot = abs((*this)(i, k)) > abs((*this)(pivot, k)) ? i : pivot;
             }
-            if (abs((*this)(pivot, k)) < Real("1e-40")) {
+            if (abs((*this)(pivot, k)) < singular) {
                 return false;
             }
             if (pivot != k) {
@@ -76,8 +80,8 @@ class Dense {
         }
         return true;
     }
-    [[nodiscard]] Vector solve(const Vector& right) const {
-        Vector x(n_);
+    [[nodiscard]] std::vector<Real> solve(const std::vector<Real>& right) const {
+        std::vector<Real> x(n_);
         for (std::size_t i = 0; i < n_; ++i) {
             x[i] = right[order_[i]];
             for (std::size_t j = 0; j < i; ++j) {
@@ -95,28 +99,34 @@ class Dense {
 
   private:
     std::size_t n_;
-    Vector entry_;
+    std::vector<Real> entry_;
     std::vector<std::size_t> order_;
 };
 
 /// One end of the interval of the loaded stress in which no finite force is negative.
-struct End {
+template <class Real> struct LoadEnd {
     bool unbounded = true;
     Real stress = 0;
     std::vector<int> opens; ///< contacts whose force vanishes there and decreases beyond
 };
 
 /// A pair that is not a contact of the list.
-struct OtherPair {
+template <class Real> struct NearPair {
     Contact pair;
     Real gap;
     bool can_move = false; ///< relative to each other
 };
 
-/// Everything below is of the true vertex; \pre `known`.
-class Truth {
+enum class At { vertex, stored };
+
+/// Everything below is of the true vertex, or of the stored coordinates; \pre `known`, but for `gap`.
+template <class Real> class TruthIn {
   public:
-    explicit Truth(const State<2>& state);
+    using Vector = std::vector<Real>;
+    using End = LoadEnd<Real>;
+    using OtherPair = NearPair<Real>;
+
+    explicit TruthIn(const State<2>& state, At where = At::vertex);
 
     bool known = false; ///< Newton converged nearby, and the matrix is regular there
     std::string why;    ///< when not
@@ -141,11 +151,12 @@ class Truth {
     /// Contacts that the rule `most_negative` may open: those with the smallest force below 0, held ones counting with
     /// minus the magnitude; of the infinitesimal forces where no finite one is negative. Empty: none is negative.
     [[nodiscard]] std::vector<Contact> most_negative() const;
+    [[nodiscard]] int dof_count() const { return static_cast<int>(coordinate_.size()); }
     /// Smallest singular value of the contact matrix, to 10 digits or so.
     [[nodiscard]] double singular_value() const;
     [[nodiscard]] Real gap(const Contact& c) const;
     /// H, one column per contact.
-    [[nodiscard]] Dense contact_matrix() const;
+    [[nodiscard]] SquareMatrix<Real> contact_matrix() const;
     /// From disk i to disk j, or to the image of it that the contact names.
     [[nodiscard]] std::array<Real, 2> between(const Contact& c) const;
 
@@ -172,7 +183,7 @@ class Truth {
     std::vector<int> coordinate_; ///< per degree of freedom
 };
 
-template <class Visit> void Truth::gradient(const Contact& c, Visit visit) const {
+template <class Real> template <class Visit> void TruthIn<Real>::gradient(const Contact& c, Visit visit) const {
     const auto put = [&](std::size_t coordinate, const Real& value) {
         if (dof_[coordinate] >= 0) {
             visit(static_cast<std::size_t>(dof_[coordinate]), value);
@@ -210,7 +221,7 @@ template <class Visit> void Truth::gradient(const Contact& c, Visit visit) const
     }
 }
 
-inline Real Truth::gap(const Contact& c) const {
+template <class Real> Real TruthIn<Real>::gap(const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
     switch (c.kind) {
     case ContactKind::disk_disk: {
@@ -224,7 +235,7 @@ inline Real Truth::gap(const Contact& c) const {
     return q[i] - Real(state_->packing.q[i]);
 }
 
-inline std::array<Real, 2> Truth::between(const Contact& c) const {
+template <class Real> std::array<Real, 2> TruthIn<Real>::between(const Contact& c) const {
     const auto i = static_cast<std::size_t>(c.i);
     const auto j = static_cast<std::size_t>(c.j);
     std::array<Real, 2> r{q[2 * j] - q[2 * i], q[2 * j + 1] - q[2 * i + 1]};
@@ -235,7 +246,7 @@ inline std::array<Real, 2> Truth::between(const Contact& c) const {
     return r;
 }
 
-inline bool Truth::moves(std::size_t coordinate) const {
+template <class Real> bool TruthIn<Real>::moves(std::size_t coordinate) const {
     const auto& p = state_->packing;
     const std::size_t disk = coordinate / 2;
     if (disk < p.radius.size()) {
@@ -249,7 +260,7 @@ inline bool Truth::moves(std::size_t coordinate) const {
 }
 
 /// A disk and its own image move with the cell alone.
-inline bool Truth::can_move(const Contact& pair) const {
+template <class Real> bool TruthIn<Real>::can_move(const Contact& pair) const {
     const auto& p = state_->packing;
     if (pair.i == pair.j) {
         return (pair.image.m[0] != 0 && moves(wall(0))) || (pair.image.m[1] != 0 && (moves(wall(1)) || moves(wall(2))));
@@ -258,7 +269,7 @@ inline bool Truth::can_move(const Contact& pair) const {
     return free(pair.i) || free(pair.j);
 }
 
-inline void Truth::find_dofs() {
+template <class Real> void TruthIn<Real>::find_dofs() {
     const auto& p = state_->packing;
     for (std::size_t k = 0; k < p.q.size(); ++k) {
         dof_.push_back(moves(k) ? static_cast<int>(coordinate_.size()) : -1);
@@ -268,28 +279,28 @@ inline void Truth::find_dofs() {
     }
 }
 
-inline Dense Truth::contact_matrix() const {
-    Dense h(coordinate_.size());
+template <class Real> SquareMatrix<Real> TruthIn<Real>::contact_matrix() const {
+    SquareMatrix<Real> h(coordinate_.size());
     for (std::size_t l = 0; l < state_->contacts.size(); ++l) {
         gradient(state_->contacts[l], [&](std::size_t dof, const Real& value) { h(dof, l) = -value; });
     }
     return h;
 }
 
-inline bool Truth::newton() {
+template <class Real> bool TruthIn<Real>::newton() {
     const std::size_t n = coordinate_.size();
     const Real unit = state_->packing.min_radius();
     for (int iteration = 0; iteration < 14; ++iteration) {
         Vector residual(n);
         Real worst = 0;
-        Dense rows(n);
+        SquareMatrix<Real> rows(n);
         for (std::size_t l = 0; l < n; ++l) {
             residual[l] = gap(state_->contacts[l]);
             worst = std::max(worst, Real(abs(residual[l])));
             gradient(state_->contacts[l], [&](std::size_t dof, const Real& value) { rows(l, dof) = value; });
         }
         stored_gap = iteration == 0 ? worst : stored_gap;
-        if (worst < unit * pow(Real(10), -185)) {
+        if (worst < unit * power_of_ten<Real>(0.9)) {
             return true;
         }
         if (!(worst < unit) || !rows.factorise()) {
@@ -305,10 +316,10 @@ inline bool Truth::newton() {
     return false;
 }
 
-inline void Truth::find_forces() {
+template <class Real> void TruthIn<Real>::find_forces() {
     const auto& load = state_->load;
     const std::size_t n = coordinate_.size();
-    Dense h = contact_matrix();
+    SquareMatrix<Real> h = contact_matrix();
     if (!h.factorise()) {
         known = false;
         why = "singular";
@@ -331,8 +342,7 @@ inline void Truth::find_forces() {
     }
     for (int a = 0; a < 2; ++a) {
         const auto other = static_cast<std::size_t>(1 - a);
-        const Real length =
-            load.kind == isostat::LoadKind::nominal ? Real(load.reference_length[other]) : q[wall(1 - a)];
+        const Real length = load.kind == LoadKind::nominal ? Real(load.reference_length[other]) : q[wall(1 - a)];
         add(finite, wall(a), -Real(load.stress[static_cast<std::size_t>(a)]) * length);
         if (a == load.loaded_axis) {
             add(unit, wall(a), -length);
@@ -348,7 +358,7 @@ inline void Truth::find_forces() {
     }
 }
 
-inline std::vector<Contact> Truth::near_images() const {
+template <class Real> std::vector<Contact> TruthIn<Real>::near_images() const {
     const auto& p = state_->packing;
     std::vector<std::pair<double, Contact>> found; // gaps in double: only those that are not far from the smallest
     if (!p.cell.any()) {
@@ -374,7 +384,7 @@ inline std::vector<Contact> Truth::near_images() const {
                 for (int k = -up; k <= up; ++k) {
                     const Contact pair(ContactKind::disk_disk, i, j,
                                        {{static_cast<std::int8_t>(m - left), static_cast<std::int8_t>(k - down), 0}});
-                    if (i == j && !(pair.image > isostat::Image{})) {
+                    if (i == j && !(pair.image > Image{})) {
                         continue;
                     }
                     const auto& c = pair.image.m;
@@ -399,7 +409,7 @@ inline std::vector<Contact> Truth::near_images() const {
     return near;
 }
 
-inline void Truth::find_other_pairs() {
+template <class Real> void TruthIn<Real>::find_other_pairs() {
     const auto& p = state_->packing;
     const auto listed = [this](const Contact& c) {
         return std::find(state_->contacts.begin(), state_->contacts.end(), c) != state_->contacts.end();
@@ -430,12 +440,12 @@ inline void Truth::find_other_pairs() {
     std::sort(others.begin(), others.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
 }
 
-inline int Truth::sign(std::size_t contact) const {
+template <class Real> int TruthIn<Real>::sign(std::size_t contact) const {
     const int finite = sign_of(force[contact], force_scale);
     return finite != 0 ? finite : sign_of(infinitesimal[contact], Real(1));
 }
 
-inline const OtherPair* Truth::nearest() const {
+template <class Real> auto TruthIn<Real>::nearest() const -> const OtherPair* {
     for (const OtherPair& other : others) {
         if (other.can_move) {
             return &other;
@@ -444,13 +454,13 @@ inline const OtherPair* Truth::nearest() const {
     return nullptr;
 }
 
-inline int Truth::equilibrium() const {
+template <class Real> int TruthIn<Real>::equilibrium() const {
     const bool holds = std::any_of(state_->contacts.begin(), state_->contacts.end(),
                                    [](const Contact& c) { return c.kind == ContactKind::held; });
     return holds ? -1 : at_rest();
 }
 
-inline std::vector<Contact> Truth::most_negative() const {
+template <class Real> std::vector<Contact> TruthIn<Real>::most_negative() const {
     for (const bool finite : {true, false}) {
         const Vector& f = finite ? force : infinitesimal;
         const Real scale = finite ? force_scale : Real(1);
@@ -480,8 +490,8 @@ inline std::vector<Contact> Truth::most_negative() const {
     return {};
 }
 
-inline double Truth::singular_value() const {
-    const Dense h = contact_matrix();
+template <class Real> double TruthIn<Real>::singular_value() const {
+    const SquareMatrix<Real> h = contact_matrix();
     const auto n = static_cast<Eigen::Index>(h.size());
     Eigen::MatrixXd m(n, n);
     for (std::size_t i = 0; i < h.size(); ++i) {
@@ -492,7 +502,7 @@ inline double Truth::singular_value() const {
     return Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues().minCoeff();
 }
 
-inline int Truth::at_rest() const {
+template <class Real> int TruthIn<Real>::at_rest() const {
     bool all_positive = true;
     for (std::size_t l = 0; l < force.size(); ++l) {
         if (state_->contacts[l].kind == ContactKind::held) {
@@ -516,7 +526,7 @@ inline int Truth::at_rest() const {
     return all_positive ? 1 : 0;
 }
 
-inline void Truth::find_interval() {
+template <class Real> void TruthIn<Real>::find_interval() {
     const Real sigma = state_->load.loaded_stress();
     Real rates = 0;
     for (const Real& r : rate) {
@@ -531,11 +541,11 @@ inline void Truth::find_interval() {
             }
             const Real distance = force[l] / abs(rate[l]);
             const Real scale = abs(sigma) + abs(distance);
-            if (end.unbounded || distance < nearest_distance - negligible * scale) {
+            if (end.unbounded || distance < nearest_distance - negligible<Real> * scale) {
                 end.opens.clear();
                 nearest_distance = distance;
             }
-            if (end.unbounded || distance <= nearest_distance + negligible * scale) {
+            if (end.unbounded || distance <= nearest_distance + negligible<Real> * scale) {
                 end.opens.push_back(static_cast<int>(l));
             }
             end.unbounded = false;
@@ -544,7 +554,7 @@ inline void Truth::find_interval() {
     }
 }
 
-inline Truth::Truth(const State<2>& state) : state_(&state) {
+template <class Real> TruthIn<Real>::TruthIn(const State<2>& state, At where) : state_(&state) {
     find_dofs();
     for (const double x : state.packing.q) {
         q.emplace_back(x);
@@ -553,7 +563,7 @@ inline Truth::Truth(const State<2>& state) : state_(&state) {
         why = "N is not N_f";
         return;
     }
-    known = newton();
+    known = where == At::stored || newton();
     if (known) {
         find_forces();
     }
@@ -567,4 +577,8 @@ inline Truth::Truth(const State<2>& state) : state_(&state) {
     find_interval();
 }
 
-} // namespace contradictions
+/// 200 digits: 668 bits.
+using Real = Decimal<200>;
+using Truth = TruthIn<Real>;
+
+} // namespace isostat::oracle

@@ -1,0 +1,40 @@
+#pragma once
+// Every pair of grains, by brute force.
+
+#include <isostat/contact/contact.hpp>
+
+#include <vector>
+
+namespace isostat::oracle {
+
+/// Every pair of grains that the box has, contacts included; in a cell those of images up to `far` periods away.
+inline std::vector<Contact> all_pairs(const Packing<2>& packing, int far = 4) {
+    std::vector<Contact> pairs;
+    const auto& walls = packing.walls;
+    for (int i = 0; i < packing.disk_count(); ++i) {
+        for (int a = 0; a < 2; ++a) {
+            if (walls.lower[static_cast<std::size_t>(a)] != WallKind::absent) {
+                pairs.push_back({ContactKind::lower_wall, i, a});
+            }
+            if (walls.upper[static_cast<std::size_t>(a)] != WallKind::absent) {
+                pairs.push_back({ContactKind::upper_wall, i, a});
+            }
+        }
+        const auto& periodic = packing.cell.periodic;
+        const int along = periodic[0] ? far : 0;
+        const int across = periodic[1] ? far : 0;
+        for (int j = i; j < packing.disk_count(); ++j) {
+            for (int m = -along; m <= along; ++m) {
+                for (int p = -across; p <= across; ++p) {
+                    const Image image{{static_cast<std::int8_t>(m), static_cast<std::int8_t>(p), 0}};
+                    if (i < j || image > Image{}) {
+                        pairs.push_back({ContactKind::disk_disk, i, j, image});
+                    }
+                }
+            }
+        }
+    }
+    return pairs;
+}
+
+} // namespace isostat::oracle

@@ -1,0 +1,73 @@
+#pragma once
+// Runs played into folders as the program does it, and what the checker must say of them.
+
+#include "io/json.hpp"
+#include "support/forger.hpp"
+
+#include <isostat/io/run_directory.hpp>
+#include <isostat/trajectory/trajectory.hpp>
+
+namespace played {
+
+using isostat::RunOptions;
+using isostat::RunVerification;
+using isostat::Segment;
+
+/// Up, or down where `equilibria` is negative.
+inline Segment towards(int equilibria) {
+    Segment segment;
+    segment.direction = equilibria > 0 ? 1 : -1;
+    segment.equilibria = std::abs(equilibria);
+    return segment;
+}
+
+/// As run.json has them.
+inline std::string settings(const RunOptions& options) {
+    isostat::json::Json run{{"rule", isostat::opening_rule_words[static_cast<std::size_t>(options.rule)]},
+                            {"rule_seed", options.rule_seed},
+                            {"certify", isostat::to_string(options.certify)},
+                            {"ties", isostat::tie_policy_words[static_cast<std::size_t>(options.ties)]},
+                            {"ties_seed", options.ties_seed}};
+    if (options.max_choices < RunOptions().max_choices) {
+        run["max_choices"] = options.max_choices;
+    }
+    return isostat::json::Json{{"run", run}}.dump();
+}
+
+/// Every state is stored. The run counts as completed, whatever ended its last segment: that is returned.
+inline isostat::SegmentOutcome into(const std::filesystem::path& folder, isostat::State<2> state,
+                                    const std::vector<Segment>& segments, const RunOptions& options = {}) {
+    isostat::RunHeader header;
+    header.program = "test";
+    header.settings = settings(options);
+    header.witnesses = options.certify == isostat::CertifyLevel::arcs;
+    header.states_every = 1;
+    isostat::RunCounters counters;
+    isostat::RunDirectory directory(folder, header, isostat::RunDirectory::Mode::fresh, counters);
+    isostat::SegmentOutcome outcome;
+    for (std::size_t k = 0; k < segments.size() && (k == 0 || outcome.completed); ++k) {
+        directory.begin_segment(static_cast<int>(k), segments[k], 0, counters.equilibria);
+        outcome = run_segment<2>(state, segments[k], static_cast<int>(k), options, counters, directory);
+    }
+    directory.finish(isostat::RunStatus::completed, "");
+    BOOST_TEST_MESSAGE((outcome.failure ? outcome.failure->message() : "completed"));
+    return outcome;
+}
+
+/// All of the run is proved.
+inline RunVerification proved(const std::filesystem::path& folder) {
+    RunVerification run = isostat::verify_run(folder);
+    BOOST_TEST(run.wrong == "");
+    BOOST_TEST(run.undecided.size() == 0U, (run.undecided.empty() ? "" : run.undecided[0]));
+    BOOST_TEST((run.verdict == isostat::Verdict::proved));
+    BOOST_TEST(run.arcs_proved == run.arcs);
+    return run;
+}
+
+/// The forged run is refuted, and these words say why.
+inline void refuted(const RunVerification& forged, const std::string& said) {
+    BOOST_TEST((forged.verdict == isostat::Verdict::refuted), (forged.undecided.empty() ? "" : forged.undecided[0]));
+    BOOST_TEST(forged.wrong.find(said) != std::string::npos, forged.wrong);
+}
+
+} // namespace played

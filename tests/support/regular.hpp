@@ -1,0 +1,41 @@
+#pragma once
+// A structure that is proved regular, with its factors and the bound of its inverse.
+
+#include "linear/factorisation.hpp"
+#include "support/test.hpp"
+#include "verified/inverse_bound.hpp"
+
+#include <isostat/contact/state.hpp>
+
+namespace crafted {
+
+/// The parts refer to each other, so it stays where it is made.
+struct Regular {
+    isostat::State<2> state;
+    isostat::IsostaticStructure<2> structure;
+    isostat::Factorisation factorisation;
+    isostat::InverseBoundCache cache;
+    isostat::InverseBound inverse;
+
+    explicit Regular(isostat::State<2> s)
+        : state(std::move(s)), structure(proved(state)), factorisation(structure),
+          inverse(isostat::bound_inverse(structure, factorisation, cache)) {}
+    /// Without a load.
+    Regular(const isostat::Packing<2>& packing, const std::vector<isostat::Contact>& contacts)
+        : Regular([&] {
+              isostat::State<2> s;
+              s.packing = packing;
+              s.contacts = contacts;
+              return s;
+          }()) {}
+    Regular(const Regular&) = delete;
+    Regular& operator=(const Regular&) = delete;
+
+    static isostat::IsostaticStructure<2> proved(const isostat::State<2>& s) {
+        auto result = isostat::IsostaticStructure<2>::prove(s.packing, s.contacts);
+        BOOST_REQUIRE_MESSAGE(result.ok(), (result.ok() ? std::string() : result.failure().message()));
+        return std::move(result.value());
+    }
+};
+
+} // namespace crafted

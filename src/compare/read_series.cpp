@@ -24,8 +24,6 @@ using foreign::Boundary;
 using foreign::FileFrame;
 using foreign::FrameFile;
 using foreign::FrameHeader;
-using foreign::Line;
-using foreign::Lines;
 
 /// Which wall a field of a file of contacts means: its name, or -1 left, -2 bottom, -3 right, -4 top.
 std::optional<std::size_t> wall_of(std::string_view field) {

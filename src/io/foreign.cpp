@@ -4,7 +4,6 @@
 #include "io/numbers.hpp"
 
 #include <isostat/core/error.hpp>
-#include <isostat/core/machine.hpp>
 #include <isostat/io/foreign.hpp>
 
 #include <fmt/format.h>
@@ -18,8 +17,6 @@ namespace isostat {
 namespace {
 
 using foreign::Boundary;
-using foreign::Line;
-using foreign::Lines;
 using foreign::Raw;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& message) {
@@ -260,7 +257,6 @@ std::string recognise_format(const std::string& marked) {
 }
 
 ForeignPacking parse_foreign(const std::string& text, const std::string& source, const ForeignOptions& options) {
-    require_floating_point();
     ForeignPacking out;
     out.format = options.format.empty() ? recognise_format(text) : options.format;
     if (options.size && options.size->column.empty() &&

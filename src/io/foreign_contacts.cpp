@@ -12,8 +12,6 @@ namespace isostat {
 
 namespace {
 
-using foreign::Line;
-
 /// The pairs of one frame.
 class Pairs {
   public:

@@ -1,7 +1,8 @@
 #pragma once
-// What the readers of foreign formats share: lines with numbers, named columns, the raw packing.
+// What the readers of foreign formats share: named columns, the raw packing.
 
 #include "io/digits.hpp"
+#include "io/lines.hpp"
 
 #include <isostat/io/foreign.hpp>
 
@@ -14,61 +15,6 @@
 #include <vector>
 
 namespace isostat::foreign {
-
-/// One line, split into fields.
-class Line {
-  public:
-    /// At blanks and tabs, or at every `separator` (then fields may be empty, and are trimmed and unquoted).
-    Line(std::string_view text, int number, const std::string* source, char separator = ' ');
-
-    [[nodiscard]] std::string_view text() const { return text_; }
-    /// "FILE:LINE".
-    [[nodiscard]] std::string place() const;
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] std::size_t size() const { return fields_.size(); }
-    [[nodiscard]] std::string_view field(std::size_t k) const { return fields_[k]; }
-
-    /// "FILE:LINE: NAME is 'VALUE': expected WHAT".
-    [[noreturn]] void fail(std::string_view value, const std::string& name, const std::string& expected) const;
-    /// Throws when there are not `count` fields.
-    void require_size(std::size_t count, const std::string& what) const;
-    /// A finite number, all of the field.
-    [[nodiscard]] double number(std::size_t k, const std::string& name) const;
-    [[nodiscard]] long integer(std::size_t k, const std::string& name, long lowest, long highest) const;
-
-  private:
-    std::string_view text_;
-    std::vector<std::string_view> fields_;
-    int number_;
-    const std::string* source_;
-};
-
-/// Walks through a text line by line, after its byte order mark if it has one. \pre text and source outlive it and its
-/// lines.
-class Lines {
-  public:
-    /// \p before: lines of the file before the text.
-    Lines(std::string_view text, const std::string& source, int before = 0);
-    [[nodiscard]] bool at_end() const { return rest_.empty(); }
-    /// True when only blank lines are left.
-    [[nodiscard]] bool only_blanks() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
-    /// The next line without taking it; empty at the end.
-    [[nodiscard]] std::string_view peek() const;
-    /// Throws at the end of the file; `what` says what was expected.
-    std::string_view take(const std::string& what);
-    Line next(const std::string& what, char separator = ' ') {
-        const std::string_view text = take(what); // before number() is asked
-        return {text, number_, source_, separator};
-    }
-    [[nodiscard]] int number() const { return number_; }
-    [[nodiscard]] const std::string& source() const { return *source_; }
-    [[noreturn]] void fail(const std::string& message) const;
-
-  private:
-    std::string_view rest_;
-    const std::string* source_;
-    int number_;
-};
 
 constexpr long most_disks = 100'000'000;
 
@@ -153,8 +99,6 @@ class Rows {
     long seen_ = 0; ///< rows
 };
 
-/// Blank, or a comment that begins with #.
-bool is_no_row(std::string_view line);
 /// Names of the columns of a table: from the comments at its start, or the row of names; reads up to the first row.
 struct TableNames {
     std::vector<std::string> names;

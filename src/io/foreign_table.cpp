@@ -81,11 +81,6 @@ TableNames names_in_comments(Lines& lines) {
 
 } // namespace
 
-bool is_no_row(std::string_view line) {
-    const std::size_t first = line.find_first_not_of(" \t\r\n");
-    return first == std::string_view::npos || line[first] == '#';
-}
-
 TableNames read_table_names(Lines& lines, const ForeignOptions& options, Raw& raw) {
     TableNames out = names_in_comments(lines);
     if (lines.at_end()) {
@@ -138,11 +133,7 @@ Raw read_table(const std::string& text, const std::string& source, const Foreign
     find_size(columns, header.names, options, where, raw);
     find_selection(columns, header.names, options, where);
     Rows rows(columns, source);
-    while (!lines.at_end()) {
-        if (is_no_row(lines.peek())) {
-            (void)lines.take("a row");
-            continue;
-        }
+    while (lines.find_row()) {
         const Line line = lines.next("a row", header.separator);
         line.require_size(header.names.size(), "one value per column");
         rows.add(line, raw);

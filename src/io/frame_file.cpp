@@ -153,11 +153,7 @@ void FrameFile::read_rows(Lines& lines, FileFrame& frame) const {
 void FrameFile::read_table(Lines& lines, FileFrame& frame) const {
     frame.header.names = names_.names;
     frame.header.line = names_.line;
-    while (!lines.at_end()) {
-        if (is_no_row(lines.peek())) {
-            (void)lines.take("a row");
-            continue;
-        }
+    while (lines.find_row()) {
         Line row = lines.next("a row", names_.separator);
         row.require_size(names_.names.size(), "one value per column");
         frame.rows.push_back(std::move(row));

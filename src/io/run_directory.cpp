@@ -1,5 +1,6 @@
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
+#include "io/equilibria.hpp"
 #include "io/files.hpp"
 #include "io/folders.hpp"
 #include "io/json.hpp"

@@ -21,7 +21,6 @@ namespace isostat {
 
 namespace {
 
-using checker::EquilibriumLine;
 using checker::EventRecord;
 using checker::RunRecords;
 using json::Json;
@@ -273,7 +272,7 @@ Json words_json(const LoadWords& words) {
 } // namespace
 
 Page run_page(const std::filesystem::path& directory, const std::function<void(std::size_t, std::size_t)>& progress) {
-    const RunRecords records = checker::read_records(directory, checker::LastLine::may_be_cut);
+    const RunRecords records = checker::read_records(directory, LastLine::may_be_cut);
     Page page;
     Json data = header_json(directory);
     std::optional<Frames> frames;

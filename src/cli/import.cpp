@@ -6,6 +6,7 @@
 #include "cli/terminal.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/certificate/certify.hpp>
 #include <isostat/compare/snap.hpp>
@@ -55,7 +56,7 @@ void keep_load(ImportArguments& a) {
         a.stress = fmt::format("{},{}", state.load.stress[0], state.load.stress[1]);
     }
     if (a.load.empty()) {
-        a.load = state.load.kind == LoadKind::nominal ? "nominal" : "true";
+        a.load = word_of(state.load.kind, load_kind_words);
     }
 }
 
@@ -159,7 +160,7 @@ Result<Imported> from_foreign(const ImportArguments& a, ReadPacking& file) {
     out.from = file.packing.q;
     file.packing.radius = with_jitter(file.packing.radius, a.jitter, a.seed);
     Load<2> load;
-    load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     load.stress = stress;
     load.refer_to(file.packing);
     auto failure = wanted.any ? take_nearest(a, {file.packing, {}, load}, out)
@@ -258,7 +259,7 @@ Result<Imported> from_crafted(const ImportArguments& a, const std::string& text)
     state.packing = crafted::approximate(file.packing);
     state.contacts = exact.contacts;
     state.load.stress = parse_stress(a.stress);
-    state.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    state.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     state.load.refer_to(state.packing);
     out.load_of_file = file.packing.load.has_value();
     if (file.packing.load) {
@@ -412,7 +413,7 @@ void print_import_json(const ImportArguments& a, const ReadPacking& file, const 
     object["disks"] = imported.state.packing.disk_count();
     object["load"] = {
         {"stress", {imported.state.load.stress[0], imported.state.load.stress[1]}},
-        {"kind", imported.state.load.kind == LoadKind::nominal ? "nominal" : "true"},
+        {"kind", word_of(imported.state.load.kind, load_kind_words)},
         {"by_default",
          {{"stress", a.stress.empty() && !imported.load_of_file}, {"kind", a.load.empty() && !imported.load_of_file}}}};
     object["jitter_matters"] = imported.copy;

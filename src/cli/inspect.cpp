@@ -5,6 +5,7 @@
 #include "cli/rounding.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/certificate/inspect.hpp>
 #include <isostat/core/error.hpp>
@@ -109,7 +110,7 @@ Json counting_json(const std::string& file, const State<2>& state, const Countin
     object["length"] = {number(state.packing.length(0)), number(state.packing.length(1))};
     object["solid_fraction"] = number(state.packing.solid_fraction());
     object["stress"] = {number(state.load.stress[0]), number(state.load.stress[1])};
-    object["load"] = state.load.kind == LoadKind::nominal ? "nominal" : "true";
+    object["load"] = word_of(state.load.kind, load_kind_words);
     object["N_f"] = c.dof_count;
     object["N"] = c.contact_count;
     object["rank"] = c.rank;

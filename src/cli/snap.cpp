@@ -7,6 +7,7 @@
 #include "compare/soft_state.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/compare/snap.hpp>
 #include <isostat/core/error.hpp>
@@ -69,7 +70,7 @@ Read from_foreign(const SnapArguments& a) {
     out.rounding = file.rounding;
     out.soft.packing = file.packing;
     out.soft.contacts = std::move(list.contacts);
-    out.soft.load.kind = a.load == "true" ? LoadKind::true_stress : LoadKind::nominal;
+    out.soft.load.kind = value_of<LoadKind>(a.load, load_kind_words).value_or(LoadKind::nominal);
     out.soft.load.stress = parse_stress(a.stress);
     out.soft.load.refer_to(file.packing);
     if (!a.reference_length.empty()) {

@@ -1,3 +1,5 @@
+#include "core/words.hpp"
+
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/inspection.hpp>
 
@@ -53,45 +55,23 @@ std::string number_list(const std::vector<int>& numbers) {
 } // namespace
 
 const char* to_string(DiskHold hold) {
-    switch (hold) {
-    case DiskHold::held: return "held";
-    case DiskHold::bridge: return "bridge";
-    case DiskHold::rattler: return "rattler";
-    case DiskHold::fixed: return "fixed";
-    case DiskHold::loaded: return "loaded";
-    }
-    return "";
+    static constexpr EnumWords<5> words{"held", "bridge", "rattler", "fixed", "loaded"};
+    return word_of(hold, words);
 }
 
 const char* to_string(Support support) {
-    switch (support) {
-    case Support::positive: return "positive";
-    case Support::with_zeros: return "with zeros";
-    case Support::none: return "none";
-    case Support::unbalanced: return "unbalanced";
-    case Support::undecided: return "undecided";
-    case Support::no_load: return "no load";
-    }
-    return "";
+    static constexpr EnumWords<6> words{"positive", "with zeros", "none", "unbalanced", "undecided", "no load"};
+    return word_of(support, words);
 }
 
 const char* to_string(SecondOrder answer) {
-    switch (answer) {
-    case SecondOrder::no_mechanism: return "no mechanism";
-    case SecondOrder::rigid: return "rigid";
-    case SecondOrder::flexes: return "flexes";
-    case SecondOrder::undecided: return "undecided";
-    }
-    return "";
+    static constexpr EnumWords<4> words{"no mechanism", "rigid", "flexes", "undecided"};
+    return word_of(answer, words);
 }
 
 const char* to_string(exact::OneSign sign) {
-    switch (sign) {
-    case exact::OneSign::strict: return "strict";
-    case exact::OneSign::partial: return "partial";
-    case exact::OneSign::none: return "none";
-    }
-    return "";
+    static constexpr EnumWords<3> words{"strict", "partial", "none"};
+    return word_of(sign, words);
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #include "contact/images.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
+#include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
 #include <isostat/crafted/exact_packing.hpp>
@@ -210,14 +211,9 @@ class Reader {
         if (kind != "absent" && out_.packing.cell.periodic[axis]) {
             fail(node, key, "\"" + kind + "\"", fmt::format("\"absent\": {} repeats (cell.period)", "xy"[axis]));
         }
-        if (kind == "absent") {
-            return WallKind::absent;
-        }
-        if (kind == "fixed") {
-            return WallKind::fixed;
-        }
-        if (kind == "movable" && may_move) {
-            return WallKind::movable;
+        if (const auto known = value_of<WallKind>(kind, wall_kind_words);
+            known && (may_move || *known != WallKind::movable)) {
+            return *known;
         }
         fail(node, key, "\"" + kind + "\"",
              may_move ? "\"absent\", \"fixed\" or \"movable\"" : "\"absent\" or \"fixed\"");

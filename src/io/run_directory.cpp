@@ -1,3 +1,4 @@
+#include "core/words.hpp"
 #include "core/work.hpp"
 #include "io/descriptor.hpp"
 #include "io/equilibria.hpp"
@@ -54,13 +55,8 @@ std::string steering(const RunCounters& counters) {
 } // namespace
 
 const char* to_string(RunStatus status) {
-    switch (status) {
-    case RunStatus::completed: return "completed";
-    case RunStatus::failed: return "failed";
-    case RunStatus::undecided: return "undecided";
-    case RunStatus::interrupted: return "interrupted";
-    }
-    return "failed";
+    static constexpr EnumWords<4> words{"completed", "failed", "undecided", "interrupted"};
+    return word_of(status, words);
 }
 
 struct RunDirectory::Files {

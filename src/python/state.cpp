@@ -1,5 +1,6 @@
 // State and Packing: arrays that look into the library's memory.
 #include "convert.hpp"
+#include "packing/words.hpp"
 #include "rigidity/isostatic.hpp"
 
 #include <isostat/core/error.hpp>
@@ -9,22 +10,16 @@ namespace isostat::python {
 
 namespace {
 
-const char* word(WallKind kind) {
-    return kind == WallKind::absent ? "absent" : kind == WallKind::fixed ? "fixed" : "movable";
-}
-
 WallKind wall_kind(const std::string& name) {
-    for (const WallKind kind : {WallKind::absent, WallKind::fixed, WallKind::movable}) {
-        if (name == word(kind)) {
-            return kind;
-        }
+    if (const auto kind = value_of<WallKind>(name, wall_kind_words)) {
+        return *kind;
     }
     throw Error(ErrorKind::bad_input, "wall is \"" + name + "\": expected absent, fixed or movable");
 }
 
 py::dict walls_dict(const Walls<2>& walls) {
     const auto words = [](const std::array<WallKind, 2>& kinds) {
-        return py::make_tuple(word(kinds[0]), word(kinds[1]));
+        return py::make_tuple(word_of(kinds[0], wall_kind_words), word_of(kinds[1], wall_kind_words));
     };
     py::dict dict;
     dict["lower"] = words(walls.lower);
@@ -212,7 +207,7 @@ void bind_load(StateClass& state) {
             "loaded_axis", [](const PyState& self) { return self.state.load.loaded_axis; },
             "Axis whose stress a programme changes: 0 or 1; 2: the shear stress on the tilt of a cell.")
         .def_property_readonly(
-            "load", [](const PyState& self) { return self.state.load.kind == LoadKind::nominal ? "nominal" : "true"; },
+            "load", [](const PyState& self) { return word_of(self.state.load.kind, load_kind_words); },
             "\"nominal\": force = stress x reference length; \"true\": force = stress x length.")
         .def_property_readonly(
             "infinitesimal",

@@ -2,6 +2,8 @@
 /// \file
 /// What several subcommands share.
 
+#include "core/decimal.hpp"
+
 #include <isostat/core/result.hpp>
 #include <isostat/core/verdict.hpp>
 #include <isostat/preparation/preparation.hpp>
@@ -23,12 +25,8 @@ Json number(double value);
 /// One line on standard output.
 void print_json(const Json& object);
 
-/// Decimal number with that many digits that is not below (not above) the value.
-std::string rounded_up(double value, int digits);
-std::string rounded_down(double value, int digits);
-
-/// "value +- bound" of an interval: what is printed contains it. 12 digits, or more where the interval is narrower.
-std::string with_bound(double lower, double upper);
+/// "12-40", "3-left", ...
+std::vector<std::string> contact_names(const std::vector<Contact>& contacts);
 
 /// Exit status of a domain failure: 2 for ties and undecided signs, 130 when the user stopped it, 1 otherwise.
 int status_of(FailureKind kind);

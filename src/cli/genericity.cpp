@@ -158,11 +158,7 @@ Json result_json(const Genericity& result, double size, std::size_t longest) {
     out["distinct_networks"] = result.lists.size();
     Json lists = Json::array();
     for (std::size_t k = 0; k < result.lists.size() && k < longest; ++k) {
-        Json names = Json::array();
-        for (const Contact& contact : result.lists[k].contacts) {
-            names.push_back(to_string<2>(contact));
-        }
-        lists.push_back({{"samples", result.lists[k].samples}, {"contacts", std::move(names)}});
+        lists.push_back({{"samples", result.lists[k].samples}, {"contacts", contact_names(result.lists[k].contacts)}});
     }
     out["networks"] = std::move(lists);
     Json samples = Json::array();

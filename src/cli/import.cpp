@@ -1,9 +1,9 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/rounding.hpp"
 #include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
+#include "cli/true_vertex_text.hpp"
 #include "io/files.hpp"
 #include "io/json.hpp"
 #include "packing/words.hpp"
@@ -40,7 +40,7 @@ struct Imported {
     std::vector<double> from; ///< coordinates of the file
     std::string contacts;     ///< words
     Certification truth;
-    Untold untold; ///< by the rounding of the file
+    compare::Untold untold; ///< by the rounding of the file
     bool load_of_file = false;
     bool copy = false; ///< more is untold by the jitter: the state is of a copy
     [[nodiscard]] Verdict verdict() const { return withheld(untold, truth.verdict); }
@@ -465,9 +465,9 @@ int import(const ImportArguments& arguments) {
     auto found = listed ? from_vertex_text(a) : crafted ? from_crafted(a, text) : from_foreign(a, file);
     if (found.ok() && !crafted && !listed) {
         Imported& f = found.value();
-        f.untold = untold_by(file.rounding, f.state, f.truth);
+        f.untold = compare::untold_by(file.rounding, f.state, f.truth);
         const double jitter = 2 * a.jitter * file.packing.max_radius();
-        f.copy = a.jitter > 0 && untold_by(jitter + file.rounding, f.state, f.truth).any();
+        f.copy = a.jitter > 0 && compare::untold_by(jitter + file.rounding, f.state, f.truth).any();
     }
     const bool refuted = found.ok() && found.value().verdict() == Verdict::refuted;
     if (!found.ok() || refuted) {

@@ -2,7 +2,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/face_text.hpp"
-#include "cli/rounding.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 #include "packing/words.hpp"
@@ -201,7 +200,7 @@ int inspect(const InspectArguments& arguments) {
     Result<Inspection<2>> result = inspect_vertex(state);
     const Certification truth = result.ok() ? result.value().truth : certify(state);
     auto cell = state.packing.cell.all() ? std::optional(inspect_cell(state, truth)) : std::nullopt;
-    const Untold untold = untold_by(imported_rounding(state), state, truth);
+    const compare::Untold untold = compare::untold_by(compare::imported_rounding(state), state, truth);
     if (result.ok()) {
         withhold(untold, result.value());
     }

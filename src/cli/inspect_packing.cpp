@@ -19,14 +19,6 @@ constexpr int vectors_in_json = 10;
 constexpr int vectors_in_text = 3;
 constexpr std::size_t longest = 60; ///< components of a vector on the terminal
 
-std::vector<std::string> contact_names(const crafted::Inspection& inspection) {
-    std::vector<std::string> out;
-    for (const Contact& contact : inspection.contacts) {
-        out.push_back(to_string<2>(contact));
-    }
-    return out;
-}
-
 std::vector<std::string> dof_names(const crafted::ExactPacking& packing) {
     const DofMap<2> dofs(crafted::approximate(packing));
     std::vector<std::string> out;
@@ -65,7 +57,7 @@ void print_enclosed(const crafted::ExactPacking& packing, const crafted::Inspect
             say("{}\n", components.size() > longest ? fmt::format(" and {} more", components.size() - longest) : "");
         }
     };
-    print("self-stress", bases.self_stresses, contact_names(inspection), bases.free_contacts.size());
+    print("self-stress", bases.self_stresses, contact_names(inspection.contacts), bases.free_contacts.size());
     print("motion", bases.motions, dof_names(packing), bases.free_dofs.size());
 }
 
@@ -85,7 +77,7 @@ Json enclosed_json(const crafted::ExactPacking& packing, const crafted::Inspecti
         return out;
     };
     return {{"verdict", to_string(bases.verdict)},
-            {"self_stresses", list(bases.self_stresses, contact_names(inspection))},
+            {"self_stresses", list(bases.self_stresses, contact_names(inspection.contacts))},
             {"motions", list(bases.motions, dof_names(packing))}};
 }
 

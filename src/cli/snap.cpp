@@ -1,8 +1,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/rounding.hpp"
 #include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
+#include "cli/true_vertex_text.hpp"
 #include "compare/force_split.hpp"
 #include "compare/soft_state.hpp"
 #include "io/files.hpp"
@@ -40,7 +40,7 @@ Read from_state(const SnapArguments& a) {
     const StateFile<2> file = read_any_state<2>(a.file);
     Read out;
     static_cast<compare::SoftForces&>(out) = compare::soft_grains(file, a.file);
-    out.rounding = imported_rounding(file.state);
+    out.rounding = compare::imported_rounding(file.state);
     out.words = fmt::format("{} contacts of the state, those that can carry a force", file.state.contacts.size());
     return out;
 }
@@ -173,10 +173,10 @@ int snap(const SnapArguments& a) {
     const compare::Snap snap = compare::snap(read.soft);
     Json report = json_of(a, read, snap);
     std::optional<State<2>> state = state_of(a, read, snap, report);
-    Untold untold;
+    compare::Untold untold;
     if (state) {
         const Certification truth = certify(*state);
-        untold = untold_by(read.rounding, *state, truth);
+        untold = compare::untold_by(read.rounding, *state, truth);
         add_untold(report, untold, truth.verdict);
         Json provenance = report;
         provenance["rounding"] = number(read.rounding);

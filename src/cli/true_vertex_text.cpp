@@ -217,4 +217,14 @@ void add_forces_in_file(Json& object, const StateFile<2>& file, const Certificat
     }
 }
 
+void add_untold(Json& object, const compare::Untold& untold, Verdict of_the_doubles) {
+    if (!untold.any()) {
+        return;
+    }
+    object["untold"] = {{"rounding", number(untold.rounding)},
+                        {"gaps", contact_names(untold.gaps)},
+                        {"forces", contact_names(untold.forces)},
+                        {"verdict_of_the_doubles", to_string(of_the_doubles)}};
+}
+
 } // namespace isostat::cli

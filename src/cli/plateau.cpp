@@ -2,8 +2,8 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
 #include "cli/read_packing.hpp"
-#include "cli/soft_list.hpp"
 #include "cli/terminal.hpp"
+#include "compare/soft_list.hpp"
 #include "io/files.hpp"
 #include "preparation/neighbours.hpp"
 
@@ -305,7 +305,7 @@ void note_walls(const PlateauArguments& a, const crafted::Plateau& plateau, Read
     const double rounding = rounding_of(a.foreign.box);
     const bool wide = std::any_of(plateau.ranges.begin(), plateau.ranges.end(),
                                   [&](const PlateauRange& range) { return range.last - range.first > rounding; });
-    if (const std::string far = far_wall(file.packing); !far.empty()) {
+    if (const std::string far = compare::far_wall(file.packing); !far.empty()) {
         file.notes.push_back(far);
     } else if (rounding > 0 && !wide) {
         file.notes.push_back(fmt::format("--box has digits down to {:.2g}: were the walls rounded there, contacts with "
@@ -324,13 +324,13 @@ std::string far_disks(const Packing<2>& packing, double largest, const crafted::
     }
     double nearest = plateau.deepest_overlap;
     constexpr double farthest = 8; // radii
-    for (double reach = nearly_touching; plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest);
-         reach *= 2) {
+    for (double reach = compare::nearly_touching;
+         plateau.candidates == 0 && reach < farthest && !std::isfinite(nearest); reach *= 2) {
         for (const Contact& c : preparation::near_contacts<2>(packing, reach * radius, 0)) {
             nearest = std::min(nearest, gap<2>(packing, c));
         }
     }
-    return nearest <= std::max(largest, nearly_touching * radius)
+    return nearest <= std::max(largest, compare::nearly_touching * radius)
                ? ""
                : fmt::format(
                      "the smallest gap is {:.3g} of the smallest radius: are the sizes wrong by a factor (radii "

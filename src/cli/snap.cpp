@@ -1,6 +1,6 @@
 #include "cli/commands.hpp"
 #include "cli/common.hpp"
-#include "cli/soft_list.hpp"
+#include "cli/soft_options.hpp"
 #include "cli/terminal.hpp"
 #include "cli/true_vertex_text.hpp"
 #include "compare/force_split.hpp"
@@ -60,9 +60,10 @@ Read from_foreign(const SnapArguments& a) {
     }
     ReadPacking file = read_any_packing(a.file, foreign);
     take_cell({a.file, a.cell}, file.packing);
-    check_nearness(a.file, file.packing);
-    SoftList list = a.contacts.empty() ? list_by_overlaps(file.packing)
-                                       : list_by_forces(a.file, file, foreign.frame, a.contacts, a.contact_columns);
+    compare::check_nearness(a.file, file.packing);
+    compare::SoftList list = a.contacts.empty()
+                                 ? compare::list_by_overlaps(file.packing)
+                                 : stated_list(a.file, file, foreign.frame, a.contacts, a.contact_columns);
     Read out;
     out.words = list.words;
     out.forces = list.forces;

@@ -1,6 +1,7 @@
 #include "contact/images.hpp"
 #include "io/files.hpp"
 #include "io/toml.hpp"
+#include "packing/unbalanced.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -375,15 +376,10 @@ class Reader {
             out[2 * static_cast<std::size_t>(disk)] += number(row[1], "load.disk");
             out[2 * static_cast<std::size_t>(disk) + 1] += number(row[2], "load.disk");
         }
-        for (std::size_t a = 0; a < 2; ++a) {
-            Number sum;
-            for (std::size_t k = a; k < out.size(); k += 2) {
-                sum += out[k];
-            }
-            if (out_.packing.cell.periodic[a] && !sum.is_zero()) {
-                fail(node, "load.disk", "forces that sum to " + sum.text(),
-                     fmt::format("0 along {}, which repeats: the pinned disk would bear the rest", "xy"[a]));
-            }
+        if (const auto rest = unbalanced<Number>(out, out_.packing.cell)) {
+            fail(
+                node, "load.disk", "forces that sum to " + rest->second.text(),
+                fmt::format("0 along {}, which repeats: the pinned disk would bear the rest", axis_names[rest->first]));
         }
         return out;
     }

@@ -5,6 +5,7 @@
 #include "io/state_json.hpp"
 #include "io/vertex_text.hpp"
 #include "packing/pressed_sides.hpp"
+#include "packing/unbalanced.hpp"
 #include "packing/words.hpp"
 
 #include <isostat/core/error.hpp>
@@ -164,22 +165,14 @@ template <int Dim> Packing<Dim> packing_of(const Field& document) {
     return packing;
 }
 
-/// Along periodic axes loads on the disks sum to zero, exactly: else the pinned disk bears the rest, whichever it is.
 template <int Dim>
 void require_balance(const Field& document, const char* name, const std::vector<double>& values,
                      const Cell<Dim>& cell) {
-    for (std::size_t a = 0; a < Dim; ++a) {
-        mpq_class sum = 0;
-        for (std::size_t k = a; k < values.size() && cell.periodic[a]; k += Dim) {
-            sum += mpq_class(values[k]);
-        }
-        if (sum != 0) {
-            throw Error(
-                ErrorKind::bad_input,
-                fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
-                            "minus the sum of the others)",
-                            document.at(name).where(), axis_names[a], sum.get_d()));
-        }
+    if (const auto rest = unbalanced<mpq_class>(values, cell)) {
+        throw Error(ErrorKind::bad_input,
+                    fmt::format("{} along {} sum to {:.3g}: expected exactly 0 along a periodic axis (give one disk "
+                                "minus the sum of the others)",
+                                document.at(name).where(), axis_names[rest->first], rest->second.get_d()));
     }
 }
 
